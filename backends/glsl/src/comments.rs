@@ -1,0 +1,143 @@
+//! Comments of the WGSL text: which stand above a statement, which follow it on its line.
+//!
+//! In: the source and byte positions of statements. Out: each `//` comment at most once, with its statement. Doc comments
+//! are not looked for here, since the module carries them.
+
+struct Comment<'a> {
+    start: usize,
+    text: &'a str,
+    /// The brace pair the comment stands in, by the position of the opening brace.
+    block: usize,
+    /// Has code before it on its line.
+    trailing: bool,
+    used: bool,
+}
+
+/// All line comments of a source text, and its brace structure.
+pub struct Comments<'a> {
+    source: &'a str,
+    comments: Vec<Comment<'a>>,
+    /// Opening and closing position of every pair of braces, by opening position.
+    braces: Vec<(usize, usize)>,
+}
+
+impl<'a> Comments<'a> {
+    pub fn new(source: &'a str) -> Self {
+        let mut found = Self { source, comments: Vec::new(), braces: Vec::new() };
+        let mut open = Vec::new();
+        let bytes = source.as_bytes();
+        let mut at = 0;
+        while let Some(byte) = bytes.get(at) {
+            match byte {
+                b'/' if source[at..].starts_with("//") => {
+                    let end = source[at..].find('\n').map_or(source.len(), |length| at + length);
+                    found.note(at, end, open.last().copied().unwrap_or_default());
+                    at = end;
+                    continue;
+                }
+                b'/' if source[at..].starts_with("/*") => {
+                    at = skip_block(source, at);
+                    continue;
+                }
+                b'{' => open.push(at),
+                b'}' => found.braces.extend(open.pop().map(|start| (start, at))),
+                _ => {}
+            }
+            at += 1;
+        }
+        found.braces.sort_unstable();
+        found
+    }
+
+    fn note(&mut self, start: usize, end: usize, block: usize) {
+        let text = &self.source[start..end];
+        if text.starts_with("///") || text.starts_with("//!") {
+            return;
+        }
+        let line = self.source[..start].rfind('\n').map_or(0, |at| at + 1);
+        let trailing = !self.source[line..start].trim().is_empty();
+        self.comments.push(Comment { start, text: text.trim_end(), block, trailing, used: false });
+    }
+
+    /// The innermost pair of braces around a position.
+    fn block_at(&self, position: usize) -> usize {
+        let around = self.braces.iter().filter(|(open, close)| *open < position && position < *close);
+        around.map(|(open, _)| *open).max().unwrap_or_default()
+    }
+
+    /// Comments that stand in the same block before the position and have not been taken yet.
+    pub fn before(&mut self, position: usize) -> Vec<&'a str> {
+        let block = self.block_at(position);
+        if block == 0 {
+            return Vec::new();
+        }
+        self.take(|comment| comment.block == block && comment.start < position)
+    }
+
+    /// Comments between the parts of a statement.
+    pub fn within(&mut self, start: usize, end: usize) -> Vec<&'a str> {
+        self.take(|comment| (start..end).contains(&comment.start))
+    }
+
+    /// Comments left over at the end of the block that the position is in.
+    pub fn rest(&mut self, position: usize) -> Vec<&'a str> {
+        let block = self.block_at(position);
+        if block == 0 {
+            return Vec::new();
+        }
+        self.take(|comment| comment.block == block)
+    }
+
+    /// The comment on the line where a statement ends, behind it.
+    pub fn behind(&mut self, end: usize) -> Option<&'a str> {
+        let line_end = self.source[end..].find('\n').map_or(self.source.len(), |length| end + length);
+        let mut behind = self.take(|comment| comment.trailing && (end..line_end).contains(&comment.start));
+        behind.pop()
+    }
+
+    fn take(&mut self, wanted: impl Fn(&Comment<'a>) -> bool) -> Vec<&'a str> {
+        let mut texts = Vec::new();
+        for comment in self.comments.iter_mut().filter(|comment| !comment.used) {
+            if wanted(comment) {
+                comment.used = true;
+                texts.push(comment.text);
+            }
+        }
+        texts
+    }
+
+    /// Whether the source leaves a line free above the position, or above the comments that stand directly above it.
+    pub fn paragraph_before(&self, position: usize) -> bool {
+        let Some(before) = self.source.get(..position) else { return false };
+        let line = before.rfind('\n').map_or(0, |at| at + 1);
+        let mut free = false;
+        for text in before[..line].lines().rev().map(str::trim) {
+            if text.is_empty() {
+                free = true;
+            } else if free || !text.starts_with("//") {
+                return free && !text.ends_with('{');
+            }
+        }
+        false
+    }
+}
+
+fn skip_block(source: &str, start: usize) -> usize {
+    let mut depth = 0usize;
+    let mut at = start;
+    while at < source.len() {
+        if source.as_bytes()[at..].starts_with(b"/*") {
+            depth += 1;
+            at += 2;
+        } else if source.as_bytes()[at..].starts_with(b"*/") {
+            depth -= 1;
+            at += 2;
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += 1;
+        }
+    }
+    source.len()
+}

@@ -1,0 +1,144 @@
+//! Functions that mean in GLSL what a WGSL operator means, where GLSL's own operator is undefined or differs.
+//!
+//! In: which are needed. Out: their text, each with the reason in a comment. Their names begin with `wgsl_`, which no
+//! printed name may.
+
+use naga::VectorSize;
+
+/// A helper function; overloads for all its shapes share a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Helper {
+    DivideUint(u8),
+    DivideInt(u8),
+    RemainderUint(u8),
+    RemainderInt(u8),
+    RemainderFloat(u8),
+    ExtractBits { signed: bool, size: u8 },
+    InsertBits { signed: bool, size: u8 },
+    PackBytes { signed: bool, clamp: bool },
+    UnpackBytes { signed: bool },
+    FloatToUint(u8),
+    FloatToInt(u8),
+}
+
+/// 1 for a scalar.
+pub fn lanes(size: Option<VectorSize>) -> u8 {
+    size.map_or(1, |size| size as u8)
+}
+
+fn typed(stem: &str, scalar: &str, lanes: u8) -> String {
+    if lanes == 1 { scalar.to_owned() } else { format!("{stem}{lanes}") }
+}
+
+impl Helper {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DivideUint(_) | Self::DivideInt(_) => "wgsl_divide",
+            Self::RemainderUint(_) | Self::RemainderInt(_) | Self::RemainderFloat(_) => "wgsl_remainder",
+            Self::ExtractBits { .. } => "wgsl_extract_bits",
+            Self::InsertBits { .. } => "wgsl_insert_bits",
+            Self::PackBytes { clamp: false, .. } => "wgsl_pack_bytes",
+            Self::PackBytes { clamp: true, .. } => "wgsl_pack_bytes_clamped",
+            Self::UnpackBytes { signed: false } => "wgsl_unpack_bytes_unsigned",
+            Self::UnpackBytes { signed: true } => "wgsl_unpack_bytes_signed",
+            Self::FloatToUint(_) => "wgsl_uint",
+            Self::FloatToInt(_) => "wgsl_int",
+        }
+    }
+
+    /// The definition.
+    pub fn text(self) -> String {
+        match self {
+            Self::DivideUint(lanes) => divide("uvec", "uint", lanes, false),
+            Self::DivideInt(lanes) => divide("ivec", "int", lanes, true),
+            Self::RemainderUint(lanes) => remainder_uint(lanes),
+            Self::RemainderInt(lanes) => remainder_int(lanes),
+            Self::RemainderFloat(lanes) => {
+                let ty = typed("vec", "float", lanes);
+                format!(
+                    "// The result has the sign of a; mod() would give it that of b.\n{ty} wgsl_remainder({ty} a, {ty} b) {{\n    return a - b * trunc(a / b);\n}}\n"
+                )
+            }
+            Self::ExtractBits { signed, size } => {
+                let ty = if signed { typed("ivec", "int", size) } else { typed("uvec", "uint", size) };
+                format!(
+                    "// bitfieldExtract() is undefined for a range beyond bit 31.\n{ty} wgsl_extract_bits({ty} value, uint offset, uint count) {{\n    uint start = min(offset, 32u);\n    return bitfieldExtract(value, int(start), int(min(count, 32u - start)));\n}}\n"
+                )
+            }
+            Self::InsertBits { signed, size } => {
+                let ty = if signed { typed("ivec", "int", size) } else { typed("uvec", "uint", size) };
+                format!(
+                    "// bitfieldInsert() is undefined for a range beyond bit 31.\n{ty} wgsl_insert_bits({ty} value, {ty} bits, uint offset, uint count) {{\n    uint start = min(offset, 32u);\n    return bitfieldInsert(value, bits, int(start), int(min(count, 32u - start)));\n}}\n"
+                )
+            }
+            Self::PackBytes { signed, clamp } => pack_bytes(signed, clamp),
+            Self::UnpackBytes { signed: false } => {
+                "uvec4 wgsl_unpack_bytes_unsigned(uint word) {\n    return (uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & uvec4(255u);\n}\n".to_owned()
+            }
+            Self::UnpackBytes { signed: true } => {
+                "ivec4 wgsl_unpack_bytes_signed(uint word) {\n    return (ivec4(word) << ivec4(24, 16, 8, 0)) >> ivec4(24);\n}\n".to_owned()
+            }
+            Self::FloatToUint(lanes) => {
+                let (from, to) = (typed("vec", "float", lanes), typed("uvec", "uint", lanes));
+                format!(
+                    "// WGSL saturates where uint() is undefined; 4294967040 is the greatest float below 2^32. NaN is undefined in both.\n{to} wgsl_uint({from} value) {{\n    return {to}(clamp(value, 0.0, 4294967040.0));\n}}\n"
+                )
+            }
+            Self::FloatToInt(lanes) => {
+                let (from, to) = (typed("vec", "float", lanes), typed("ivec", "int", lanes));
+                format!(
+                    "// WGSL saturates where int() is undefined; 2147483520 is the greatest float below 2^31. NaN is undefined in both.\n{to} wgsl_int({from} value) {{\n    return {to}(clamp(value, -2147483648.0, 2147483520.0));\n}}\n"
+                )
+            }
+        }
+    }
+}
+
+fn divide(stem: &str, scalar: &str, lanes: u8, signed: bool) -> String {
+    let ty = typed(stem, scalar, lanes);
+    let divisor = divisor(&ty, lanes, signed);
+    let reason = if signed { "// In WGSL, dividing by zero, or the least integer by -1, gives a." } else { "// In WGSL, dividing by zero gives a." };
+    format!("{reason}\n{ty} wgsl_divide({ty} a, {ty} b) {{\n    return a / {divisor};\n}}\n")
+}
+
+/// b, or 1 where WGSL's division gives a itself.
+fn divisor(ty: &str, lanes: u8, signed: bool) -> String {
+    match (lanes, signed) {
+        (1, false) => "(b == 0u ? 1u : b)".to_owned(),
+        (1, true) => "(b == 0 || (b == -1 && a == (-2147483647 - 1)) ? 1 : b)".to_owned(),
+        (_, false) => format!("mix(b, {ty}(1u), equal(b, {ty}(0u)))"),
+        (_, true) => {
+            let bools = ty.replace("ivec", "bvec");
+            let words = ty.replace("ivec", "uvec");
+            let least = format!("{words}(equal(b, {ty}(-1))) & {words}(equal(a, {ty}(-2147483647 - 1)))");
+            format!("mix(b, {ty}(1), {bools}({words}(equal(b, {ty}(0))) | ({least})))")
+        }
+    }
+}
+
+fn remainder_uint(lanes: u8) -> String {
+    let ty = typed("uvec", "uint", lanes);
+    let divisor = divisor(&ty, lanes, false);
+    format!("// In WGSL, the remainder of a division by zero is 0.\n{ty} wgsl_remainder({ty} a, {ty} b) {{\n    return a % {divisor};\n}}\n")
+}
+
+fn remainder_int(lanes: u8) -> String {
+    let ty = typed("ivec", "int", lanes);
+    let divisor = divisor(&ty, lanes, true);
+    format!(
+        "// GLSL's % is undefined for negative operands; in WGSL the remainder of a division by zero is 0.\n{ty} wgsl_remainder({ty} a, {ty} b) {{\n    {ty} divisor = {divisor};\n    return a - divisor * (a / divisor);\n}}\n"
+    )
+}
+
+fn pack_bytes(signed: bool, clamp: bool) -> String {
+    let ty = if signed { "ivec4" } else { "uvec4" };
+    let name = Helper::PackBytes { signed, clamp }.name();
+    let bytes = match (signed, clamp) {
+        (_, false) => "uvec4(value) & uvec4(255u)",
+        (true, true) => "uvec4(clamp(value, ivec4(-128), ivec4(127))) & uvec4(255u)",
+        (false, true) => "min(value, uvec4(255u))",
+    };
+    format!(
+        "uint {name}({ty} value) {{\n    uvec4 bytes = {bytes};\n    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);\n}}\n"
+    )
+}

@@ -1,0 +1,222 @@
+//! Built-in functions: WGSL's in, GLSL's of the same meaning out.
+//!
+//! Most differ in name alone. The others are written out here, or through a function of `helpers`.
+
+use naga::{DerivativeAxis, DerivativeControl, Expression, Handle, Literal, MathFunction, RelationalFunction, Scalar, ScalarKind};
+
+use crate::expression::{Level, Text};
+use crate::function::FunctionPrinter;
+use crate::helpers::Helper;
+
+/// Functions that GLSL has with the same meaning.
+fn plain_name(fun: MathFunction) -> Option<&'static str> {
+    use MathFunction as M;
+    Some(match fun {
+        M::Abs => "abs",
+        M::Min => "min",
+        M::Max => "max",
+        M::Cos => "cos",
+        M::Cosh => "cosh",
+        M::Sin => "sin",
+        M::Sinh => "sinh",
+        M::Tan => "tan",
+        M::Tanh => "tanh",
+        M::Acos => "acos",
+        M::Asin => "asin",
+        M::Atan | M::Atan2 => "atan",
+        M::Asinh => "asinh",
+        M::Acosh => "acosh",
+        M::Atanh => "atanh",
+        M::Radians => "radians",
+        M::Degrees => "degrees",
+        M::Ceil => "ceil",
+        M::Floor => "floor",
+        // Ties go to even in WGSL; GLSL's round() leaves that to the implementation.
+        M::Round => "roundEven",
+        M::Fract => "fract",
+        M::Trunc => "trunc",
+        M::Ldexp => "ldexp",
+        M::Exp => "exp",
+        M::Exp2 => "exp2",
+        M::Log => "log",
+        M::Log2 => "log2",
+        M::Pow => "pow",
+        M::Cross => "cross",
+        M::Distance => "distance",
+        M::Length => "length",
+        M::Normalize => "normalize",
+        M::FaceForward => "faceforward",
+        M::Reflect => "reflect",
+        M::Refract => "refract",
+        M::Outer => "outerProduct",
+        M::Sign => "sign",
+        M::Fma => "fma",
+        M::Step => "step",
+        M::SmoothStep => "smoothstep",
+        M::Sqrt => "sqrt",
+        M::InverseSqrt => "inversesqrt",
+        M::Inverse => "inverse",
+        M::Transpose => "transpose",
+        M::Determinant => "determinant",
+        M::ReverseBits => "bitfieldReverse",
+        M::Pack4x8snorm => "packSnorm4x8",
+        M::Pack4x8unorm => "packUnorm4x8",
+        M::Pack2x16snorm => "packSnorm2x16",
+        M::Pack2x16unorm => "packUnorm2x16",
+        M::Pack2x16float => "packHalf2x16",
+        M::Unpack4x8snorm => "unpackSnorm4x8",
+        M::Unpack4x8unorm => "unpackUnorm4x8",
+        M::Unpack2x16snorm => "unpackSnorm2x16",
+        M::Unpack2x16unorm => "unpackUnorm2x16",
+        M::Unpack2x16float => "unpackHalf2x16",
+        _ => return None,
+    })
+}
+
+impl FunctionPrinter<'_, '_> {
+    pub fn math(&mut self, expression: Handle<Expression>) -> Text {
+        let Expression::Math { fun, arg, arg1, arg2, arg3 } = self.function.expressions[expression] else {
+            return Text::primary(self.error("not a built-in function", expression));
+        };
+        let operands: Vec<_> = [Some(arg), arg1, arg2, arg3].into_iter().flatten().collect();
+        operands.iter().for_each(|operand| self.check_scalar(*operand));
+        let kind = self.shape(arg).map(|(_, scalar)| scalar.kind);
+        match fun {
+            MathFunction::Abs if kind == Some(ScalarKind::Uint) => self.text(arg),
+            MathFunction::Clamp => self.clamp(&operands),
+            MathFunction::Mix => self.call("mix", &operands),
+            MathFunction::Saturate => {
+                let value = self.expression(arg);
+                Text::primary(format!("clamp({value}, 0.0, 1.0)"))
+            }
+            MathFunction::Dot if kind != Some(ScalarKind::Float) => self.integer_dot(&operands),
+            MathFunction::Dot => self.call("dot", &operands),
+            MathFunction::QuantizeToF16 => self.quantize(expression, arg),
+            MathFunction::CountOneBits => self.bits("bitCount", arg),
+            MathFunction::FirstTrailingBit => self.bits("findLSB", arg),
+            MathFunction::FirstLeadingBit => self.bits("findMSB", arg),
+            MathFunction::CountLeadingZeros => self.count_leading_zeros(arg),
+            MathFunction::CountTrailingZeros => self.count_trailing_zeros(arg),
+            MathFunction::ExtractBits | MathFunction::InsertBits => self.bit_field(fun, &operands),
+            MathFunction::Pack4xU8 => self.help(Helper::PackBytes { signed: false, clamp: false }, &operands),
+            MathFunction::Pack4xI8 => self.help(Helper::PackBytes { signed: true, clamp: false }, &operands),
+            MathFunction::Pack4xU8Clamp => self.help(Helper::PackBytes { signed: false, clamp: true }, &operands),
+            MathFunction::Pack4xI8Clamp => self.help(Helper::PackBytes { signed: true, clamp: true }, &operands),
+            MathFunction::Unpack4xU8 => self.help(Helper::UnpackBytes { signed: false }, &operands),
+            MathFunction::Unpack4xI8 => self.help(Helper::UnpackBytes { signed: true }, &operands),
+            fun => match plain_name(fun) {
+                Some(name) => self.call(name, &operands),
+                None => Text::primary(self.error(format!("the built-in function {fun:?}"), expression)),
+            },
+        }
+    }
+
+    /// GLSL leaves clamp() undefined if the bounds are the wrong way round; WGSL takes the lower of the two maxima.
+    fn clamp(&mut self, operands: &[Handle<Expression>]) -> Text {
+        let [value, low, high] = operands else { return self.call("clamp", operands) };
+        let ordered = match (self.known(*low), self.known(*high)) {
+            (Some(Literal::U32(low)), Some(Literal::U32(high))) => low <= high,
+            (Some(Literal::I32(low)), Some(Literal::I32(high))) => low <= high,
+            (Some(Literal::F32(low)), Some(Literal::F32(high))) => low <= high,
+            _ => false,
+        };
+        if ordered {
+            return self.call("clamp", operands);
+        }
+        let (value, low, high) = (self.expression(*value), self.expression(*low), self.expression(*high));
+        Text::primary(format!("min(max({value}, {low}), {high})"))
+    }
+
+    fn integer_dot(&mut self, operands: &[Handle<Expression>]) -> Text {
+        let [left, right] = operands else { return self.call("dot", operands) };
+        let lanes = self.shape(*left).map_or(0, |(lanes, _)| usize::from(lanes));
+        let (left, right) = (self.primary(*left), self.primary(*right));
+        let terms: Vec<String> = ["x", "y", "z", "w"].iter().take(lanes).map(|c| format!("{left}.{c} * {right}.{c}")).collect();
+        Text::new(terms.join(" + "), Level::Sum)
+    }
+
+    fn quantize(&mut self, expression: Handle<Expression>, value: Handle<Expression>) -> Text {
+        if self.shape(value).is_some_and(|(lanes, _)| lanes > 1) {
+            return Text::primary(self.error("quantizeToF16 of a vector", expression));
+        }
+        let value = self.expression(value);
+        Text::primary(format!("unpackHalf2x16(packHalf2x16(vec2({value}, 0.0))).x"))
+    }
+
+    /// GLSL's bit functions return `int`; -1, for no bit, is all ones in both.
+    fn bits(&mut self, name: &str, value: Handle<Expression>) -> Text {
+        let text = self.call(name, &[value]);
+        if self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Uint) {
+            let ty = self.like(value, Scalar::U32);
+            return Text::primary(format!("{ty}({})", text.text));
+        }
+        text
+    }
+
+    fn count_leading_zeros(&mut self, value: Handle<Expression>) -> Text {
+        let words = self.like(value, Scalar::U32);
+        let signed = self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
+        let text = self.expression(value);
+        if signed {
+            // The sign bit counts as a bit here, but not for findMSB() of an int.
+            return Text::new(format!("31 - findMSB({words}({text}))"), Level::Sum);
+        }
+        Text::primary(format!("{words}(31 - findMSB({text}))"))
+    }
+
+    fn count_trailing_zeros(&mut self, value: Handle<Expression>) -> Text {
+        let words = self.like(value, Scalar::U32);
+        let signed = self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
+        let text = self.expression(value);
+        // Without any bit findLSB() gives -1, all ones, so the minimum is 32.
+        let count = format!("min({words}(findLSB({text})), 32u)");
+        if signed {
+            let integers = self.like(value, Scalar::I32);
+            return Text::primary(format!("{integers}({count})"));
+        }
+        Text::primary(count)
+    }
+
+    fn bit_field(&mut self, fun: MathFunction, operands: &[Handle<Expression>]) -> Text {
+        let extract = fun == MathFunction::ExtractBits;
+        let Some((size, scalar)) = operands.first().and_then(|value| self.shape(*value)) else { return self.call("bitfieldExtract", operands) };
+        let (values, range) = operands.split_at(if extract { 1 } else { 2 });
+        let known: Vec<_> = range.iter().filter_map(|part| if let Some(Literal::U32(part)) = self.known(*part) { Some(part) } else { None }).collect();
+        if let [offset, count] = known[..]
+            && offset.saturating_add(count) <= 32
+        {
+            let name = if extract { "bitfieldExtract" } else { "bitfieldInsert" };
+            let values: Vec<String> = values.iter().map(|value| self.expression(*value)).collect();
+            return Text::primary(format!("{name}({}, {offset}, {count})", values.join(", ")));
+        }
+        let signed = scalar.kind == ScalarKind::Sint;
+        let helper = if extract { Helper::ExtractBits { signed, size } } else { Helper::InsertBits { signed, size } };
+        self.help(helper, operands)
+    }
+
+    pub fn derivative(&mut self, axis: DerivativeAxis, control: DerivativeControl, value: Handle<Expression>) -> Text {
+        let axis = match axis {
+            DerivativeAxis::X => "dFdx",
+            DerivativeAxis::Y => "dFdy",
+            DerivativeAxis::Width => "fwidth",
+        };
+        let control = match control {
+            DerivativeControl::Coarse => "Coarse",
+            DerivativeControl::Fine => "Fine",
+            DerivativeControl::None => "",
+        };
+        self.call(&format!("{axis}{control}"), &[value])
+    }
+
+    pub fn relational(&mut self, fun: RelationalFunction, argument: Handle<Expression>) -> Text {
+        let scalar = self.shape(argument).is_some_and(|(lanes, _)| lanes == 1);
+        match fun {
+            // Of a single truth value, all and any are the value.
+            RelationalFunction::All | RelationalFunction::Any if scalar => self.text(argument),
+            RelationalFunction::All => self.call("all", &[argument]),
+            RelationalFunction::Any => self.call("any", &[argument]),
+            RelationalFunction::IsNan => self.call("isnan", &[argument]),
+            RelationalFunction::IsInf => self.call("isinf", &[argument]),
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! Statements that are no control flow, and the order of lines in a block.
+//!
+//! In: a block. Out: its lines, with declarations where `locals` wants them, variables for baked expressions where they
+//! are evaluated, and the comments of the source above and behind the statements they belong to.
+
+use naga::{ArraySize, Barrier, Block, Expression, Handle, Literal, LocalVariable, Span, Statement, TypeInner};
+
+use crate::Marker;
+use crate::expression::Text;
+use crate::function::FunctionPrinter;
+
+impl<'m> FunctionPrinter<'_, 'm> {
+    /// Prints the statements of a block. `tail` says that nothing follows it in the function.
+    pub fn statements(&mut self, block: &'m Block, tail: bool) {
+        self.statements_from(block, 0, tail);
+    }
+
+    /// As [`Self::statements`], beginning at a statement of the block.
+    pub fn statements_from(&mut self, block: &'m Block, start: usize, tail: bool) {
+        let statements: Vec<(&'m Statement, Span)> = block.span_iter().map(|(statement, span)| (statement, *span)).collect();
+        let mut initialiser = None;
+        for (index, (statement, span)) in statements.iter().copied().enumerate().skip(start) {
+            let last = index + 1 == statements.len();
+            if let Some(text) = self.initialiser_before(statement, span, &statements[index + 1..]) {
+                initialiser = Some(text);
+                continue;
+            }
+            initialiser = initialiser.or(self.declarations_before(statement, span));
+            if let Statement::Loop { body, continuing, break_if } = statement {
+                self.loop_statement(body, continuing, *break_if, span, initialiser.take());
+            } else {
+                self.statement(statement, span, tail && last);
+            }
+        }
+        let last = statements.iter().skip(start).rev().find(|(statement, span)| span.is_defined() && !matches!(statement, Statement::Block(_)));
+        if let Some((_, span)) = last {
+            self.leftover(*span);
+        }
+    }
+
+    /// Declares the variables that belong before a statement; the one in a `for` header is handed back instead.
+    fn declarations_before(&mut self, statement: &Statement, span: Span) -> Option<String> {
+        let step = self.order.step_of(statement);
+        let mut in_header = None;
+        for local in self.declarations.before.remove(&step).unwrap_or_default() {
+            let declared = self.function.local_variables.get_span(local);
+            if matches!(statement, Statement::Loop { .. }) && contains(span, declared) && in_header.is_none() {
+                self.lead(span);
+                self.enter();
+                in_header = Some(self.declare_local(local, None));
+                continue;
+            }
+            self.lead(declared);
+            let text = self.declare_local(local, None);
+            self.line(text + ";");
+            self.zero_long_array(local);
+            self.trail(declared);
+        }
+        in_header
+    }
+
+    /// `uint count = 0u`, with the given value or the variable's constant one.
+    fn declare_local(&mut self, local: Handle<LocalVariable>, value: Option<String>) -> String {
+        let variable = &self.function.local_variables[local];
+        let name = self.declare(variable.name.as_deref().unwrap_or("condition"));
+        self.locals.insert(local, name.clone());
+        let declaration = self.printer.declaration(variable.ty, &name, self.function.local_variables.get_span(local));
+        let value = match (value, variable.init) {
+            (Some(value), _) => value,
+            (None, Some(init)) => self.expression(init),
+            (None, None) if self.is_long_array(local) => return declaration,
+            (None, None) => self.printer.zero(variable.ty, self.function.local_variables.get_span(local)),
+        };
+        format!("{declaration} = {value}")
+    }
+
+    fn is_long_array(&self, local: Handle<LocalVariable>) -> bool {
+        let variable = &self.function.local_variables[local];
+        variable.init.is_none() && self.printer.is_long_array(variable.ty)
+    }
+
+    /// WGSL's variables begin as zero, GLSL's as anything.
+    fn zero_long_array(&mut self, local: Handle<LocalVariable>) {
+        let variable = &self.function.local_variables[local];
+        let TypeInner::Array { base, size: ArraySize::Constant(size), .. } = self.printer.module.types[variable.ty].inner else { return };
+        if !self.is_long_array(local) {
+            return;
+        }
+        let zero = self.printer.zero(base, self.function.local_variables.get_span(local));
+        let name = self.locals.get(&local).cloned().unwrap_or_default();
+        self.enter();
+        let index = self.declare("index");
+        self.line(format!("for (uint {index} = 0u; {index} < {size}u; {index}++) {{"));
+        self.line(format!("    {name}[{index}] = {zero};"));
+        self.line("}");
+        self.leave();
+    }
+
+    /// The first part of a `for` header, if the statement is that: written inside the header of the loop that follows.
+    fn initialiser_before(&mut self, statement: &'m Statement, span: Span, rest: &[(&'m Statement, Span)]) -> Option<String> {
+        let (header, loop_span) = rest.iter().find(|(next, _)| !self.is_silent(next))?;
+        let simple = matches!(statement, Statement::Store { .. } | Statement::Call { .. }) && !self.is_silent(statement);
+        let for_loop = matches!(header, Statement::Loop { .. }) && contains(*loop_span, span);
+        // A variable that the header declared would end with the loop.
+        let declared = self.declarations.by_store.get(&self.order.step_of(statement)).map(|local| self.function.local_variables.get_span(*local));
+        let outlives = declared.is_some_and(|declared| !contains(*loop_span, declared));
+        if !simple || !for_loop || outlives || self.is_long_zero(statement) {
+            return None;
+        }
+        self.lead(*loop_span);
+        self.enter();
+        self.simple(statement)
+    }
+
+    fn is_long_zero(&self, statement: &Statement) -> bool {
+        let Statement::Store { value, .. } = statement else { return false };
+        let Expression::ZeroValue(ty) = self.function.expressions[*value] else { return false };
+        self.printer.is_long_array(ty)
+    }
+
+    /// Whether a statement prints nothing where it stands.
+    pub fn is_silent(&self, statement: &Statement) -> bool {
+        let step = self.order.step_of(statement);
+        let inlined = |result: &Handle<Expression>| self.plan.live.contains(result) && !self.plan.baked.contains(result);
+        let own = match statement {
+            Statement::Emit(range) => !range.clone().any(|expression| self.is_baked_here(expression)),
+            Statement::If { .. } => self.plan.circuit_steps.get(&step).is_some_and(inlined),
+            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => inlined(result),
+            _ => false,
+        };
+        own && !self.declarations.before.contains_key(&step)
+    }
+
+    fn is_baked_here(&self, expression: Handle<Expression>) -> bool {
+        self.plan.baked.contains(&expression) && !self.plan.circuits.contains_key(&expression)
+    }
+
+    fn statement(&mut self, statement: &'m Statement, span: Span, tail: bool) {
+        if self.is_silent(statement) {
+            return;
+        }
+        let step = self.order.step_of(statement);
+        match statement {
+            Statement::Emit(range) => range.clone().for_each(|expression| {
+                if self.is_baked_here(expression) {
+                    self.bake(expression, self.span(expression));
+                }
+            }),
+            Statement::If { .. } if self.plan.circuit_steps.contains_key(&step) => {
+                if let Some(value) = self.plan.circuit_steps.get(&step).copied() {
+                    self.bake(value, span);
+                }
+            }
+            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } if self.plan.baked.contains(result) => {
+                self.bake(*result, span);
+            }
+            Statement::Block(block) => {
+                self.lead(span);
+                self.line("{");
+                self.open();
+                self.statements(block, tail);
+                self.close();
+                self.line("}");
+            }
+            Statement::If { condition, accept, reject } => self.if_statement(*condition, accept, reject, span, tail),
+            Statement::Switch { selector, cases } => self.switch(*selector, cases, span),
+            Statement::Return { value } => self.return_statement(*value, span, tail),
+            Statement::Break | Statement::Continue | Statement::Kill => self.jump(statement, span),
+            Statement::Store { pointer, .. } if self.is_long_zero(statement) => self.store_zeros(step, *pointer, span),
+            _ => {
+                self.lead_whole(span);
+                match self.simple(statement) {
+                    Some(text) => text.split("; ").for_each(|part| self.line(format!("{part};"))),
+                    None => drop(self.printer.error(kind_name(statement), span)),
+                }
+                self.trail(span);
+            }
+        }
+    }
+
+    /// Gives an expression a variable.
+    fn bake(&mut self, expression: Handle<Expression>, span: Span) {
+        self.lead_whole(span);
+        let value = self.in_place(expression).text;
+        let wanted = self.wanted_name(expression);
+        let name = self.declare(&wanted);
+        let declaration = match self.function.expressions[expression] {
+            Expression::AtomicResult { comparison: true, .. } => format!("{} {name}", self.compared_type(expression)),
+            _ => {
+                let span = self.span(expression);
+                let resolution = &self.order.info[expression].ty;
+                self.printer.resolved_declaration(resolution, &name, span)
+            }
+        };
+        self.values.insert(expression, name);
+        self.line(format!("{declaration} = {value};"));
+        self.trail(span);
+    }
+
+    /// The type of the value that a compare-exchange compares.
+    fn compared_type(&mut self, result: Handle<Expression>) -> String {
+        match self.order.compared.get(&result).copied() {
+            Some(compared) => self.type_name(compared),
+            None => self.error("a compare-exchange result without its exchange", result),
+        }
+    }
+
+    /// A baked expression's name: the `let`'s, or one that tells where the value is from.
+    fn wanted_name(&self, expression: Handle<Expression>) -> String {
+        if let Some(name) = crate::schedule::name_of(&self.order, expression) {
+            return name.to_owned();
+        }
+        match self.function.expressions[expression] {
+            Expression::CallResult(function) => {
+                let name = self.printer.module.functions[function].name.as_deref().unwrap_or("call");
+                format!("{name}_result")
+            }
+            Expression::AtomicResult { .. } => "old_value".to_owned(),
+            Expression::Load { pointer } => match crate::footprint::root(self.function, pointer) {
+                Some(crate::footprint::Place::Global(global)) => {
+                    format!("{}_value", self.printer.module.global_variables[global].name.as_deref().unwrap_or("loaded"))
+                }
+                Some(crate::footprint::Place::Local(local)) => {
+                    format!("{}_value", self.function.local_variables[local].name.as_deref().unwrap_or("loaded"))
+                }
+                _ => "loaded".to_owned(),
+            },
+            Expression::ImageSample { .. } => "sampled".to_owned(),
+            Expression::ImageLoad { .. } => "texel".to_owned(),
+            _ => "value".to_owned(),
+        }
+    }
+
+    /// A statement that fits in one line, without its semicolon.
+    pub fn simple(&mut self, statement: &Statement) -> Option<String> {
+        Some(match *statement {
+            Statement::Store { pointer, value } => self.store(statement, pointer, value),
+            Statement::Call { .. } => self.call_text(statement),
+            Statement::Atomic { result, .. } => {
+                self.check_compare_exchange(result);
+                self.atomic(statement)
+            }
+            Statement::ImageStore { image, coordinate, array_index, value } => self.image_store(image, coordinate, array_index, value),
+            Statement::ControlBarrier(barrier) => barrier_text(barrier, true),
+            Statement::MemoryBarrier(barrier) => barrier_text(barrier, false),
+            _ => return None,
+        })
+    }
+
+    fn check_compare_exchange(&mut self, result: Option<Handle<Expression>>) {
+        let Some(result) = result.filter(|result| self.order.compared.contains_key(result)) else { return };
+        let members_only = self.order.uses.get(&result).into_iter().flatten().all(|used| match used {
+            crate::analysis::Use::Expression { user, .. } => matches!(self.function.expressions[*user], Expression::AccessIndex { .. }),
+            crate::analysis::Use::Step { .. } => false,
+        });
+        if !members_only {
+            self.error("the result of a compare-exchange as a whole", result);
+        }
+    }
+
+    fn store(&mut self, statement: &Statement, pointer: Handle<Expression>, value: Handle<Expression>) -> String {
+        let step = self.order.step_of(statement);
+        if let Some(local) = self.declarations.by_store.get(&step).copied() {
+            let value = self.expression(value);
+            return self.declare_local(local, Some(value));
+        }
+        if crate::footprint::is_atomic(self.printer.module, self.function, pointer) {
+            return self.atomic_store(pointer, value);
+        }
+        let place = self.expression(pointer);
+        if self.plan.compound.contains(&step)
+            && let Expression::Binary { op, right, .. } = self.function.expressions[value]
+        {
+            return self.compound(&place, op, right);
+        }
+        format!("{place} = {}", self.expression(value))
+    }
+
+    fn compound(&mut self, place: &str, op: naga::BinaryOperator, right: Handle<Expression>) -> String {
+        let one = matches!(self.function.expressions[right], Expression::Literal(Literal::U32(1) | Literal::I32(1)));
+        let symbol = match op {
+            naga::BinaryOperator::Add if one => return format!("{place}++"),
+            naga::BinaryOperator::Subtract if one => return format!("{place}--"),
+            naga::BinaryOperator::Add => "+",
+            naga::BinaryOperator::Subtract => "-",
+            naga::BinaryOperator::Multiply => "*",
+            naga::BinaryOperator::And => "&",
+            naga::BinaryOperator::ExclusiveOr => "^",
+            _ => "|",
+        };
+        format!("{place} {symbol}= {}", self.expression(right))
+    }
+
+    fn store_zeros(&mut self, step: usize, pointer: Handle<Expression>, span: Span) {
+        self.lead(span);
+        if let Expression::LocalVariable(local) = self.function.expressions[pointer] {
+            if self.declarations.by_store.contains_key(&step) {
+                let text = self.declare_local(local, None);
+                self.line(text + ";");
+            }
+            self.zero_long_array(local);
+        } else {
+            self.printer.error("a long array set to zero", span);
+        }
+    }
+
+    /// A call, or what a marker stands for.
+    fn call_text(&mut self, statement: &Statement) -> String {
+        let Statement::Call { function, ref arguments, .. } = *statement else { return String::new() };
+        match self.printer.marker(function) {
+            Some(Marker::MemoryFence) => return "memoryBarrierBuffer()".to_owned(),
+            Some(Marker::HelperLane) => return "gl_HelperInvocation".to_owned(),
+            Some(marker) => return self.critical(statement, marker),
+            None => {}
+        }
+        let name = self.printer.names.functions.get(&function).cloned().unwrap_or_default();
+        let arguments: Vec<String> = arguments.iter().map(|argument| self.expression(*argument)).collect();
+        format!("{name}({})", arguments.join(", "))
+    }
+
+    /// GLSL allows the interlock at the top level of `main` only.
+    fn critical(&mut self, statement: &Statement, marker: Marker) -> String {
+        let block = self.order.steps[self.order.step_of(statement)].block;
+        if self.interface.is_none() || block != 0 {
+            self.printer.error("the border of a critical section outside the top level of the entry point", Span::UNDEFINED);
+        }
+        self.printer.needs.extensions.insert("GL_ARB_fragment_shader_interlock");
+        let layout = match marker {
+            Marker::CriticalEnd => return "endInvocationInterlockARB()".to_owned(),
+            Marker::OrderedCriticalBegin => "pixel_interlock_ordered",
+            _ => "pixel_interlock_unordered",
+        };
+        if self.printer.needs.interlock.replace(layout).is_some_and(|other| other != layout) {
+            self.printer.error("ordered and unordered critical sections in one entry point", Span::UNDEFINED);
+        }
+        "beginInvocationInterlockARB()".to_owned()
+    }
+
+    /// The call or atomic that a result comes from, in the place of the result.
+    pub fn result_in_place(&mut self, expression: Handle<Expression>) -> Text {
+        let step = self.order.evaluated.get(&expression).copied();
+        let statement = step.and_then(|step| self.order.steps[step].statement);
+        let text = statement.and_then(|statement| self.simple(statement));
+        Text::primary(text.unwrap_or_else(|| self.error("a result without its statement", expression)))
+    }
+}
+
+/// Whether a span lies inside another.
+fn contains(outer: Span, inner: Span) -> bool {
+    match (outer.to_range(), inner.to_range()) {
+        (Some(outer), Some(inner)) => outer.start <= inner.start && inner.end <= outer.end,
+        _ => false,
+    }
+}
+
+fn barrier_text(barrier: Barrier, control: bool) -> String {
+    let fences = [
+        (Barrier::STORAGE, "memoryBarrierBuffer()"),
+        (Barrier::WORK_GROUP, "memoryBarrierShared()"),
+        (Barrier::TEXTURE, "memoryBarrierImage()"),
+    ];
+    let fences = fences.iter().filter(|(flag, _)| barrier.contains(*flag)).map(|(_, text)| *text);
+    fences.chain(control.then_some("barrier()")).collect::<Vec<_>>().join("; ")
+}
+
+fn kind_name(statement: &Statement) -> String {
+    let text = format!("{statement:?}");
+    let name: String = text.chars().take_while(|c| c.is_alphanumeric()).collect();
+    format!("a statement of kind {name}")
+}

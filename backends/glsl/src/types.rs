@@ -1,0 +1,165 @@
+//! Types: naga types in, GLSL type names and declarations out.
+//!
+//! A structure that is named here is thereby noted as needed; it is printed later, by `globals`.
+
+use naga::proc::TypeResolution;
+use naga::{ArraySize, Handle, Scalar, ScalarKind, Span, Type, TypeInner, VectorSize};
+
+use crate::printer::Printer;
+
+/// `uint`, `int`, `float` or `bool`; nothing for other widths.
+pub fn scalar_name(scalar: Scalar) -> Option<&'static str> {
+    match (scalar.kind, scalar.width) {
+        (ScalarKind::Uint, 4) => Some("uint"),
+        (ScalarKind::Sint, 4) => Some("int"),
+        (ScalarKind::Float, 4) => Some("float"),
+        (ScalarKind::Bool, _) => Some("bool"),
+        _ => None,
+    }
+}
+
+/// What a scalar that has no GLSL name is called in a message.
+pub fn unsupported_scalar(scalar: Scalar) -> String {
+    let letter = match scalar.kind {
+        ScalarKind::Uint => 'u',
+        ScalarKind::Sint => 'i',
+        ScalarKind::Float => 'f',
+        ScalarKind::Bool => return "bool".to_owned(),
+        ScalarKind::AbstractInt => return "an abstract integer".to_owned(),
+        ScalarKind::AbstractFloat => return "an abstract float".to_owned(),
+    };
+    format!("{letter}{} values", u32::from(scalar.width) * 8)
+}
+
+/// `vec`, `ivec`, `uvec` or `bvec`.
+pub fn vector_stem(scalar: Scalar) -> &'static str {
+    match scalar.kind {
+        ScalarKind::Uint => "uvec",
+        ScalarKind::Sint => "ivec",
+        ScalarKind::Bool => "bvec",
+        _ => "vec",
+    }
+}
+
+/// `sized("vec", Some(Quad))` is `vec4`; with no size, the scalar's name.
+pub fn numeric_name(size: Option<VectorSize>, scalar: Scalar) -> Option<String> {
+    let name = scalar_name(scalar)?;
+    Some(match size {
+        Some(size) => format!("{}{}", vector_stem(scalar), size as u8),
+        None => name.to_owned(),
+    })
+}
+
+/// Size and scalar of a numeric type, and of what an atomic or pointer to one holds.
+pub fn numeric(inner: &TypeInner) -> Option<(Option<VectorSize>, Scalar)> {
+    match *inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Some((None, scalar)),
+        TypeInner::Vector { size, scalar } => Some((Some(size), scalar)),
+        _ => None,
+    }
+}
+
+impl Printer<'_> {
+    /// The name of a type where a value is made: `uint`, `vec4`, `Packed`, `float[8]`.
+    pub fn type_name(&mut self, ty: Handle<Type>, span: Span) -> String {
+        let (base, dimensions) = self.split_type(ty, span);
+        base + &dimensions
+    }
+
+    /// The type of an expression.
+    pub fn resolved_name(&mut self, resolution: &TypeResolution, span: Span) -> String {
+        match resolution {
+            TypeResolution::Handle(handle) => self.type_name(*handle, span),
+            TypeResolution::Value(inner) => self.inner_name(inner, span),
+        }
+    }
+
+    /// A declaration without qualifiers or value: `uint keys[8]`.
+    pub fn declaration(&mut self, ty: Handle<Type>, name: &str, span: Span) -> String {
+        let (base, dimensions) = self.split_type(ty, span);
+        format!("{base} {name}{dimensions}")
+    }
+
+    /// As [`Self::declaration`], for the type of an expression.
+    pub fn resolved_declaration(&mut self, resolution: &TypeResolution, name: &str, span: Span) -> String {
+        match resolution {
+            TypeResolution::Handle(handle) => self.declaration(*handle, name, span),
+            TypeResolution::Value(inner) => format!("{} {name}", self.inner_name(inner, span)),
+        }
+    }
+
+    /// Element type and array dimensions, outermost first.
+    fn split_type(&mut self, ty: Handle<Type>, span: Span) -> (String, String) {
+        let inner = self.module.types[ty].inner.clone();
+        match inner {
+            TypeInner::Array { base, size, .. } => {
+                let (name, dimensions) = self.split_type(base, span);
+                let size = match size {
+                    ArraySize::Constant(size) => size.to_string(),
+                    ArraySize::Dynamic => String::new(),
+                    ArraySize::Pending(_) => self.error("an array sized by an override", span),
+                };
+                (name, format!("[{size}]{dimensions}"))
+            }
+            TypeInner::Struct { .. } => {
+                self.needs.types.insert(ty);
+                let name = self.names.types.get(&ty).cloned();
+                (name.unwrap_or_else(|| self.error("a structure without a name", span)), String::new())
+            }
+            inner => (self.inner_name(&inner, span), String::new()),
+        }
+    }
+
+    pub fn inner_name(&mut self, inner: &TypeInner, span: Span) -> String {
+        if let Some((size, scalar)) = numeric(inner) {
+            let name = numeric_name(size, scalar);
+            return name.unwrap_or_else(|| self.error(unsupported_scalar(scalar), span));
+        }
+        match *inner {
+            TypeInner::Matrix { columns, rows, scalar } if scalar == Scalar::F32 => {
+                if columns == rows {
+                    format!("mat{}", columns as u8)
+                } else {
+                    format!("mat{}x{}", columns as u8, rows as u8)
+                }
+            }
+            TypeInner::Pointer { base, .. } => self.type_name(base, span),
+            TypeInner::ValuePointer { size, scalar, .. } => {
+                let name = numeric_name(size, scalar);
+                name.unwrap_or_else(|| self.error(unsupported_scalar(scalar), span))
+            }
+            TypeInner::Matrix { scalar, .. } => self.error(format!("matrices of {}", unsupported_scalar(scalar)), span),
+            _ => self.error(format!("a value of type {inner:?}"), span),
+        }
+    }
+
+    /// The zero value of a type.
+    pub fn zero(&mut self, ty: Handle<Type>, span: Span) -> String {
+        let inner = self.module.types[ty].inner.clone();
+        match inner {
+            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => zero_scalar(scalar).to_owned(),
+            TypeInner::Vector { scalar, .. } | TypeInner::Matrix { scalar, .. } => {
+                format!("{}({})", self.type_name(ty, span), zero_scalar(scalar))
+            }
+            TypeInner::Array { base, size: ArraySize::Constant(size), .. } => {
+                let element = self.zero(base, span);
+                let elements = vec![element; size.get() as usize].join(", ");
+                format!("{}({elements})", self.type_name(ty, span))
+            }
+            TypeInner::Struct { members, .. } => {
+                let zeros: Vec<String> = members.iter().map(|member| self.zero(member.ty, span)).collect();
+                format!("{}({})", self.type_name(ty, span), zeros.join(", "))
+            }
+            _ => self.error("the zero value of this type", span),
+        }
+    }
+}
+
+pub fn zero_scalar(scalar: Scalar) -> &'static str {
+    match scalar.kind {
+        ScalarKind::Uint => "0u",
+        ScalarKind::Sint => "0",
+        ScalarKind::Bool => "false",
+        _ => "0.0",
+    }
+}

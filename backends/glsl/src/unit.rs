@@ -1,0 +1,221 @@
+//! The text as a whole: bodies first, since they tell what must be declared; then everything in the order GLSL wants.
+//!
+//! In: a printer and what to print. Out: the finished text, which is worthless if the printer has noted errors.
+
+use std::collections::BTreeSet;
+
+use naga::{EarlyDepthTest, EntryPoint, Function, GlobalVariable, Handle, ShaderStage, Span, TypeInner};
+
+use crate::Unit;
+use crate::footprint::{Calls, of_functions};
+use crate::function::FunctionPrinter;
+use crate::interface::Interface;
+use crate::names::free;
+use crate::printer::Printer;
+use crate::reach::reached;
+
+pub fn print(printer: &mut Printer, unit: Unit) -> String {
+    let module = printer.module;
+    let calls = of_functions(module, |function| printer.marker(function));
+    match unit {
+        Unit::Library => {
+            let functions = module.functions.iter().map(|(handle, _)| handle).filter(|handle| printer.marker(*handle).is_none()).collect();
+            let bodies = print_functions(printer, &functions, &calls);
+            assemble(printer, Vec::new(), Vec::new(), bodies, false)
+        }
+        Unit::EntryPoint(name) => {
+            let Some(index) = module.entry_points.iter().position(|entry| entry.name == name) else {
+                return printer.error(format!("no entry point `{name}`"), Span::UNDEFINED);
+            };
+            printer.has_main = true;
+            let entry = &module.entry_points[index];
+            let functions = reached(module, &entry.function.body, &|function| printer.marker(function).is_some());
+            let mut bodies = print_functions(printer, &functions, &calls);
+            let (main, interface) = print_main(printer, index, &calls);
+            bodies.push(main);
+            let stage = stage_lines(printer, entry);
+            assemble(printer, stage, interface.declarations, bodies, true)
+        }
+    }
+}
+
+fn print_functions(printer: &mut Printer, functions: &BTreeSet<Handle<Function>>, calls: &Calls) -> Vec<Vec<String>> {
+    functions.iter().map(|function| print_function(printer, *function, calls)).collect()
+}
+
+fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls) -> Vec<String> {
+    let module = printer.module;
+    let info = printer.info;
+    let function = &module.functions[handle];
+    let mut lines = printer.documentation(|documentation| documentation.functions.get(&handle));
+    let name = printer.names.functions.get(&handle).cloned().unwrap_or_default();
+    let result = match &function.result {
+        Some(result) => printer.type_name(result.ty, Span::UNDEFINED),
+        None => "void".to_owned(),
+    };
+    let mut inner = FunctionPrinter::new(printer, function, &info[handle], calls);
+    let mut parameters = Vec::new();
+    for argument in &function.arguments {
+        let name = inner.declare(argument.name.as_deref().unwrap_or("argument"));
+        inner.arguments.push(name.clone());
+        let (qualifier, ty) = match inner.printer.module.types[argument.ty].inner {
+            TypeInner::Pointer { base, space: naga::AddressSpace::Function | naga::AddressSpace::Private } => ("inout ", base),
+            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } | TypeInner::Image { .. } | TypeInner::Sampler { .. } => {
+                inner.printer.error(format!("the argument `{name}`, of a type that GLSL cannot pass"), Span::UNDEFINED);
+                continue;
+            }
+            _ => ("", argument.ty),
+        };
+        parameters.push(format!("{qualifier}{}", inner.printer.declaration(ty, &name, Span::UNDEFINED)));
+    }
+    lines.push(format!("{result} {name}({}) {{", parameters.join(", ")));
+    inner.open();
+    inner.statements(&function.body, true);
+    inner.close();
+    lines.append(&mut inner.lines);
+    lines.push("}".to_owned());
+    lines
+}
+
+fn print_main(printer: &mut Printer, index: usize, calls: &Calls) -> (Vec<String>, Interface) {
+    let module = printer.module;
+    let info = printer.info;
+    let entry = &module.entry_points[index];
+    let mut lines = printer.documentation(|documentation| documentation.entry_points.get(&index));
+    let interface = printer.interface(entry);
+    let mut inner = FunctionPrinter::new(printer, &entry.function, info.get_entry_point(index), calls);
+    inner.interface = Some(interface);
+    lines.push("void main() {".to_owned());
+    inner.open();
+    inner.assemble_inputs();
+    inner.statements(&entry.function.body, true);
+    inner.close();
+    let interface = inner.interface.take().unwrap_or_default();
+    let mut body = std::mem::take(&mut inner.lines);
+    lines.append(&mut zeros(printer));
+    lines.append(&mut body);
+    lines.push("}".to_owned());
+    (lines, interface)
+}
+
+/// What makes those variables zero at first, as WGSL has them, that GLSL gives no initial value.
+fn zeros(printer: &mut Printer) -> Vec<String> {
+    let module = printer.module;
+    let shared = |handle: &Handle<GlobalVariable>| module.global_variables[*handle].space == naga::AddressSpace::WorkGroup;
+    let (shared, private): (Vec<_>, Vec<_>) = printer.needs.globals.iter().copied().partition(shared);
+    let mut lines = Vec::new();
+    for handle in private.into_iter().filter(|handle| printer.is_long_private_array(*handle)).collect::<Vec<_>>() {
+        set_to_zero(printer, handle, "    ", &mut lines);
+    }
+    if !shared.is_empty() {
+        lines.push("    if (gl_LocalInvocationIndex == 0u) {".to_owned());
+        for handle in shared {
+            set_to_zero(printer, handle, "        ", &mut lines);
+        }
+        lines.extend(["    }", "    memoryBarrierShared();", "    barrier();"].map(str::to_owned));
+    }
+    if !lines.is_empty() {
+        lines.insert(0, "    // Variables begin as zero.".to_owned());
+        lines.push(String::new());
+    }
+    lines
+}
+
+fn set_to_zero(printer: &mut Printer, handle: Handle<GlobalVariable>, indent: &str, lines: &mut Vec<String>) {
+    let name = printer.names.globals.get(&handle).cloned().unwrap_or_default();
+    let ty = printer.module.global_variables[handle].ty;
+    let TypeInner::Array { base, size: naga::ArraySize::Constant(size), .. } = printer.module.types[ty].inner else {
+        let zero = printer.zero(ty, Span::UNDEFINED);
+        lines.push(format!("{indent}{name} = {zero};"));
+        return;
+    };
+    let index = free("index", |name| printer.names.is_taken(name));
+    let zero = printer.zero(base, Span::UNDEFINED);
+    lines.push(format!("{indent}for (uint {index} = 0u; {index} < {size}u; {index}++) {{"));
+    lines.push(format!("{indent}    {name}[{index}] = {zero};"));
+    lines.push(format!("{indent}}}"));
+}
+
+/// Layout qualifiers that belong to the stage as a whole.
+fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
+    let mut lines = Vec::new();
+    match entry.stage {
+        ShaderStage::Vertex | ShaderStage::Fragment => {}
+        ShaderStage::Compute => {
+            let [x, y, z] = entry.workgroup_size;
+            if entry.workgroup_size_overrides.is_some() {
+                printer.error("a workgroup size set by an override", Span::UNDEFINED);
+            }
+            lines.push(format!("layout(local_size_x = {x}, local_size_y = {y}, local_size_z = {z}) in;"));
+        }
+        other => drop(printer.error(format!("the stage {other:?}"), Span::UNDEFINED)),
+    }
+    match entry.early_depth_test {
+        Some(EarlyDepthTest::Force) => lines.push("layout(early_fragment_tests) in;".to_owned()),
+        Some(EarlyDepthTest::Allow { conservative }) => {
+            let word = match conservative {
+                naga::ConservativeDepth::GreaterEqual => "greater",
+                naga::ConservativeDepth::LessEqual => "less",
+                naga::ConservativeDepth::Unchanged => "unchanged",
+            };
+            lines.push(format!("layout(depth_{word}) out float gl_FragDepth;"));
+        }
+        None => {}
+    }
+    lines
+}
+
+/// Puts all parts together, each top-level item after a free line; one-line declarations of a kind stay together.
+fn assemble(printer: &mut Printer, mut stage: Vec<String>, interface: Vec<String>, bodies: Vec<Vec<String>>, versioned: bool) -> String {
+    stage.extend(printer.needs.interlock.map(|interlock| format!("layout({interlock}) in;")));
+    let (structures, constants, globals) = declarations(printer);
+    let helpers: Vec<_> = printer.needs.helpers.iter().map(|helper| helper.text()).collect();
+
+    let mut sections: Vec<Vec<String>> = Vec::new();
+    let mut head = Vec::new();
+    if versioned {
+        head.push("#version 450".to_owned());
+    }
+    head.extend(printer.needs.extensions.iter().map(|extension| format!("#extension {extension} : require")));
+    sections.push(head);
+    sections.push(printer.options.header.lines().map(|line| format!("// {line}").trim_end().to_owned()).collect());
+    sections.push(stage);
+    sections.extend(structures);
+    sections.extend(grouped(constants));
+    sections.push(interface);
+    sections.extend(grouped(globals));
+    sections.extend(helpers.iter().map(|text| text.lines().map(str::to_owned).collect()));
+    sections.extend(bodies);
+    let texts: Vec<String> = sections.into_iter().filter(|lines| !lines.is_empty()).map(|lines| lines.join("\n")).collect();
+    texts.join("\n\n") + "\n"
+}
+
+type Items = Vec<Vec<String>>;
+
+/// Structures, constants and globals. Declarations may need further ones, so this goes on until nothing is new.
+fn declarations(printer: &mut Printer) -> (Items, Items, Items) {
+    let globals = printer.needs.globals.clone().into_iter().map(|handle| printer.global_declaration(handle)).collect();
+    loop {
+        let before = (printer.needs.types.len(), printer.needs.constants.len());
+        let constants = printer.needs.constants.clone().into_iter().map(|handle| printer.constant_declaration(handle)).collect();
+        let structures = printer.needs.types.clone().into_iter().map(|handle| printer.structure(handle)).collect();
+        if before == (printer.needs.types.len(), printer.needs.constants.len()) {
+            return (structures, constants, globals);
+        }
+    }
+}
+
+/// Joins items of a single line into one section; longer ones stand alone.
+fn grouped(items: Items) -> Items {
+    let mut sections: Items = Vec::new();
+    let mut open = false;
+    for item in items {
+        let short = item.len() == 1;
+        match sections.last_mut() {
+            Some(section) if short && open => section.extend(item),
+            _ => sections.push(item),
+        }
+        open = short;
+    }
+    sections
+}

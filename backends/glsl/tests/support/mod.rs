@@ -1,0 +1,83 @@
+//! What the tests share: WGSL in, GLSL out, and the outside judges of it.
+#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, Unprintable};
+use naga::ShaderStage;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+pub const MARKERS: &[(&str, Marker)] = &[
+    ("memory_fence", Marker::MemoryFence),
+    ("is_helper_lane", Marker::HelperLane),
+    ("critical_begin", Marker::CriticalBegin),
+    ("ordered_critical_begin", Marker::OrderedCriticalBegin),
+    ("critical_end", Marker::CriticalEnd),
+];
+
+pub const BOTH: [Dialect; 2] = [Dialect::OpenGl450, Dialect::Vulkan450];
+
+pub fn parse(source: &str) -> (naga::Module, ModuleInfo) {
+    let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities: Capabilities::all() };
+    let mut frontend = naga::front::wgsl::Frontend::new_with_options(options);
+    let module = frontend.parse(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+    let info = validator.validate(&module).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+    (module, info)
+}
+
+pub fn print(source: &str, unit: Unit, dialect: Dialect) -> Result<String, Vec<Unprintable>> {
+    print_with(source, unit, dialect, &[])
+}
+
+pub fn print_with(source: &str, unit: Unit, dialect: Dialect, plain_loads: &[&str]) -> Result<String, Vec<Unprintable>> {
+    let (module, info) = parse(source);
+    let bindings = |group: u32, binding: u32| Slot { set: group, binding: group * 16 + binding };
+    let options = Options { dialect, header: "", markers: MARKERS, bindings: &bindings, plain_loads };
+    fragbuf_glsl::print(&module, &info, source, unit, &options)
+}
+
+/// The body of the one function of a library, or of the named function, as printed.
+pub fn function(text: &str, name: &str) -> String {
+    let start = text.lines().position(|line| line.contains(&format!(" {name}(")) && line.ends_with('{'));
+    let start = start.unwrap_or_else(|| panic!("no function {name} in\n{text}"));
+    let lines: Vec<&str> = text.lines().skip(start).collect();
+    let end = lines.iter().position(|line| *line == "}").unwrap();
+    lines[..=end].join("\n") + "\n"
+}
+
+pub fn suffix(stage: ShaderStage) -> &'static str {
+    match stage {
+        ShaderStage::Vertex => "vert",
+        ShaderStage::Fragment => "frag",
+        _ => "comp",
+    }
+}
+
+/// Hands a text to glslang, and what comes of it to spirv-val.
+pub fn accept(text: &str, name: &str, stage: &str, dialect: Dialect) -> Result<(), String> {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("glsl");
+    std::fs::create_dir_all(&directory).unwrap();
+    let label = if dialect == Dialect::OpenGl450 { "opengl" } else { "vulkan" };
+    let file = directory.join(format!("{name}.{label}.{stage}"));
+    std::fs::write(&file, text).unwrap();
+    match dialect {
+        Dialect::OpenGl450 => run(Command::new("glslangValidator").args(["--target-env", "opengl"]).arg(&file)),
+        Dialect::Vulkan450 => {
+            let binary: PathBuf = file.with_extension(format!("{stage}.spv"));
+            run(Command::new("glslangValidator").args(["-V", "--target-env", "vulkan1.1", "-o"]).arg(&binary).arg(&file))?;
+            run(Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(&binary))
+        }
+    }
+    .map_err(|message| format!("{name}, {label}:\n{message}\n{text}"))
+}
+
+fn run(command: &mut Command) -> Result<(), String> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = command.output().unwrap_or_else(|error| panic!("{program} must be installed for this test: {error}"));
+    if output.status.success() {
+        return Ok(());
+    }
+    Err(format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)))
+}

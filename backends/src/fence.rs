@@ -1,0 +1,44 @@
+//! Memory fences for targets that naga writes: its validator refuses them in fragment shaders, so they take the place of
+//! the marker's calls after validation.
+
+use naga::{Block, Statement};
+
+/// The marker's name before any prefix.
+pub(crate) const MEMORY_FENCE: &str = "memory_fence";
+
+/// The module with a fence over storage buffers in place of every call to the marker.
+pub(crate) fn with_fences(module: &naga::Module, prefix: &str) -> naga::Module {
+    let mut module = module.clone();
+    let name = format!("{prefix}{MEMORY_FENCE}");
+    let marker = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(&name));
+    if let Some((marker, _)) = marker {
+        for (_, function) in module.functions.iter_mut() {
+            splice(&mut function.body, marker);
+        }
+        for entry in &mut module.entry_points {
+            splice(&mut entry.function.body, marker);
+        }
+    }
+    module
+}
+
+fn splice(block: &mut Block, marker: naga::Handle<naga::Function>) {
+    for statement in block.iter_mut() {
+        match statement {
+            Statement::Call { function, .. } if *function == marker => {
+                *statement = Statement::MemoryBarrier(naga::Barrier::STORAGE);
+            }
+            Statement::Block(inner) => splice(inner, marker),
+            Statement::If { accept, reject, .. } => {
+                splice(accept, marker);
+                splice(reject, marker);
+            }
+            Statement::Switch { cases, .. } => cases.iter_mut().for_each(|case| splice(&mut case.body, marker)),
+            Statement::Loop { body, continuing, .. } => {
+                splice(body, marker);
+                splice(continuing, marker);
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! GLSL by our own printer, one file per entry point; a module is one file without `main`.
+
+use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
+
+use crate::fence::MEMORY_FENCE;
+use crate::target::{Emission, File, stage_name, stage_suffix};
+
+pub(crate) fn emit_opengl(emission: &Emission<'_>) -> Result<Vec<File>, String> {
+    emit(emission, Dialect::OpenGl450)
+}
+
+pub(crate) fn emit_vulkan(emission: &Emission<'_>) -> Result<Vec<File>, String> {
+    emit(emission, Dialect::Vulkan450)
+}
+
+fn emit(emission: &Emission<'_>, dialect: Dialect) -> Result<Vec<File>, String> {
+    let pass = emission.checked.pass();
+    if !pass.exports.is_empty() {
+        let text = printed(emission, dialect, Unit::Library)?;
+        return Ok(vec![emission.whole(".glsl", text.into_bytes())]);
+    }
+    let mut files = Vec::with_capacity(pass.entry_points.len());
+    for entry in &pass.entry_points {
+        let text = printed(emission, dialect, Unit::EntryPoint(&entry.name))?;
+        let path = emission.path(&format!(".{}.glsl", stage_suffix(entry.stage)));
+        files.push(emission.file(path, vec![(stage_name(entry.stage), "main".to_owned())], text.into_bytes()));
+    }
+    Ok(files)
+}
+
+fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<String, String> {
+    let checked = emission.checked;
+    let source = &checked.pass().text;
+    let fence = format!("{}{MEMORY_FENCE}", emission.prefix);
+    let helper = format!("{}is_helper_lane", emission.prefix);
+    let plain_loads: Vec<&str> = emission.rechecked.iter().map(String::as_str).collect();
+    let notes = &checked.pass().notes;
+    let header = match unit {
+        Unit::EntryPoint(name) if is_vertex(emission, name) => notes.generated.clone(),
+        _ => format!("{}\n{}", notes.generated, notes.algorithms),
+    };
+    let options = Options {
+        dialect,
+        header: &header,
+        markers: &[(&fence, Marker::MemoryFence), (&helper, Marker::HelperLane)],
+        bindings: &|set, binding| Slot { set, binding },
+        plain_loads: &plain_loads,
+    };
+    print(checked.module(), checked.info(), source, unit, &options).map_err(|faults| {
+        let texts: Vec<String> = faults
+            .iter()
+            .map(|fault| format!("line {}: {}", fault.span.location(source).line_number, fault.what))
+            .collect();
+        texts.join("; ")
+    })
+}
+
+/// The vertex stage only feeds the others: no algorithm is in it.
+fn is_vertex(emission: &Emission<'_>, name: &str) -> bool {
+    let mut entries = emission.checked.pass().entry_points.iter();
+    entries.any(|entry| entry.name == name && entry.stage == fragbuf_codegen::Stage::Vertex)
+}

@@ -1,0 +1,300 @@
+//! What an engine follows: `manifest.json`. The schema is versioned; fields are only ever added within a version.
+
+use fragbuf_codegen::{GENERATOR, Plan, Planned as PlannedResource};
+use fragbuf_model::mangled;
+use fragbuf_templates::COUNTERS;
+use fragbuf_templates::vocabulary::{
+    Access, Blend, Compare, DepthState, Element, Fact, Init, Kind, Life, Objects, Pass, State, StencilOperation,
+    StencilState, Step, TextureFormat, Until,
+};
+use serde_json::{Map, Value, json};
+
+use crate::generate::{Generation, Planned};
+use crate::tier;
+
+/// The schema of `manifest.json`.
+pub const SCHEMA: &str = "fragbuf-manifest/1";
+
+/// The manifest of a generation whose resources are in bind group `group`.
+pub fn manifest(generation: &Generation, group: u32) -> Value {
+    let mut manifest = Map::new();
+    manifest.insert("schema".into(), SCHEMA.into());
+    manifest.insert("generator".into(), GENERATOR.into());
+    let mut plans = generation.plans.iter();
+    let first = plans.next();
+    let technique = first.and_then(|planned| planned.plan.variant.technique.clone());
+    manifest.insert("technique".into(), technique.into());
+    manifest.insert("name".into(), first.map(|planned| planned.plan.variant.name.value.clone()).into());
+    manifest.insert("files".into(), files(generation));
+    if let Some(first) = first {
+        manifest.extend(plan_json(&first.plan, group));
+    }
+    manifest.insert("tier".into(), tiers(&generation.plans));
+    let refused: Map<String, Value> =
+        generation.refusals.iter().map(|(target, why)| (target.name.to_owned(), why.to_string().into())).collect();
+    manifest.insert("refused".into(), refused.into());
+    let alternatives: Vec<Value> = plans
+        .map(|planned| {
+            let mut alternative = Map::new();
+            let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
+            alternative.insert("targets".into(), targets.into());
+            alternative.extend(plan_json(&planned.plan, group));
+            alternative.into()
+        })
+        .collect();
+    manifest.insert("alternatives".into(), alternatives.into());
+    manifest.into()
+}
+
+fn files(generation: &Generation) -> Value {
+    let rows = generation.files.iter().flat_map(|file| {
+        file.entry_points.iter().map(move |(stage, entry_point)| {
+            json!({
+                "path": file.path,
+                "target": file.target,
+                "pass": file.pass,
+                "stage": stage,
+                "entry_point": entry_point,
+            })
+        })
+    });
+    rows.collect()
+}
+
+fn tiers(plans: &[Planned]) -> Value {
+    let mut tiers = Map::new();
+    for planned in plans {
+        for target in &planned.targets {
+            tiers.insert(target.name.to_owned(), tier(planned.plan.soundness, target).into());
+        }
+    }
+    tiers.into()
+}
+
+/// The part of a manifest that one plan decides.
+pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
+    let mut map = Map::new();
+    let axes: Map<String, Value> =
+        plan.selection.rows.iter().map(|selected| (selected.row.axis.clone(), selected.row.key.clone().into())).collect();
+    map.insert("axes".into(), axes.into());
+    map.insert("keep".into(), plan.variant.keep.into());
+    map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
+    map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
+    map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(feature(*fact))).collect());
+    map.insert("constants".into(), plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into());
+    map.insert("entry".into(), entry(plan));
+    map.insert("uniform_blocks".into(), uniform_blocks(plan, group));
+    map.insert("vertex_inputs".into(), vertex_inputs(plan));
+    map.insert("resources".into(), plan.resources.iter().map(|planned| resource(planned, group)).collect());
+    map.insert("steps".into(), steps(&plan.steps));
+    map.insert("counters".into(), counters(plan));
+    let hazards = plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "what": hazard.what }));
+    map.insert("hazards".into(), hazards.collect());
+    map
+}
+
+/// A fact's `Debug` name in lower case, words joined by `-`.
+fn feature(fact: Fact) -> String {
+    dashed(&format!("{fact:?}"))
+}
+
+fn dashed(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && !text.is_empty() {
+            text.push('-');
+        }
+        text.push(letter.to_ascii_lowercase());
+    }
+    text
+}
+
+fn entry(plan: &Plan) -> Value {
+    let words = plan.layout.beside.iter().map(|word| word.field.as_str());
+    let fields: Vec<&str> = std::iter::once("key").chain(words).collect();
+    json!({ "words": plan.layout.entry_words(), "fields": fields, "key": dashed(&format!("{:?}", plan.layout.key)) })
+}
+
+/// Uniform blocks with their fields in order; offsets follow std140, which WGSL's uniform layout equals here.
+fn uniform_blocks(plan: &Plan, group: u32) -> Value {
+    let frame: Vec<Value> = plan.frame.iter().map(|name| json!({ "name": name, "type": "u32" })).collect();
+    let own: Vec<Value> = plan
+        .variant
+        .uniforms
+        .iter()
+        .map(|uniform| json!({ "name": mangled(&uniform.name.value), "type": uniform.kind.value.wgsl_type() }))
+        .collect();
+    let camera = json!([{ "name": "view_projection", "type": "mat4x4<f32>" }]);
+    let mut blocks = vec![json!({ "name": "frame", "group": group, "binding": 0, "fields": frame })];
+    if !own.is_empty() {
+        blocks.push(json!({ "name": "uniforms", "group": group, "binding": 1, "fields": own }));
+    }
+    blocks.push(json!({ "name": "camera", "group": group, "binding": 2, "fields": camera }));
+    blocks.into()
+}
+
+/// Inputs of the vertex stage of geometry passes, in program form.
+fn vertex_inputs(plan: &Plan) -> Value {
+    let position = json!({ "location": 0, "name": "position", "type": "vec3<f32>" });
+    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let others = (1..).zip(attributes).map(|(location, attribute)| {
+        json!({ "location": location, "name": attribute.name.value, "type": attribute.format.value.wgsl_type() })
+    });
+    std::iter::once(position).chain(others).collect()
+}
+
+fn resource(planned: &PlannedResource, group: u32) -> Value {
+    let resource = &planned.resource;
+    let extents: Vec<Value> =
+        resource.extents.iter().map(|extent| json!({ "name": extent.name, "length": extent.length.0 })).collect();
+    let element = match resource.element {
+        Element::Texture(format) => format!("texture:{}", texture_format(format)),
+        Element::Word => "word".to_owned(),
+        Element::Word64 => "word64".to_owned(),
+        Element::Entry => "entry".to_owned(),
+        Element::Beside => "beside".to_owned(),
+    };
+    let init = match resource.init {
+        Init::Clear(value) => json!({ "clear": value }),
+        Init::Keep => json!("keep"),
+        Init::Host => json!("host"),
+    };
+    json!({
+        "name": resource.name,
+        "group": group,
+        "binding": planned.binding,
+        "element": element,
+        "extents": extents,
+        "words": planned.words.0,
+        "bytes": format!("4 * ({})", planned.words),
+        "init": init,
+        "life": if resource.life == Life::Persistent { "persistent" } else { "frame" },
+        "summary": resource.summary,
+    })
+}
+
+fn texture_format(format: TextureFormat) -> &'static str {
+    match format {
+        TextureFormat::R32Uint => "r32uint",
+        TextureFormat::R32Float => "r32float",
+        TextureFormat::Rg32Float => "rg32float",
+        TextureFormat::Rgba8Unorm => "rgba8unorm",
+        TextureFormat::Rgba16Float => "rgba16float",
+        TextureFormat::Depth32Float => "depth32float",
+        TextureFormat::Depth24PlusStencil8 => "depth24plus-stencil8",
+    }
+}
+
+fn steps(steps: &[Step]) -> Value {
+    steps.iter().map(step).collect()
+}
+
+fn step(step: &Step) -> Value {
+    match step {
+        Step::Pass(pass) => pass_json(pass),
+        Step::Clear { resource, value } => json!({ "do": "clear", "resource": resource, "value": value }),
+        Step::Copy { from, to } => json!({ "do": "copy", "from": from, "to": to }),
+        Step::Swap(a, b) => json!({ "do": "swap", "resources": [a, b] }),
+        Step::Host(host) => {
+            json!({ "do": "host", "function": host.function, "reads": host.reads, "sets": host.sets })
+        }
+        Step::Repeat(repeat) => {
+            let until = match &repeat.until {
+                Until::Times(times) => json!({ "times": times.0 }),
+                Until::Zero(counter) => json!({ "zero": counter }),
+                Until::NoSamples(pass) => json!({ "no_samples": pass }),
+            };
+            json!({ "do": "repeat", "until": until, "at_most": repeat.at_most.0, "steps": steps(&repeat.body) })
+        }
+    }
+}
+
+fn pass_json(pass: &Pass) -> Value {
+    let uses: Map<String, Value> =
+        pass.uses.iter().map(|usage| (usage.resource.clone(), access(usage.access).into())).collect();
+    let mut map = Map::new();
+    map.insert("do".into(), "pass".into());
+    map.insert("pass".into(), pass.anchor.clone().into());
+    let kind = match &pass.kind {
+        Kind::Geometry => "geometry",
+        Kind::Fullscreen => "fullscreen",
+        Kind::Compute { .. } => "compute",
+    };
+    map.insert("kind".into(), kind.into());
+    if let Kind::Compute { groups } = &pass.kind {
+        map.insert("groups".into(), groups.iter().map(|formula| formula.0.to_string()).collect());
+    }
+    map.insert("uses".into(), uses.into());
+    map.insert("state".into(), state(&pass.state));
+    if let Objects::Visible(query) = &pass.objects {
+        map.insert("objects".into(), json!({ "visible_in": query }));
+    }
+    map.into()
+}
+
+fn access(access: Access) -> &'static str {
+    match access {
+        Access::Read => "read",
+        Access::Plain => "plain",
+        Access::Atomic => "atomic",
+        Access::Coherent => "coherent",
+        Access::Attachment => "attachment",
+        Access::Sampled => "sampled",
+        Access::Indirect => "indirect",
+    }
+}
+
+fn state(state: &State) -> Value {
+    let mut map = Map::new();
+    if let Some(DepthState { resource, compare, write, early }) = &state.depth {
+        let compare = compare_name(*compare);
+        map.insert("depth".into(), json!({ "resource": resource, "compare": compare, "write": write, "early": early }));
+    }
+    if let Some(StencilState { resource, compare, fail, pass, reference }) = &state.stencil {
+        let value = json!({
+            "resource": resource,
+            "compare": compare_name(*compare),
+            "fail": stencil_operation(*fail),
+            "pass": stencil_operation(*pass),
+            "reference": reference.0,
+        });
+        map.insert("stencil".into(), value);
+    }
+    let targets = state.targets.iter().map(|t| json!({ "resource": t.resource, "blend": blend(t.blend) }));
+    map.insert("targets".into(), targets.collect());
+    if let Some(samples) = &state.samples {
+        map.insert("samples".into(), json!({ "count": samples.count.0, "mask": samples.mask.0 }));
+    }
+    map.into()
+}
+
+fn compare_name(compare: Compare) -> String {
+    dashed(&format!("{compare:?}"))
+}
+
+fn stencil_operation(operation: StencilOperation) -> String {
+    dashed(&format!("{operation:?}"))
+}
+
+/// Blending as factors that every API has: source, destination, operation.
+fn blend(blend: Blend) -> Value {
+    let (source, destination, operation) = match blend {
+        Blend::Replace => ("one", "zero", "add"),
+        Blend::Over => ("one", "one-minus-source-alpha", "add"),
+        Blend::Under => ("one-minus-destination-alpha", "one", "add"),
+        Blend::Max => ("one", "one", "max"),
+        Blend::Min => ("one", "one", "min"),
+        Blend::Add => ("one", "one", "add"),
+    };
+    json!({ "name": dashed(&format!("{blend:?}")), "source": source, "destination": destination, "operation": operation })
+}
+
+fn counters(plan: &Plan) -> Value {
+    if plan.resource("counters").is_none() {
+        return json!([]);
+    }
+    let rows = COUNTERS.iter().enumerate().map(
+        |(index, (name, loss, meaning))| json!({ "name": name, "index": index, "loss": loss, "meaning": meaning }),
+    );
+    rows.collect()
+}

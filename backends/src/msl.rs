@@ -1,0 +1,52 @@
+//! Metal by naga. Every resource is bound as the buffer of its binding number; naga asks for the sizes of all buffers in
+//! one more.
+
+use naga::back::msl;
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+
+use crate::hlsl::header;
+use crate::target::{Emission, File};
+
+/// The buffer of sizes: the last that Metal guarantees.
+const SIZES: u8 = 30;
+
+pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
+    let unchecked = BoundsCheckPolicy::Unchecked;
+    let options = msl::Options {
+        lang_version: (2, 4),
+        per_entry_point_map: resources(emission.checked.module())?,
+        fake_missing_bindings: false,
+        bounds_check_policies: BoundsCheckPolicies {
+            index: unchecked,
+            buffer: unchecked,
+            image_load: unchecked,
+            binding_array: unchecked,
+        },
+        zero_initialize_workgroup_memory: false,
+        force_loop_bounding: false,
+        ..msl::Options::default()
+    };
+    let pipeline = msl::PipelineOptions::default();
+    let (text, info) = msl::write_string(emission.checked.module(), emission.checked.info(), &options, &pipeline)
+        .map_err(|error| error.to_string())?;
+    for name in info.entry_point_names {
+        name.map_err(|error| error.to_string())?;
+    }
+    Ok(vec![emission.whole(".metal", (header(emission) + &text).into_bytes())])
+}
+
+fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String> {
+    let mut bindings = msl::BindingMap::default();
+    for (_, variable) in module.global_variables.iter() {
+        let Some(binding) = variable.binding else { continue };
+        let slot = u8::try_from(binding.binding).map_err(|_| format!("binding {} is beyond 255", binding.binding))?;
+        if slot >= SIZES {
+            return Err(format!("binding {slot} meets the buffer of sizes at {SIZES}"));
+        }
+        let read_only = matches!(variable.space, naga::AddressSpace::Uniform)
+            || matches!(variable.space, naga::AddressSpace::Storage { access } if !access.contains(naga::StorageAccess::STORE));
+        bindings.insert(binding, msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() });
+    }
+    let entry = msl::EntryPointResources { resources: bindings, immediates_buffer: None, sizes_buffer: Some(SIZES) };
+    Ok(module.entry_points.iter().map(|point| (point.name.clone(), entry.clone())).collect())
+}

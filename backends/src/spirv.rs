@@ -1,0 +1,45 @@
+//! SPIR-V by naga, with fences in place of their markers. One module per entry point.
+//!
+//! Clip space is WGSL's (y up, z from 0 to 1), as in wgpu: a Vulkan host sets a viewport of negative height. Indices are
+//! not clamped and loops not bounded at run time: generated code is ours, and the interpreter covers it.
+
+use naga::back::spv;
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+
+use crate::fence::with_fences;
+use crate::target::{Emission, File, stage_name, stage_of, stage_suffix};
+
+pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
+    let pass = emission.checked.pass();
+    let module = with_fences(emission.checked.module(), emission.prefix);
+    let options = options();
+    let mut files = Vec::with_capacity(pass.entry_points.len());
+    for entry in &pass.entry_points {
+        let pipeline =
+            spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
+        let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
+            .map_err(|error| error.to_string())?;
+        let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let path = emission.path(&format!(".{}.spv", stage_suffix(entry.stage)));
+        files.push(emission.file(path, vec![(stage_name(entry.stage), entry.name.clone())], bytes));
+    }
+    Ok(files)
+}
+
+/// Every option that the output depends on, said here: naga's defaults differ between builds.
+fn options() -> spv::Options<'static> {
+    let unchecked = BoundsCheckPolicy::Unchecked;
+    spv::Options {
+        lang_version: (1, 3),
+        flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
+        bounds_check_policies: BoundsCheckPolicies {
+            index: unchecked,
+            buffer: unchecked,
+            image_load: unchecked,
+            binding_array: unchecked,
+        },
+        zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
+        force_loop_bounding: false,
+        ..spv::Options::default()
+    }
+}

@@ -1,0 +1,65 @@
+//! The functions through which the axes meet. A template fulfils a contract by offering functions of these names with
+//! exactly these heads; everything else in it is private.
+
+use fragbuf_templates::Registry;
+
+use crate::link::heads;
+
+/// One function of a contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contract {
+    /// The axis whose rows fulfil it.
+    pub axis: &'static str,
+    /// The function.
+    pub name: &'static str,
+    /// Its parameters and result, as WGSL.
+    pub signature: &'static str,
+    /// What it promises.
+    pub promise: &'static str,
+}
+
+/// Every contract. A storage offers those that its passes call: `storage_count` only where a pass counts.
+pub const CONTRACTS: &[Contract] = &[
+    row("storage", "storage_reset", "(pixel: u32)", "brings the pixel to its empty state"),
+    row("storage", "storage_count", "(pixel: u32)", "counts a fragment that a later pass will store"),
+    row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment or hands one to on_lost"),
+    row("storage", "storage_bound", "(pixel: u32) -> u32", "a key that no fragment of the final k best exceeds, at any instant"),
+    row("storage", "storage_first", "(pixel: u32) -> u32", "the cursor of a first fragment, or END"),
+    row("storage", "storage_next", "(pixel: u32, cursor: u32) -> u32", "the cursor after this one, or END"),
+    row("storage", "storage_read", "(pixel: u32, cursor: u32) -> Packed", "the fragment at a cursor"),
+    row("sync", "sync_store", "(pixel: u32, entry: Packed)", "calls storage_insert as the sync promises, or on_lost"),
+    row("cull", "cull_fragment", "(pixel: u32, entry: Packed) -> bool", "whether the fragment is turned away"),
+    row("overflow", "on_lost", "(lost: Packed, reason: u32)", "disposes of a fragment that finds no place"),
+    row("addressing", "pixel_index", "(position: vec2<f32>) -> u32", "the pixel's number, below pixel_count()"),
+    row("addressing", "pixel_count", "() -> u32", "pixels of the frame"),
+    row("counters", "count_event", "(counter: u32)", "counts what is no loss"),
+    row("counters", "count_loss", "(counter: u32)", "counts a loss"),
+    row("sort", "sort_gather", "(entry: Packed)", "takes one fragment of the pixel into `layers`"),
+    row("sort", "sort_finish", "()", "puts `layers` in order, nearest first"),
+    row("resolve", "resolve_layers", "() -> vec4<f32>", "a premultiplied colour from `layers`; called if there is at least one"),
+];
+
+const fn row(axis: &'static str, name: &'static str, signature: &'static str, promise: &'static str) -> Contract {
+    Contract { axis, name, signature, promise }
+}
+
+/// Where a template's function has the name of a contract and another head; empty when all is well.
+pub fn verify(registry: &Registry) -> Vec<String> {
+    let mut faults = Vec::new();
+    for row in registry.rows() {
+        let Some(template) = row.template else { continue };
+        let heads = heads(template.text);
+        for contract in CONTRACTS {
+            for (name, head) in &heads {
+                if name == contract.name && (row.axis != contract.axis || head != contract.signature) {
+                    faults.push(format!("{}: `fn {name}{head}` should be `fn {name}{}`", template.path, contract.signature));
+                }
+            }
+        }
+        let offers_any = CONTRACTS.iter().any(|contract| heads.iter().any(|(name, _)| name == contract.name));
+        if !offers_any && CONTRACTS.iter().any(|contract| contract.axis == row.axis) {
+            faults.push(format!("{}: offers no function of the contract `{}`", template.path, row.axis));
+        }
+    }
+    faults
+}

@@ -1,0 +1,247 @@
+//! Bindings and accessors: the one place that knows where an element lies, how a pass may touch it and how wide it is.
+//! Templates never index a buffer.
+
+use std::fmt::Write;
+
+use fragbuf_model::mangled;
+use fragbuf_templates::vocabulary::{Access, Element, Expression, Formula, Pass, Resource, Use};
+
+use crate::{Linking, Plan, Planned, Profile};
+
+pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking) -> String {
+    let mut text = uniform_blocks(plan, linking);
+    for planned in &plan.resources {
+        let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
+        if let Some(usage) = usage.filter(|usage| is_buffer(&planned.resource, usage)) {
+            Accessors { plan, planned, access: shader_access(usage.access, linking.profile) }.write(linking, &mut text);
+        }
+    }
+    text
+}
+
+fn is_buffer(resource: &Resource, usage: &Use) -> bool {
+    let in_shader = matches!(usage.access, Access::Read | Access::Plain | Access::Atomic | Access::Coherent);
+    in_shader && !matches!(resource.element, Element::Texture(_))
+}
+
+fn uniform_blocks(plan: &Plan, linking: &Linking) -> String {
+    let mut text = String::from("/// The size of the frame and what else the host sets for it.\nstruct Frame {\n");
+    for field in &plan.frame {
+        let _ = writeln!(text, "    {field}: u32,");
+    }
+    let _ = writeln!(text, "}}\n\n@group({}) @binding(0) var<uniform> frame: Frame;\n", linking.group);
+    if !plan.variant.uniforms.is_empty() {
+        text.push_str("/// The description's own uniforms.\nstruct Uniforms {\n");
+        for uniform in &plan.variant.uniforms {
+            let _ = writeln!(text, "    {}: {},", mangled(&uniform.name.value), uniform.kind.value.wgsl_type());
+        }
+        let _ = writeln!(text, "}}\n\n@group({}) @binding(1) var<uniform> uniforms: Uniforms;\n", linking.group);
+    }
+    text
+}
+
+/// How a shader touches a buffer.
+#[derive(Clone, Copy, PartialEq)]
+enum ShaderAccess {
+    Read,
+    Plain,
+    Coherent,
+    Atomic,
+}
+
+/// Coherent words are atomic where the target has no coherent buffers.
+fn shader_access(access: Access, profile: Profile) -> ShaderAccess {
+    match (access, profile) {
+        (Access::Plain, _) => ShaderAccess::Plain,
+        (Access::Atomic, _) | (Access::Coherent, Profile::Portable) => ShaderAccess::Atomic,
+        (Access::Coherent, Profile::Native) => ShaderAccess::Coherent,
+        _ => ShaderAccess::Read,
+    }
+}
+
+struct Accessors<'a> {
+    plan: &'a Plan,
+    planned: &'a Planned,
+    access: ShaderAccess,
+}
+
+/// Atomic operations that return the old value.
+const OPERATIONS: [(&str, &str); 7] = [
+    ("add", "atomicAdd"),
+    ("sub", "atomicSub"),
+    ("min", "atomicMin"),
+    ("max", "atomicMax"),
+    ("or", "atomicOr"),
+    ("and", "atomicAnd"),
+    ("exchange", "atomicExchange"),
+];
+
+impl Accessors<'_> {
+    fn write(&self, linking: &Linking, text: &mut String) {
+        if self.words() > 0 {
+            self.declare(linking, text);
+        }
+        self.load(text);
+        if self.access != ShaderAccess::Read {
+            self.store(text);
+        }
+        if self.access == ShaderAccess::Atomic && self.planned.resource.element == Element::Word {
+            self.atomics(text);
+        }
+    }
+
+    fn name(&self) -> &str {
+        &self.planned.resource.name
+    }
+
+    /// Words of one element.
+    fn words(&self) -> u64 {
+        let bound = |symbol| self.plan.bound.value(symbol).unwrap_or(0);
+        match self.planned.resource.element {
+            Element::Entry => bound("entry_words"),
+            Element::Beside => bound("beside_words"),
+            _ => 1,
+        }
+    }
+
+    fn is_single_word(&self) -> bool {
+        self.planned.resource.extents.is_empty() && self.planned.resource.element == Element::Word
+    }
+
+    fn declare(&self, linking: &Linking, text: &mut String) {
+        let (mode, coherent) = match self.access {
+            ShaderAccess::Read => ("read", ""),
+            ShaderAccess::Plain | ShaderAccess::Atomic => ("read_write", ""),
+            ShaderAccess::Coherent => ("read_write", " @coherent"),
+        };
+        let word = if self.access == ShaderAccess::Atomic { "atomic<u32>" } else { "u32" };
+        let kind = if self.is_single_word() { word.to_owned() } else { format!("array<{word}>") };
+        let (summary, group, binding) = (self.planned.resource.summary, linking.group, self.planned.binding);
+        let name = self.name();
+        let _ = writeln!(text, "/// {}.", capitalised(summary));
+        let _ = writeln!(text, "@group({group}) @binding({binding}){coherent} var<storage, {mode}> {name}: {kind};\n");
+    }
+
+    fn load(&self, text: &mut String) {
+        let name = self.name();
+        let beside = self.planned.resource.element == Element::Beside;
+        let parameters = self.parameters(if beside { &["key: u32"] } else { &[] });
+        if self.planned.resource.element == Element::Word {
+            let read = self.read(&self.place(None));
+            let _ = writeln!(text, "fn {name}_load({parameters}) -> u32 {{\n    return {read};\n}}\n");
+            return;
+        }
+        let _ = writeln!(text, "fn {name}_load({parameters}) -> Packed {{");
+        let _ = write!(text, "{}", self.base());
+        let words = (0..self.words()).map(|word| self.read(&self.place(Some(word))));
+        let parts: Vec<String> = beside.then(|| "key".to_owned()).into_iter().chain(words).collect();
+        let _ = writeln!(text, "    return Packed({});\n}}\n", parts.join(", "));
+    }
+
+    fn store(&self, text: &mut String) {
+        let name = self.name();
+        if self.planned.resource.element == Element::Word {
+            let parameters = self.parameters(&["value: u32"]);
+            let write = self.stored(&self.place(None), "value");
+            let _ = writeln!(text, "fn {name}_store({parameters}) {{\n    {write}\n}}\n");
+            return;
+        }
+        let _ = writeln!(text, "fn {name}_store({}) {{", self.parameters(&["entry: Packed"]));
+        let _ = write!(text, "{}", self.base());
+        let key = (self.planned.resource.element == Element::Entry).then_some("key");
+        let beside = self.plan.layout.beside.iter().map(|word| word.field.as_str());
+        for (word, field) in (0..).zip(key.into_iter().chain(beside)) {
+            let _ = writeln!(text, "    {}", self.stored(&self.place(Some(word)), &format!("entry.{field}")));
+        }
+        text.push_str("}\n\n");
+    }
+
+    fn atomics(&self, text: &mut String) {
+        let (name, place) = (self.name(), self.place(None));
+        let parameters = self.parameters(&["value: u32"]);
+        for (operation, function) in OPERATIONS {
+            let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> u32 {{");
+            let _ = writeln!(text, "    return {function}(&{place}, value);\n}}\n");
+        }
+        let parameters = self.parameters(&["expected: u32", "value: u32"]);
+        let _ = writeln!(text, "fn {name}_atomic_compare_exchange({parameters}) -> bool {{");
+        let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{place}, expected, value).exchanged;\n}}\n");
+    }
+
+    fn parameters(&self, more: &[&str]) -> String {
+        let index = self.planned.resource.extents.iter().map(|extent| format!("{}: u32", extent.name));
+        index.chain(more.iter().map(|parameter| (*parameter).to_owned())).collect::<Vec<_>>().join(", ")
+    }
+
+    /// `let at = …;` for an element of several words.
+    fn base(&self) -> String {
+        match self.words() {
+            0 | 1 => String::new(),
+            words => format!("    let at = {} * {words}u;\n", parenthesised(&self.index())),
+        }
+    }
+
+    fn place(&self, word: Option<u64>) -> String {
+        let name = self.name();
+        match word {
+            _ if self.is_single_word() => name.to_owned(),
+            Some(0) if self.words() > 1 => format!("{name}[at]"),
+            Some(word) if self.words() > 1 => format!("{name}[at + {word}u]"),
+            _ => format!("{name}[{}]", self.index()),
+        }
+    }
+
+    /// The element's number: the first index part is slowest.
+    fn index(&self) -> String {
+        let mut index = String::from("0u");
+        for (position, extent) in self.planned.resource.extents.iter().enumerate() {
+            index = match position {
+                0 => extent.name.clone(),
+                _ => format!("{} * {} + {}", parenthesised(&index), length(&extent.length), extent.name),
+            };
+        }
+        index
+    }
+
+    fn read(&self, place: &str) -> String {
+        if self.access == ShaderAccess::Atomic { format!("atomicLoad(&{place})") } else { place.to_owned() }
+    }
+
+    fn stored(&self, place: &str, value: &str) -> String {
+        match self.access {
+            ShaderAccess::Atomic => format!("atomicStore(&{place}, {value});"),
+            _ => format!("{place} = {value};"),
+        }
+    }
+}
+
+fn parenthesised(index: &str) -> String {
+    if index.contains(' ') { format!("({index})") } else { index.to_owned() }
+}
+
+/// A length as WGSL. Symbols bound after generation are the frame's fields.
+fn length(formula: &Formula) -> String {
+    fn written(expression: &Expression) -> String {
+        match expression {
+            Expression::Number(number) => format!("{number}u"),
+            Expression::Symbol(symbol) if symbol == "pixels" => "pixel_count()".to_owned(),
+            Expression::Symbol(symbol) => format!("frame.{symbol}"),
+            Expression::Apply(operator, arguments) => {
+                let parts: Vec<String> = arguments.iter().map(written).collect();
+                match (*operator, parts.as_slice()) {
+                    ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),
+                    ("pow2", [a]) => format!("(1u << {a})"),
+                    ("+" | "-" | "*" | "/", [a, b]) => format!("({a} {operator} {b})"),
+                    (function, parts) => format!("{function}({})", parts.join(", ")),
+                }
+            }
+        }
+    }
+    // A formula that cannot be read has been refused when the plan was made.
+    formula.read().map_or_else(|_| "1u".to_owned(), |expression| written(&expression))
+}
+
+fn capitalised(summary: &str) -> String {
+    let mut letters = summary.chars();
+    letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect()
+}

@@ -1,0 +1,142 @@
+//! The payload: what closures see (`Fragment`), what memory holds (`Packed`), the way from one to the other, the two
+//! orders, and the constraints.
+
+use std::fmt::Write;
+
+use fragbuf_model::{Format, mangled};
+use fragbuf_templates::vocabulary::Order;
+
+use crate::layout::{Key, Layout, Word};
+use crate::Plan;
+
+pub(super) fn text(plan: &Plan) -> String {
+    let mut text = String::new();
+    structs(plan, &mut text);
+    pack(plan, &mut text);
+    unpack(plan, &mut text);
+    orders(plan, &mut text);
+    admit(plan, &mut text);
+    if plan.variant.resolve.is_some() {
+        text.push_str("fn resolve_layers() -> vec4<f32> {\n    return user_resolve();\n}\n");
+    }
+    text
+}
+
+fn structs(plan: &Plan, text: &mut String) {
+    text.push_str("/// What a fragment carries.\nstruct Fragment {\n");
+    for attribute in &plan.variant.attributes {
+        let (name, format) = (mangled(&attribute.name.value), attribute.format.value);
+        let _ = writeln!(text, "    {name}: {},", format.wgsl_type());
+    }
+    text.push_str("}\n\n/// The same as words in memory. Fragments are ordered by `key`, the least is the best: ");
+    text.push_str(match plan.layout.key {
+        Key::Depth => "it holds the bits of the depth.\n",
+        Key::Criterion => "it holds the ordered\n/// bits of the criterion.\n",
+    });
+    text.push_str("struct Packed {\n    key: u32,\n");
+    for word in &plan.layout.beside {
+        let _ = writeln!(text, "    {}: u32,", word.field);
+    }
+    text.push_str("}\n\n");
+}
+
+fn pack(plan: &Plan, text: &mut String) {
+    let key = match plan.layout.key {
+        Key::Depth => "depth_bits(fragment.depth)",
+        Key::Criterion => "ordered_bits(user_criterion(fragment))",
+    };
+    let fields = std::iter::once(key.to_owned()).chain(plan.layout.beside.iter().map(packed));
+    let _ = writeln!(text, "fn fragment_pack(fragment: Fragment) -> Packed {{");
+    let _ = writeln!(text, "    return {};\n}}\n", construct("Packed", fields));
+}
+
+/// A constructor call, one field a line where there are more than two.
+pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> String {
+    let fields: Vec<String> = fields.collect();
+    match fields.len() {
+        0..=2 => format!("{name}({})", fields.join(", ")),
+        _ => format!("{name}(\n        {},\n    )", fields.join(",\n        ")),
+    }
+}
+
+fn packed(word: &Word) -> String {
+    let name = mangled(&word.attribute.name.value);
+    match (word.attribute.format.value, word.component) {
+        (_, Some(component)) => format!("bitcast<u32>(fragment.{name}.{component})"),
+        (Format::F32, None) if word.attribute.name.value == "depth" => "depth_bits(fragment.depth)".to_owned(),
+        (Format::U32, None) => format!("fragment.{name}"),
+        (Format::Rgba8, None) => format!("pack4x8unorm(fragment.{name})"),
+        (Format::Octahedral, None) => format!("octahedral_pack(fragment.{name})"),
+        (_, None) => format!("bitcast<u32>(fragment.{name})"),
+    }
+}
+
+fn unpack(plan: &Plan, text: &mut String) {
+    let fields = plan.variant.attributes.iter().map(|attribute| {
+        let name = &attribute.name.value;
+        let fields: Vec<String> = if plan.layout.key == Key::Depth && name == "depth" {
+            vec!["entry.key".to_owned()]
+        } else {
+            let words = plan.layout.beside.iter().filter(|word| word.attribute.name.value == *name);
+            words.map(|word| format!("entry.{}", word.field)).collect()
+        };
+        unpacked(attribute.format.value, &fields)
+    });
+    let _ = writeln!(text, "fn fragment_unpack(entry: Packed) -> Fragment {{");
+    let _ = writeln!(text, "    return {};\n}}\n", construct("Fragment", fields));
+}
+
+fn unpacked(format: Format, fields: &[String]) -> String {
+    let floats = || fields.iter().map(|field| format!("bitcast<f32>({field})")).collect::<Vec<_>>().join(", ");
+    match format {
+        Format::F32 => floats(),
+        Format::U32 => fields.join(""),
+        Format::Rgba8 => format!("unpack4x8unorm({})", fields.join("")),
+        Format::Octahedral => format!("octahedral_unpack({})", fields.join("")),
+        Format::Vec2 | Format::Vec3 | Format::Vec4 => format!("{}({})", format.wgsl_type(), floats()),
+    }
+}
+
+fn orders(plan: &Plan, text: &mut String) {
+    let order = plan.selection.rows.iter().find_map(|selected| selected.row.order);
+    let words = match order {
+        Some(Order::Unordered) => vec!["key"],
+        Some(Order::Payload) | None => keep_order(&plan.layout),
+    };
+    text.push_str("/// Whether `a` is kept rather than `b`: the lesser key");
+    text.push_str(if words.len() > 1 { ", of equal keys the lesser words.\n" } else { ".\n" });
+    less("better", &words, text);
+    text.push_str("/// Whether `a` comes before `b` when the kept fragments are resolved: nearest first.\n");
+    less("nearer", &resolve_order(&plan.layout), text);
+}
+
+fn keep_order(layout: &Layout) -> Vec<&str> {
+    std::iter::once("key").chain(layout.beside.iter().map(|word| word.field.as_str())).collect()
+}
+
+/// Depth, then the payload, then the key: a total order on entries.
+fn resolve_order(layout: &Layout) -> Vec<&str> {
+    let depth = layout.depth_field();
+    let others = keep_order(layout).into_iter().filter(|field| *field != depth && *field != "key");
+    let key = (depth != "key").then_some("key");
+    std::iter::once(depth).chain(others).chain(key).collect()
+}
+
+/// The lexicographic order over `words`.
+fn less(name: &str, words: &[&str], text: &mut String) {
+    let _ = writeln!(text, "fn {name}(a: Packed, b: Packed) -> bool {{");
+    if let Some((last, first)) = words.split_last() {
+        for word in first {
+            let _ = writeln!(text, "    if a.{word} != b.{word} {{\n        return a.{word} < b.{word};\n    }}");
+        }
+        let _ = writeln!(text, "    return a.{last} < b.{last};");
+    }
+    text.push_str("}\n\n");
+}
+
+fn admit(plan: &Plan, text: &mut String) {
+    let calls: Vec<String> = plan.variant.constraints.iter().map(|c| format!("{}(fragment)", c.name)).collect();
+    let condition = if calls.is_empty() { "true".to_owned() } else { calls.join(" && ") };
+    text.push_str("/// Whether a fragment meets every constraint.\n");
+    let _ = writeln!(text, "fn admit(fragment: Fragment) -> bool {{\n    return {condition};\n}}\n");
+}

@@ -1,0 +1,33 @@
+//! What is generated: declarations, the packing of a fragment into words, the two orders over packed fragments, and the
+//! accessors of buffers. Any other statement belongs in a template.
+
+mod buffers;
+mod fragment;
+mod surface;
+
+use fragbuf_templates::vocabulary::{Kind, Pass};
+
+use crate::link::Source;
+use crate::{Linking, Plan};
+
+/// The generated sources of one pass. Declarations that nothing reaches are dropped by the linker.
+pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking) -> Vec<Source> {
+    let mut sources = vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
+    if pass.kind == Kind::Geometry {
+        sources.push(Source::generated("surface", surface::text(plan, linking)));
+    }
+    sources.push(Source::generated("buffers", buffers::text(plan, pass, linking)));
+    for function in plan.variant.helpers.iter().chain(closures(plan)) {
+        sources.push(Source::user(function));
+    }
+    sources
+}
+
+fn closures(plan: &Plan) -> impl Iterator<Item = &fragbuf_model::UserFunction> {
+    let variant = &plan.variant;
+    variant.criterion.iter().chain(&variant.constraints).chain(&variant.resolve)
+}
+
+fn constants(plan: &Plan) -> String {
+    plan.constants.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect()
+}

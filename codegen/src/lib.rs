@@ -1,0 +1,24 @@
+//! From a checked variant to a plan of passes, and from the plan to one linked WGSL text per pass.
+//!
+//! ```text
+//! Variant ──select──► Selection ──plan──► Plan ──link──► Program: one WGSL text per pass, each line with its source
+//! ```
+//!
+//! A plan has no text in it, and a program nothing that naga has seen: `fragbuf-backends` checks it. Statements come from
+//! templates and from the user's closures; what is generated here is declarations, the packing of a fragment into words,
+//! the orders over packed fragments, and the accessors of buffers.
+
+mod contract;
+mod emit;
+mod layout;
+mod link;
+mod plan;
+mod program;
+
+pub use contract::{CONTRACTS, Contract, verify};
+pub use layout::{Key, Layout, Word};
+pub use plan::{Bound, FIRST_BINDING, Plan, Planned, bucket, plan};
+pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
+
+/// What a generator puts on the first line of every file that it writes.
+pub const GENERATOR: &str = concat!("fragbuf ", env!("CARGO_PKG_VERSION"));

@@ -1,0 +1,204 @@
+//! Whole WGSL files in, one text out: the declarations that the roots reach, in the order of the sources, under a banner
+//! per file, with a record of where every line comes from.
+//!
+//! Renaming works on tokens, so comments and layout stay as they were written. Nothing here knows what a pass is.
+
+mod item;
+mod rename;
+mod token;
+
+pub(crate) use item::{head, heads, names};
+pub(crate) use rename::Renames;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use fragbuf_model::{Origin, UserFunction};
+use fragbuf_templates::vocabulary::Template;
+
+use crate::program::{EntryPoint, LineMap, LineOrigin};
+use item::Item;
+
+/// A text to link.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    /// Its banner, and what the line map calls it.
+    name: String,
+    text: String,
+    origins: Option<Vec<Origin>>,
+    renames: Renames,
+}
+
+impl Source {
+    /// Text made for this program.
+    pub(crate) fn generated(name: &str, text: String) -> Self {
+        Source { name: format!("generated/{name}"), text, origins: None, renames: Renames::default() }
+    }
+
+    /// A template, renamed for its instance.
+    pub(crate) fn template(template: Template, renames: Renames) -> Self {
+        Source { name: template.path.to_owned(), text: template.text.to_owned(), origins: None, renames }
+    }
+
+    /// A user's function.
+    pub(crate) fn user(function: &UserFunction) -> Self {
+        Source {
+            name: function.origin.file.to_string(),
+            text: function.wgsl.clone(),
+            origins: Some(function.lines.clone()),
+            renames: Renames::default(),
+        }
+    }
+}
+
+/// What linking yields.
+pub(crate) struct Linked {
+    pub(crate) text: String,
+    pub(crate) lines: LineMap,
+    pub(crate) entry_points: Vec<EntryPoint>,
+    /// Names of the declarations that were linked, before the prefix.
+    pub(crate) declared: BTreeSet<String>,
+}
+
+/// Links `sources`. Roots are the entry points, or `exports` where there are any. `prefix` goes before every name but the
+/// entry points'. `Err`: names that sources declare twice, or an export that none declares.
+pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &str) -> Result<Linked, String> {
+    let items = renamed_items(sources)?;
+    let index = declarations(&items)?;
+    let reached = reach(&items, &index, exports)?;
+    let entry_points: Vec<EntryPoint> =
+        reached.iter().filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.clone(), stage })).collect();
+    let globals: BTreeSet<&str> = index.keys().map(String::as_str).collect();
+    let prefixed = Renames::prefix(prefix, globals.iter().copied().filter(|name| !is_entry(name, &entry_points)));
+    let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
+    writer.lines.skip(header.lines().count());
+    let mut current = None;
+    for &id in &reached {
+        let (source, item) = &items[id];
+        if current != Some(*source) {
+            writer.banner(&sources[*source]);
+            current = Some(*source);
+        }
+        writer.item(&sources[*source], item, &prefixed);
+    }
+    let declared = reached.iter().map(|&id| items[id].1.name.clone()).collect();
+    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
+}
+
+fn is_entry(name: &str, entry_points: &[EntryPoint]) -> bool {
+    entry_points.iter().any(|entry| entry.name == name)
+}
+
+fn renamed_items(sources: &[Source]) -> Result<Vec<(usize, Item)>, String> {
+    let mut items = Vec::new();
+    for (index, source) in sources.iter().enumerate() {
+        let text = source.renames.apply(&source.text);
+        let parsed = item::parse(&text).map_err(|line| format!("{}:{line}: not a declaration", source.name))?;
+        items.extend(parsed.into_iter().map(|item| (index, item)));
+    }
+    Ok(items)
+}
+
+fn declarations(items: &[(usize, Item)]) -> Result<BTreeMap<String, usize>, String> {
+    let mut index = BTreeMap::new();
+    for (id, (_, item)) in items.iter().enumerate() {
+        if index.insert(item.name.clone(), id).is_some() {
+            return Err(format!("`{}` is declared twice", item.name));
+        }
+    }
+    Ok(index)
+}
+
+/// The items that the roots reach, in the order of the sources.
+fn reach(items: &[(usize, Item)], index: &BTreeMap<String, usize>, exports: &[&str]) -> Result<Vec<usize>, String> {
+    let mut waiting: Vec<usize> = Vec::new();
+    if exports.is_empty() {
+        waiting.extend((0..items.len()).filter(|&id| items[id].1.stage.is_some()));
+    }
+    for export in exports {
+        waiting.push(*index.get(*export).ok_or_else(|| format!("nothing declares `{export}`"))?);
+    }
+    let mut reached = BTreeSet::new();
+    while let Some(id) = waiting.pop() {
+        if reached.insert(id) {
+            waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name)));
+        }
+    }
+    Ok(reached.into_iter().collect())
+}
+
+struct Writer {
+    text: String,
+    lines: LineMap,
+}
+
+impl Writer {
+    fn banner(&mut self, source: &Source) {
+        self.blank_line();
+        let head = head(&source.text);
+        self.text.push_str(&format!("// ---- {}\n{head}", source.name));
+        self.lines.skip(1 + head.lines().count());
+    }
+
+    fn blank_line(&mut self) {
+        if !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+            self.lines.skip(1);
+        }
+    }
+
+    fn item(&mut self, source: &Source, item: &Item, prefixed: &Renames) {
+        if !item.is_short {
+            self.blank_line();
+        }
+        let text = prefixed.apply(&item.text);
+        for (offset, line) in text.lines().enumerate() {
+            self.text.push_str(line);
+            self.text.push('\n');
+            let at = item.first_line + offset;
+            self.lines.push(match &source.origins {
+                Some(origins) => origins.get(at - 1).map_or(LineOrigin::None, |origin| LineOrigin::User(origin.clone())),
+                None => LineOrigin::Source { name: source.name.clone(), line: at },
+            });
+        }
+        if !item.is_short {
+            self.blank_line();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(name: &str, text: &str) -> Source {
+        Source::generated(name, text.to_owned())
+    }
+
+    #[test]
+    fn only_what_is_reached_is_linked() {
+        let library = source("a", "const USED = 1u;\nconst UNUSED = 2u;\n\n/// Doc.\nfn f() -> u32 {\n    return USED;\n}\n");
+        let main = source("b", "// Head.\n\n@compute @workgroup_size(1)\nfn main() {\n    _ = f();\n}\n");
+        let linked = link("// h\n", &[library, main], &[], "").map_err(|e| panic!("{e}")).unwrap();
+        let expected = "// h\n\n// ---- generated/a\nconst USED = 1u;\n\n/// Doc.\nfn f() -> u32 {\n    return USED;\n}\n\n\
+                        // ---- generated/b\n// Head.\n\n@compute @workgroup_size(1)\nfn main() {\n    _ = f();\n}\n\n";
+        assert_eq!(linked.text, expected);
+        assert_eq!(linked.entry_points.len(), 1);
+        let line = linked.text.lines().position(|line| line.contains("return USED")).unwrap() + 1;
+        assert_eq!(linked.lines.origin(line), LineOrigin::Source { name: "generated/a".into(), line: 6 });
+    }
+
+    #[test]
+    fn two_declarations_of_one_name_are_refused() {
+        let sources = [source("a", "const X = 1u;\n"), source("b", "const X = 2u;\n")];
+        assert_eq!(link("", &sources, &["X"], "").err(), Some("`X` is declared twice".to_owned()));
+    }
+
+    #[test]
+    fn prefixes_spare_entry_points_members_and_locals_of_other_names() {
+        let text = "struct S {\n    x: u32,\n}\nvar<private> s: S;\n@compute @workgroup_size(1)\nfn main() {\n    s.x = 1u;\n}\n";
+        let linked = link("", &[source("a", text)], &[], "p_").map_err(|e| panic!("{e}")).unwrap();
+        assert!(linked.text.contains("struct p_S {\n    x: u32,"));
+        assert!(linked.text.contains("var<private> p_s: p_S;"));
+        assert!(linked.text.contains("fn main() {\n    p_s.x = 1u;"));
+    }
+}

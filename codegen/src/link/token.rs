@@ -1,0 +1,72 @@
+//! WGSL as a row of tokens, each with its place. Enough to find declarations and names; naga does the rest.
+
+/// One token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Token<'a> {
+    pub(super) text: &'a str,
+    /// Byte offset of the first byte.
+    pub(super) at: usize,
+    pub(super) kind: TokenKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TokenKind {
+    Name,
+    Number,
+    Sign,
+    Comment,
+}
+
+/// Every token of `text`, comments included; block comments nest, as in WGSL.
+pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
+    let bytes = text.as_bytes();
+    let mut tokens = Vec::with_capacity(text.len() / 4);
+    let mut at = 0;
+    while at < bytes.len() {
+        let (kind, end) = match bytes[at] {
+            byte if byte.is_ascii_whitespace() => {
+                at += 1;
+                continue;
+            }
+            b'/' if bytes.get(at + 1) == Some(&b'/') => (TokenKind::Comment, line_end(bytes, at)),
+            b'/' if bytes.get(at + 1) == Some(&b'*') => (TokenKind::Comment, block_end(bytes, at)),
+            byte if byte.is_ascii_alphabetic() || byte == b'_' => (TokenKind::Name, word_end(bytes, at, b'_')),
+            byte if byte.is_ascii_digit() => (TokenKind::Number, word_end(bytes, at, b'.')),
+            _ => (TokenKind::Sign, at + text[at..].chars().next().map_or(1, char::len_utf8)),
+        };
+        tokens.push(Token { text: &text[at..end], at, kind });
+        at = end;
+    }
+    tokens
+}
+
+fn line_end(bytes: &[u8], at: usize) -> usize {
+    bytes[at..].iter().position(|byte| *byte == b'\n').map_or(bytes.len(), |length| at + length)
+}
+
+fn block_end(bytes: &[u8], start: usize) -> usize {
+    let mut depth = 0usize;
+    let mut at = start;
+    while at < bytes.len() {
+        match &bytes[at..(at + 2).min(bytes.len())] {
+            b"/*" => {
+                depth += 1;
+                at += 2;
+            }
+            b"*/" => {
+                depth -= 1;
+                at += 2;
+                if depth == 0 {
+                    return at;
+                }
+            }
+            _ => at += 1,
+        }
+    }
+    bytes.len()
+}
+
+fn word_end(bytes: &[u8], at: usize, also: u8) -> usize {
+    let inside = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == also;
+    at + bytes[at..].iter().position(|byte| !inside(byte)).unwrap_or(bytes.len() - at)
+}

@@ -1,0 +1,259 @@
+//! A selection of rows becomes a plan: resources with bindings, steps with everything that they touch, sizes as formulas.
+//!
+//! The storage's steps are the start; the other rows edit them in the order of the axes. No text, no naga, no wgpu.
+
+mod dump;
+mod edit;
+mod roles;
+
+pub(crate) use roles::{axis_of, instance_row};
+
+use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step, Until,
+};
+
+use crate::Layout;
+
+/// Bindings before this one are the frame's, the description's uniforms and the camera.
+pub const FIRST_BINDING: u32 = 3;
+
+/// What a frame of one variant does and keeps, with one choice on every axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What is planned.
+    pub variant: Variant,
+    /// The rows.
+    pub selection: Selection,
+    /// The words of an entry.
+    pub layout: Layout,
+    /// Constants that are generated into every pass that names them.
+    pub constants: Vec<(String, u32)>,
+    /// Symbols that are bound by now.
+    pub bound: Bound,
+    /// Fields of the frame's uniform buffer, all `u32`.
+    pub frame: Vec<String>,
+    /// What is kept in memory.
+    pub resources: Vec<Planned>,
+    /// What is done, in order.
+    pub steps: Vec<Step>,
+    /// Words per pixel in the papers' notation: k entries kept, f fragments of the pixel, f_k the lesser of the two.
+    pub words_per_pixel: String,
+    /// Times that the scene is drawn.
+    pub geometry_passes: String,
+    /// What a target must offer.
+    pub requires: Vec<Fact>,
+    /// What the safety under concurrency rests on.
+    pub soundness: Soundness,
+    /// What can go wrong by design.
+    pub hazards: Vec<Hazard>,
+}
+
+/// A resource of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// The row's resource, named for its instance.
+    pub resource: Resource,
+    /// Its binding in every pass.
+    pub binding: u32,
+    /// Its size in words, as one formula.
+    pub words: Formula,
+}
+
+/// Values of the symbols that are bound when code is generated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bound(pub Vec<(&'static str, u64)>);
+
+impl Bound {
+    /// The value of `symbol`, if it is bound by now.
+    pub fn value(&self, symbol: &str) -> Option<u64> {
+        self.0.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value)
+    }
+}
+
+/// The capacity for k kept fragments: k may change up to it without new code. An A-buffer resolves up to 64 layers unless
+/// it is told otherwise.
+pub fn bucket(keep: Option<u32>) -> u32 {
+    keep.map_or(64, u32::next_power_of_two)
+}
+
+/// Plans one selection of a variant's rows.
+pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Result<Plan, Diagnostics> {
+    let layout = Layout::of(variant);
+    let bound = Bound(vec![
+        ("capacity", u64::from(bucket(variant.keep))),
+        ("entry_words", u64::from(layout.entry_words())),
+        ("beside_words", u64::from(layout.beside_words())),
+    ]);
+    let built = build(selection, registry, &bound).map_err(|problem| {
+        let hint = "report it with the description; a row of your own must name only what it declares";
+        Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
+    })?;
+    let offers = selection.offers();
+    let rows = || selection.rows.iter().map(|selected| &selected.row);
+    let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
+    requires.sort();
+    requires.dedup();
+    requires.retain(|fact| !offers.contains(fact) && !variant.payload_facts().contains(fact));
+    Ok(Plan {
+        variant: variant.clone(),
+        selection: selection.clone(),
+        layout,
+        constants: built.constants,
+        frame: built.frame,
+        resources: built.resources,
+        geometry_passes: geometry_passes(&built.steps, &bound).to_string(),
+        steps: built.steps,
+        words_per_pixel: built.words_per_pixel,
+        bound,
+        requires,
+        soundness: selection.soundness(),
+        hazards: rows()
+            .flat_map(|row| row.hazards.iter().copied())
+            .filter(|hazard| hazard.unless.is_none_or(|fact| !offers.contains(&fact)))
+            .collect(),
+    })
+}
+
+struct Built {
+    constants: Vec<(String, u32)>,
+    frame: Vec<String>,
+    resources: Vec<Planned>,
+    steps: Vec<Step>,
+    words_per_pixel: String,
+}
+
+fn build(selection: &Selection, registry: &Registry, bound: &Bound) -> Result<Built, String> {
+    let mut resources: Vec<Resource> =
+        selection.rows.iter().flat_map(|selected| selected.row.resources.iter().cloned()).collect();
+    let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
+    for selected in &selection.rows {
+        for change in &selected.row.edits {
+            edit::apply(change, &mut steps, &mut resources)?;
+        }
+    }
+    roles::complete(&mut steps, &mut resources, selection, registry)?;
+    let clears = resources.iter().filter(|resource| resource.life == Life::Frame).filter_map(|resource| {
+        let Init::Clear(value) = resource.init else { return None };
+        Some(Step::Clear { resource: resource.name.clone(), value })
+    });
+    let steps = clears.chain(steps).collect();
+    let mut planned = Vec::with_capacity(resources.len());
+    let mut total = Polynomial::default();
+    for (binding, resource) in (FIRST_BINDING..).zip(resources) {
+        let (words, polynomial) = size(&resource, bound).map_err(|error| error.to_string())?;
+        total = total.plus(&polynomial, 1);
+        planned.push(Planned { resource, binding, words });
+    }
+    Ok(Built {
+        constants: constants(selection, bound).map_err(|error| error.to_string())?,
+        frame: frame(&planned),
+        words_per_pixel: words_per_pixel(&total).to_string(),
+        resources: planned,
+        steps,
+    })
+}
+
+/// Words of a resource: the product of its extents and of an element's words.
+fn size(resource: &Resource, bound: &Bound) -> Result<(Formula, Polynomial), FormulaError> {
+    let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
+    match resource.element {
+        Element::Word => {}
+        Element::Word64 => factors.push("2".into()),
+        Element::Entry => factors.push("entry_words".into()),
+        Element::Beside => factors.push("beside_words".into()),
+        Element::Texture(format) if format.words() == 1 => {}
+        Element::Texture(format) => factors.push(format.words().to_string().into()),
+    }
+    let mut product = Polynomial::number(1);
+    for factor in &factors {
+        product = product.times(&factor.read()?.polynomial(&|symbol| bound.value(symbol)));
+    }
+    let texts: Vec<String> = factors.iter().map(written_factor).collect();
+    let text = if texts.is_empty() { "1".to_owned() } else { texts.join(" * ") };
+    Ok((text.into(), product))
+}
+
+fn written_factor(factor: &Formula) -> String {
+    let is_sum = factor.0.contains(" + ") || factor.0.contains(" - ");
+    if is_sum && !factor.0.contains('(') { format!("({factor})") } else { factor.to_string() }
+}
+
+/// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
+/// node. Sizes that grow with neither, or with a fraction of the pixels, are left to the list of resources.
+fn words_per_pixel(total: &Polynomial) -> Polynomial {
+    total
+        .coefficient("pixels")
+        .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
+        .plus(&total.coefficient("kept").times(&Polynomial::symbol("f_k")), 1)
+}
+
+/// Times that the scene is drawn, as a formula over the bounds of loops.
+fn geometry_passes(steps: &[Step], bound: &Bound) -> Polynomial {
+    steps.iter().fold(Polynomial::default(), |sum, step| match step {
+        Step::Pass(pass) if pass.kind == Kind::Geometry => sum.plus(&Polynomial::number(1), 1),
+        Step::Repeat(Repeat { body, until, at_most }) => {
+            let rounds = if let Until::Times(times) = until { times } else { at_most };
+            let rounds = rounds
+                .read()
+                .map_or_else(|_| Polynomial::symbol(&rounds.0), |rounds| rounds.polynomial(&|symbol| bound.value(symbol)));
+            sum.plus(&geometry_passes(body, bound).times(&rounds), 1)
+        }
+        _ => sum,
+    })
+}
+
+/// The parameters of the chosen rows, as set or by default.
+fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>, FormulaError> {
+    let mut constants = vec![("CAPACITY".to_owned(), bound.value("capacity").unwrap_or(0) as u32)];
+    for selected in &selection.rows {
+        for parameter in &selected.row.parameters {
+            let set = selected.options.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
+            let value = match set {
+                Some(value) => value,
+                None => parameter.default.evaluate(&|symbol| bound.value(symbol))? as u32,
+            };
+            constants.push((parameter.constant.to_owned(), value));
+        }
+    }
+    Ok(constants)
+}
+
+/// The frame's fields: its size, and every symbol of a resource's size that is bound later than code.
+fn frame(resources: &[Planned]) -> Vec<String> {
+    let mut fields = vec!["width".to_owned(), "height".to_owned()];
+    for symbol in ["k", "fragments", "kept"] {
+        if resources.iter().any(|planned| mentions(&planned.words, symbol)) {
+            fields.push(symbol.to_owned());
+        }
+    }
+    fields
+}
+
+fn mentions(formula: &Formula, symbol: &str) -> bool {
+    formula.0.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|word| word == symbol)
+}
+
+impl Plan {
+    /// The passes in the order of the steps, those inside loops included.
+    pub fn passes(&self) -> Vec<&fragbuf_templates::vocabulary::Pass> {
+        fn collect<'a>(steps: &'a [Step], passes: &mut Vec<&'a fragbuf_templates::vocabulary::Pass>) {
+            for step in steps {
+                match step {
+                    Step::Pass(pass) => passes.push(pass),
+                    Step::Repeat(repeat) => collect(&repeat.body, passes),
+                    _ => {}
+                }
+            }
+        }
+        let mut passes = Vec::new();
+        collect(&self.steps, &mut passes);
+        passes
+    }
+
+    /// A resource by name.
+    pub fn resource(&self, name: &str) -> Option<&Planned> {
+        self.resources.iter().find(|planned| planned.resource.name == name)
+    }
+}

@@ -1,0 +1,87 @@
+//! What rows of other axes change in a storage's steps.
+
+use fragbuf_templates::vocabulary::{Edit, Pass, Repeat, Resource, Step};
+
+/// Applies one edit. `Err`: it names an anchor that the steps do not have.
+pub(super) fn apply(edit: &Edit, steps: &mut Vec<Step>, resources: &mut Vec<Resource>) -> Result<(), String> {
+    match edit {
+        Edit::Before(anchor, new) => insert(steps, anchor, new, 0),
+        Edit::After(anchor, new) => insert(steps, anchor, new, 1),
+        Edit::Around(from, to, repeat) => around(steps, from, to, repeat),
+        Edit::SetState(anchor, state) => change(steps, anchor, &|pass| pass.state = state.clone()),
+        Edit::SetSkeleton(anchor, skeleton) => change(steps, anchor, &|pass| pass.skeleton.clone_from(skeleton)),
+        Edit::SetRole(anchor, role) => change(steps, anchor, &|pass| {
+            pass.roles.retain(|old| old.contract != role.contract);
+            pass.roles.push(role.clone());
+        }),
+        Edit::AddUse(anchor, usage) => change(steps, anchor, &|pass| pass.uses.push(usage.clone())),
+        Edit::AddResource(resource) => {
+            resources.push(resource.clone());
+            Ok(())
+        }
+    }
+}
+
+fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> Result<(), String> {
+    if let Some(index) = position(steps, anchor) {
+        steps.splice(index + offset..index + offset, new.iter().cloned());
+        return Ok(());
+    }
+    in_some_loop(steps, anchor, &mut |body| insert(body, anchor, new, offset))
+}
+
+fn around(steps: &mut Vec<Step>, from: &str, to: &str, repeat: &Repeat) -> Result<(), String> {
+    if let (Some(first), Some(last)) = (position(steps, from), position(steps, to)) {
+        if first <= last {
+            let body = steps.drain(first..=last).collect();
+            steps.insert(first, Step::Repeat(Repeat { body, ..repeat.clone() }));
+            return Ok(());
+        }
+    }
+    in_some_loop(steps, from, &mut |body| around(body, from, to, repeat))
+}
+
+fn change(steps: &mut [Step], anchor: &str, how: &dyn Fn(&mut Pass)) -> Result<(), String> {
+    let mut found = false;
+    for_each_pass(steps, &mut |pass| {
+        if pass.anchor == anchor {
+            how(pass);
+            found = true;
+        }
+    });
+    if found { Ok(()) } else { Err(unknown(anchor)) }
+}
+
+fn in_some_loop(
+    steps: &mut [Step],
+    anchor: &str,
+    edit: &mut dyn FnMut(&mut Vec<Step>) -> Result<(), String>,
+) -> Result<(), String> {
+    for step in steps {
+        if let Step::Repeat(repeat) = step {
+            if edit(&mut repeat.body).is_ok() {
+                return Ok(());
+            }
+        }
+    }
+    Err(unknown(anchor))
+}
+
+fn position(steps: &[Step], anchor: &str) -> Option<usize> {
+    steps.iter().position(|step| matches!(step, Step::Pass(pass) if pass.anchor == anchor))
+}
+
+fn unknown(anchor: &str) -> String {
+    format!("an edit names the pass `{anchor}`, which the plan does not have")
+}
+
+/// Every pass, those inside loops included.
+pub(super) fn for_each_pass(steps: &mut [Step], visit: &mut dyn FnMut(&mut Pass)) {
+    for step in steps {
+        match step {
+            Step::Pass(pass) => visit(pass),
+            Step::Repeat(repeat) => for_each_pass(&mut repeat.body, visit),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! A plan as text: one WGSL text per pass, every line with where it comes from.
+
+mod instances;
+
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, codes};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Kind, Pass};
+
+use crate::link::{self, Source};
+use crate::{GENERATOR, Plan, emit};
+
+/// How texts are linked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Linking {
+    /// What the text may use.
+    pub profile: Profile,
+    /// What it is for.
+    pub form: Form,
+    /// Before every name but the entry points', so that two buffers can share a shader.
+    pub prefix: String,
+    /// The bind group of everything declared.
+    pub group: u32,
+}
+
+/// What a WGSL text may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Profile {
+    /// The WGSL standard: browsers take it.
+    Portable,
+    /// naga's additions too: coherent buffers.
+    Native,
+}
+
+/// What a text is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Entry points for every pass.
+    Program,
+    /// Geometry passes as functions for a shader of the caller's own; the other passes with their entry points.
+    Module,
+}
+
+/// A plan, linked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// What it does.
+    pub plan: Plan,
+    /// How it was linked.
+    pub linking: Linking,
+    /// One per pass, in the order of the steps.
+    pub passes: Vec<PassText>,
+}
+
+/// The text of one pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassText {
+    /// The pass.
+    pub anchor: String,
+    /// WGSL.
+    pub text: String,
+    /// Where its lines come from.
+    pub lines: LineMap,
+    /// Its entry points, in the order of the text.
+    pub entry_points: Vec<EntryPoint>,
+    /// The functions that a caller's shader calls, in module form.
+    pub exports: Vec<String>,
+    /// Resources that the text declares, by name.
+    pub resources: Vec<String>,
+    /// Who made it and what the algorithms linked into it rest on, for texts that lose the templates' comments.
+    pub notes: Notes,
+}
+
+/// Comments for the head of a file, lines without a comment sign.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Notes {
+    /// Technique, generator and choices.
+    pub generated: String,
+    /// The heads of the templates that come from papers.
+    pub algorithms: String,
+}
+
+/// An entry point.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EntryPoint {
+    /// Its name in the text.
+    pub name: String,
+    /// Its stage.
+    pub stage: Stage,
+}
+
+/// A shader stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Vertex.
+    Vertex,
+    /// Fragment.
+    Fragment,
+    /// Compute.
+    Compute,
+}
+
+/// Where each line of a text comes from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LineMap(Vec<LineOrigin>);
+
+/// Where one line comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LineOrigin {
+    /// Headers, banners and blank lines.
+    None,
+    /// A template or generated text, by its name and line.
+    Source {
+        /// `storage/max_array.wgsl`, `generated/buffers`.
+        name: String,
+        /// From 1.
+        line: usize,
+    },
+    /// The user's description.
+    User(Origin),
+}
+
+impl LineMap {
+    pub(crate) fn skip(&mut self, lines: usize) {
+        self.0.extend(std::iter::repeat_n(LineOrigin::None, lines));
+    }
+
+    pub(crate) fn push(&mut self, origin: LineOrigin) {
+        self.0.push(origin);
+    }
+
+    /// The origin of a line, counted from 1.
+    pub fn origin(&self, line: usize) -> LineOrigin {
+        line.checked_sub(1).and_then(|index| self.0.get(index)).cloned().unwrap_or(LineOrigin::None)
+    }
+}
+
+/// Links every pass of a plan.
+pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Program, Diagnostics> {
+    let mut passes = Vec::new();
+    let mut diagnostics = Diagnostics::new();
+    for pass in plan.passes() {
+        match link_pass(plan, pass, linking, registry) {
+            Ok(text) => passes.push(text),
+            Err(problem) => diagnostics.push(Diagnostic::new(
+                codes::INTERNAL,
+                &plan.variant.name.origin,
+                format!("pass `{}`: {problem}", pass.anchor),
+                "report it with the description; a row of your own must fulfil the contract of its axis",
+            )),
+        }
+    }
+    diagnostics.gate(Program { plan: plan.clone(), linking: linking.clone(), passes })
+}
+
+fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, String> {
+    let mut sources = emit::sources(plan, pass, linking);
+    sources.extend(registry.shared().iter().map(|template| Source::template(*template, link::Renames::default())));
+    sources.extend(instances::sources(pass, plan, registry)?);
+    let is_library = linking.form == Form::Module && pass.kind == Kind::Geometry;
+    let stage_text = match pass.kind {
+        Kind::Geometry if !is_library => Some("geometry"),
+        Kind::Fullscreen => Some("fullscreen"),
+        _ => None,
+    };
+    for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
+        sources.push(instances::skeleton(skeleton, registry)?);
+    }
+    let export = format!("{}_fragment", pass.skeleton);
+    let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
+    let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };
+    let notes = Notes { generated: generated(plan), algorithms: instances::algorithms(pass, plan, registry)? };
+    let linked = link::link(&format!("{}\n", commented(&notes.generated)), &sources, &exports, &prefix)?;
+    Ok(PassText {
+        anchor: pass.anchor.clone(),
+        text: format!("{}\n", linked.text.trim_end()),
+        lines: linked.lines,
+        entry_points: linked.entry_points,
+        exports: exports.iter().map(|name| format!("{prefix}{name}")).collect(),
+        resources: plan
+            .resources
+            .iter()
+            .map(|planned| &planned.resource.name)
+            .filter(|name| linked.declared.contains(*name))
+            .cloned()
+            .collect(),
+        notes,
+    })
+}
+
+fn generated(plan: &Plan) -> String {
+    let name = plan.variant.technique.as_deref().unwrap_or(&plan.variant.name.value);
+    format!("{name}. Generated by {GENERATOR} from the choices\n{}\n", plan.selection.describe())
+}
+
+/// Each line as a comment.
+fn commented(lines: &str) -> String {
+    lines.lines().map(|line| format!("// {line}\n")).collect()
+}

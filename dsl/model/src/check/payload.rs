@@ -1,0 +1,47 @@
+//! What a fragment carries, and what that offers to the rows.
+
+use fragbuf_templates::vocabulary::Fact;
+
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, Spanned, codes};
+
+/// The description's attributes, or the papers' payload.
+pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
+    if draft.attributes.is_empty() {
+        let attribute = |name: &str, format| Attribute {
+            name: Spanned::new(name.to_owned(), draft.name.origin.clone()),
+            format: Spanned::new(format, draft.name.origin.clone()),
+        };
+        return vec![attribute("color", Format::Rgba8), attribute("depth", Format::F32)];
+    }
+    let depth = draft.attributes.iter().find(|attribute| attribute.name.value == "depth");
+    match depth {
+        Some(depth) if depth.format.value != Format::F32 => diagnostics.push(Diagnostic::new(
+            codes::MISSING_DEPTH,
+            &depth.format.origin,
+            format!("`depth` is {}, not f32", depth.format.value.keyword()),
+            "write `depth: f32`; a second depth of another format needs another name",
+        )),
+        Some(_) => {}
+        None => diagnostics.push(Diagnostic::new(
+            codes::MISSING_DEPTH,
+            &draft.attributes[0].name.origin,
+            "the payload has no `depth`",
+            "add `depth: f32`: kept fragments are put in its order, and without a criterion the farthest is the worst",
+        )),
+    }
+    draft.attributes.clone()
+}
+
+/// What a payload offers.
+pub(crate) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    let color = attributes.iter().find(|attribute| attribute.name.value == "color");
+    if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Vec4)) {
+        facts.push(Fact::Color);
+    }
+    let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
+    if words <= 2 {
+        facts.push(Fact::OneWordBesideDepth);
+    }
+    facts
+}

@@ -1,0 +1,177 @@
+//! A description that passed our rules. The only maker is [`crate::check`]: to hold a [`Variant`] is proof of the check.
+
+use std::fmt::Write as _;
+use std::ops::Deref;
+
+use fragbuf_templates::vocabulary::{Fact, Row, Soundness};
+
+use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
+
+/// A checked fragment buffer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant(Description);
+
+/// What a [`Variant`] says. Plain data; only its wrapper is proof of anything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// The buffer's name.
+    pub name: Spanned<String>,
+    /// The technique that it started from.
+    pub technique: Option<String>,
+    /// What a fragment carries, in the user's order; one of them is `depth`.
+    pub attributes: Vec<Attribute>,
+    /// Values that are the same for a whole pass.
+    pub uniforms: Vec<Uniform>,
+    /// How many fragments a pixel keeps; `None`: all.
+    pub keep: Option<u32>,
+    /// h(f); `None`: depth.
+    pub criterion: Option<UserFunction>,
+    /// A fragment enters iff all return true.
+    pub constraints: Vec<UserFunction>,
+    /// The description's own effect; `None`: the one chosen on the axis `resolve`.
+    pub resolve: Option<UserFunction>,
+    /// Functions that the others call.
+    pub helpers: Vec<UserFunction>,
+    /// One entry per axis, in the order of the axes.
+    pub choices: Vec<Chosen>,
+}
+
+/// The choice on one axis, in order of preference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// The axis.
+    pub axis: String,
+    /// Where it was said; the place of the preset or the name where nobody said it.
+    pub origin: Origin,
+    /// At least one.
+    pub alternatives: Vec<Selected>,
+}
+
+/// One row, with the numbers that a user set on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selected {
+    /// The row.
+    pub row: Row,
+    /// (parameter, value) for those that were set.
+    pub options: Vec<(String, u32)>,
+}
+
+/// One row per axis: what a plan is made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// In the order of the axes.
+    pub rows: Vec<Selected>,
+}
+
+impl Variant {
+    pub(crate) fn proven(description: Description) -> Self {
+        Variant(description)
+    }
+
+    /// The rows for a target that offers `target`: the first alternative on each axis that it can express. `Err`: the
+    /// facts that are missing and the row that needs them, for the last alternative.
+    pub fn select(&self, target: &[Fact]) -> Result<Selection, Refusal> {
+        let mut rows = Vec::with_capacity(self.choices.len());
+        for chosen in &self.choices {
+            let mut refusal = None;
+            for selected in &chosen.alternatives {
+                match missing_on_target(&selected.row, target) {
+                    None => {
+                        rows.push(selected.clone());
+                        refusal = None;
+                        break;
+                    }
+                    Some(fact) => {
+                        refusal = Some(Refusal { axis: chosen.axis.clone(), value: selected.row.key.clone(), fact });
+                    }
+                }
+            }
+            if let Some(refusal) = refusal {
+                return Err(refusal);
+            }
+        }
+        Ok(Selection { rows })
+    }
+
+    /// Facts that the payload offers.
+    pub fn payload_facts(&self) -> Vec<Fact> {
+        crate::check::payload_facts(&self.attributes)
+    }
+}
+
+impl Deref for Variant {
+    type Target = Description;
+
+    fn deref(&self) -> &Description {
+        &self.0
+    }
+}
+
+/// Why a target cannot express a variant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The axis of the row that needs more.
+    pub axis: String,
+    /// The row.
+    pub value: String,
+    /// What it needs.
+    pub fact: Fact,
+}
+
+impl std::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.fact.meaning())
+    }
+}
+
+/// The facts that only a target can offer.
+const TARGET_FACTS: &[Fact] = &[
+    Fact::FragmentAtomics,
+    Fact::Fences,
+    Fact::Coherent,
+    Fact::Interlock,
+    Fact::U64Atomics,
+    Fact::EarlyDepth,
+    Fact::MinMaxBlend,
+    Fact::SampleMask,
+    Fact::Linkable,
+];
+
+/// Whether `fact` is a target's to offer.
+pub(crate) fn is_target_fact(fact: Fact) -> bool {
+    TARGET_FACTS.contains(&fact)
+}
+
+fn missing_on_target(row: &Row, target: &[Fact]) -> Option<Fact> {
+    row.requires.iter().copied().find(|fact| is_target_fact(*fact) && !target.contains(fact))
+}
+
+impl Selection {
+    /// The row on one axis.
+    pub fn row(&self, axis: &str) -> Option<&Selected> {
+        self.rows.iter().find(|selected| selected.row.axis == axis)
+    }
+
+    /// What the safety of the whole rests on: the weakest of its rows.
+    pub fn soundness(&self) -> Soundness {
+        self.rows.iter().map(|selected| selected.row.soundness).max().unwrap_or(Soundness::Atomics)
+    }
+
+    /// Everything that the rows offer.
+    pub fn offers(&self) -> Vec<Fact> {
+        self.rows.iter().flat_map(|selected| selected.row.offers.iter().copied()).collect()
+    }
+
+    /// `axis=value` for every axis, options in brackets.
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        for selected in &self.rows {
+            let separator = if text.is_empty() { "" } else { " " };
+            let _ = write!(text, "{separator}{}={}", selected.row.axis, selected.row.key);
+            for (name, value) in &selected.options {
+                let _ = write!(text, "[{name}={value}]");
+            }
+        }
+        text
+    }
+}

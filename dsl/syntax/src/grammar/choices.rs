@@ -1,0 +1,164 @@
+//! Choices `axis: value { option: … } else value;`, and the number that `keep` begins with.
+//!
+//! In: tokens at the axis, or behind `keep`. Out: what was written; whether such an axis or value exists is the
+//! registry's to say.
+
+use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spanned, codes};
+use proc_macro2::{Group, TokenTree};
+
+use super::cursor::Cursor;
+use super::items::end_of_item;
+use super::{Stop, names};
+use crate::report::Report;
+
+const SHAPE: &str = "sync: interlock else spin_lock { limit: 4096 };";
+
+/// `axis: value else value;`
+pub(crate) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
+    let axis = word(cursor, "an axis", report)?;
+    if let Some(hint) = not_an_axis(&axis.value) {
+        let message = format!("`{}` is not an axis", axis.value);
+        report.error(codes::UNEXPECTED, &axis.origin, message, hint);
+        return Err(Stop);
+    }
+    cursor.sign(':');
+    let mut alternatives: Vec<Alternative> = Vec::new();
+    loop {
+        let next = alternative(cursor, report)?;
+        match alternatives.iter().find(|other| other.value.value == next.value.value) {
+            Some(first) => {
+                let message = format!("`{}` is given twice", next.value.value);
+                let hint = "only the first of two equal alternatives could ever be taken: leave one out";
+                let diagnostic = Diagnostic::new(codes::DUPLICATE, &next.value.origin, message, hint);
+                report.push(diagnostic.label(&first.value.origin, "the first is here"));
+            }
+            None => alternatives.push(next),
+        }
+        if !cursor.word("else") {
+            break;
+        }
+    }
+    end_of_item(cursor, SHAPE, report)?;
+    Ok(Choice { axis, alternatives })
+}
+
+fn not_an_axis(word: &str) -> Option<&'static str> {
+    match word {
+        "keep" => Some("write `keep 8;`, without a colon"),
+        "where" => Some("write `where |f| f.depth > 0.5;`, without a colon"),
+        "fragment" | "uniform" => Some("write `fragment { depth: f32 }`, without a colon"),
+        "fn" | "buffer" => Some("choose from the axes, such as `storage`, `sync`, `sort`"),
+        _ => None,
+    }
+}
+
+fn alternative(cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
+    let value = word(cursor, "a value", report)?;
+    let options = match cursor.braces() {
+        Some(group) => options(&group, report),
+        None => Vec::new(),
+    };
+    Ok(Alternative { value, options })
+}
+
+fn word(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
+    match cursor.peek() {
+        Some(TokenTree::Ident(word)) => {
+            let word = word.clone();
+            cursor.take();
+            Ok(names::word(&word, report))
+        }
+        _ => {
+            let message = format!("{what} belongs here, not {}", cursor.describe());
+            report.error(codes::UNEXPECTED, &cursor.origin(report), message, format!("write `{SHAPE}`"));
+            Err(Stop)
+        }
+    }
+}
+
+type Options = Vec<(Spanned<String>, Spanned<OptionValue>)>;
+
+fn options(group: &Group, report: &mut Report) -> Options {
+    let mut cursor = Cursor::inside(group);
+    let mut options = Options::new();
+    while !cursor.is_done() {
+        match option(&mut cursor, report) {
+            Ok((name, value)) => match options.iter().find(|other| other.0.value == name.value) {
+                Some((first, _)) => {
+                    let message = format!("the option `{}` is given twice", name.value);
+                    let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
+                    report.push(diagnostic.label(&first.origin, "the first is here"));
+                }
+                None => options.push((name, value)),
+            },
+            Err(Stop) => while !cursor.is_done() && !cursor.sign(',') && cursor.take().is_some() {},
+        }
+    }
+    options
+}
+
+fn option(cursor: &mut Cursor, report: &mut Report) -> Result<(Spanned<String>, Spanned<OptionValue>), Stop> {
+    let name = word(cursor, "an option", report)?;
+    if !cursor.sign(':') {
+        return Err(option_shape(cursor, "`:`", report));
+    }
+    let origin = cursor.origin(report);
+    let value = match cursor.peek() {
+        Some(TokenTree::Literal(_)) => OptionValue::Number(number(cursor, report)?),
+        Some(TokenTree::Ident(word)) => {
+            let word = word.to_string();
+            cursor.take();
+            OptionValue::Word(word)
+        }
+        _ => return Err(option_shape(cursor, "a number or a word", report)),
+    };
+    if !cursor.sign(',') && !cursor.is_done() {
+        return Err(option_shape(cursor, "`,`", report));
+    }
+    Ok((name, Spanned::new(value, origin)))
+}
+
+fn option_shape(cursor: &Cursor, what: &str, report: &mut Report) -> Stop {
+    let message = format!("{what} belongs here, not {}", cursor.describe());
+    report.error(codes::UNEXPECTED, &cursor.origin(report), message, "write `{ limit: 4096, order: front }`");
+    Stop
+}
+
+/// What `keep` begins with: a number, or `all`.
+pub(crate) fn count(cursor: &mut Cursor, report: &mut Report) -> Result<Spanned<KeepCount>, Stop> {
+    let origin = cursor.origin(report);
+    if cursor.word("all") {
+        return Ok(Spanned::new(KeepCount::All, origin));
+    }
+    if matches!(cursor.peek(), Some(TokenTree::Literal(_))) {
+        return Ok(Spanned::new(KeepCount::AtMost(number(cursor, report)?), origin));
+    }
+    let message = format!("how many to keep belongs here, not {}", cursor.describe());
+    report.error(codes::UNEXPECTED, &origin, message, "write `keep 8;` or `keep all;`");
+    Err(Stop)
+}
+
+/// A whole number of 32 bits; the next token is a literal.
+fn number(cursor: &mut Cursor, report: &mut Report) -> Result<u32, Stop> {
+    let origin = cursor.origin(report);
+    let found = cursor.describe();
+    let literal = match cursor.take() {
+        Some(token) => syn::parse2::<syn::LitInt>(token.into()),
+        None => return Err(Stop),
+    };
+    match literal {
+        Ok(literal) if matches!(literal.suffix(), "" | "u32" | "usize") => match literal.base10_parse::<u32>() {
+            Ok(value) => Ok(value),
+            Err(_) => {
+                let message = format!("{found} does not fit 32 bits");
+                report.error(codes::OUT_OF_RANGE, &origin, message, format!("the greatest number is {}", u32::MAX));
+                Err(Stop)
+            }
+        },
+        _ => {
+            let message = format!("a whole number belongs here, not {found}");
+            report.error(codes::UNEXPECTED, &origin, message, "write digits only, such as `8`");
+            Err(Stop)
+        }
+    }
+}

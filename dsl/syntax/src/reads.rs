@@ -1,0 +1,86 @@
+//! What a function reads, helpers included, and which helpers call themselves.
+//!
+//! In: checked functions and what their bodies mention. Out: attribute and uniform names in order of first use; a mistake
+//! for every ring of calls.
+
+use fragbuf_model::{Diagnostic, Reads, codes};
+
+use crate::report::Report;
+use crate::tree::{Function, Use};
+
+/// What `function` reads, itself and through helpers.
+pub(crate) fn of(function: &Function, helpers: &[Option<&Function>]) -> Reads {
+    let mut reads = Reads::default();
+    let mut entered = vec![false; helpers.len()];
+    let mut open = vec![function.uses.iter()];
+    while let Some(top) = open.last_mut() {
+        match top.next() {
+            None => drop(open.pop()),
+            Some(Use::Attribute(name)) => add(&mut reads.attributes, name),
+            Some(Use::Uniform(name)) => add(&mut reads.uniforms, name),
+            Some(Use::Helper(index, _)) => {
+                let first = entered.get_mut(*index).is_some_and(|seen| !std::mem::replace(seen, true));
+                let helper = helpers.get(*index).copied().flatten();
+                open.extend(helper.filter(|_| first).map(|helper| helper.uses.iter()));
+            }
+        }
+    }
+    reads
+}
+
+fn add(names: &mut Vec<String>, name: &str) {
+    if !names.iter().any(|other| other == name) {
+        names.push(name.to_string());
+    }
+}
+
+/// Reports each ring of calls once, at the call that closes it.
+pub(crate) fn refuse_recursion(helpers: &[Option<&Function>], report: &mut Report) {
+    let mut done = vec![false; helpers.len()];
+    for start in 0..helpers.len() {
+        search(start, helpers, &mut done, report);
+    }
+}
+
+/// Depth first, with a stack of its own: each frame is a helper and the call that is looked at next.
+fn search(start: usize, helpers: &[Option<&Function>], done: &mut [bool], report: &mut Report) {
+    let mut path: Vec<(usize, usize)> = vec![(start, 0)];
+    while let Some((helper, next)) = path.last().copied() {
+        let calls = helpers.get(helper).copied().flatten().map_or(&[][..], |function| function.uses.as_slice());
+        let Some(used) = calls.get(next).filter(|_| !done.get(helper).copied().unwrap_or(true)) else {
+            if let Some(flag) = done.get_mut(helper) {
+                *flag = true;
+            }
+            path.pop();
+            continue;
+        };
+        if let Some(top) = path.last_mut() {
+            top.1 += 1;
+        }
+        let Use::Helper(callee, origin) = used else { continue };
+        if let Some(first) = path.iter().position(|(other, _)| other == callee) {
+            let ring: Vec<usize> = path.iter().skip(first).map(|(index, _)| *index).collect();
+            report.push(recursion(&ring, origin, helpers));
+        } else {
+            path.push((*callee, 0));
+        }
+    }
+}
+
+fn recursion(ring: &[usize], origin: &fragbuf_model::Origin, helpers: &[Option<&Function>]) -> Diagnostic {
+    let functions: Vec<&Function> = ring.iter().filter_map(|index| helpers.get(*index).copied().flatten()).collect();
+    let name = |function: &Function| function.name.trim_start_matches("user_").to_string();
+    let mut names: Vec<String> = functions.iter().map(|function| format!("`{}`", name(function))).collect();
+    let first = names.first().cloned().unwrap_or_default();
+    names.push(first.clone());
+    let message = match functions.len() {
+        1 => format!("{first} calls itself"),
+        _ => format!("{first} calls itself: {}", names.join(" calls ")),
+    };
+    let hint = "shaders have no recursion: write a loop, `for _ in 0..N { … }`";
+    let mut diagnostic = Diagnostic::new(codes::RECURSION, origin, message, hint);
+    for function in functions.into_iter().skip(1) {
+        diagnostic = diagnostic.label(&function.origin, format!("`{}` is part of the ring", name(function)));
+    }
+    diagnostic
+}

@@ -1,0 +1,48 @@
+//! Arguments in, exit code out. 0: done; 1: the description or an input is at fault; 2: usage; 3: device or file system.
+
+mod generate;
+mod input;
+mod list;
+mod output;
+mod show;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(name = "fragbuf", version, about = "Fragment buffers as GPU passes in WGSL, GLSL and SPIR-V")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// The techniques: axes, memory, passes, and the soundness tier on each target
+    List(list::List),
+    /// One description: its plan, or any stage of its way to a target
+    Show(show::Show),
+    /// Writes the passes of a description, or of every technique, for one or more targets
+    Generate(generate::Generate),
+}
+
+pub(crate) fn run() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::List(list) => list.run(),
+        Command::Show(show) => show.run(),
+        Command::Generate(generate) => generate.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// `axis=value`, `axis.option=value` or `k=8`.
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("write name=value: an axis (sort=none), an option (sync.limit=9), or k=8".to_owned()),
+    }
+}

@@ -1,0 +1,50 @@
+//! What goes to the user: text on stdout, failures on stderr with their exit code.
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use fragbuf::report::render;
+use fragbuf_model::Diagnostics;
+
+/// Why a command did not do what it was asked.
+pub(crate) enum Failure {
+    /// The description is at fault; the texts by file name.
+    Description(Diagnostics, Vec<(String, String)>),
+    /// The command line asks for what there is not.
+    Usage(String),
+    /// A file could not be read or written.
+    Files(String),
+}
+
+impl Failure {
+    /// A file system error on `path`.
+    pub(crate) fn files(path: &Path, error: &std::io::Error) -> Self {
+        Failure::Files(format!("{}: {error}", path.display()))
+    }
+
+    /// Says so on stderr.
+    pub(crate) fn report(self) -> ExitCode {
+        let (text, code) = match self {
+            Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
+            Failure::Usage(text) => (format!("error: {text}\n"), 2),
+            Failure::Files(text) => (format!("error: {text}\n"), 3),
+        };
+        // Nobody is left to tell when stderr is gone.
+        let _ = std::io::stderr().write_all(text.as_bytes());
+        ExitCode::from(code)
+    }
+}
+
+/// Writes to stdout. A reader that has seen enough (`| head`) is no failure.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::files(Path::new("stdout"), &error)),
+        _ => Ok(()),
+    }
+}
+
+/// Pretty JSON with a final newline.
+pub(crate) fn json(value: &serde_json::Value) -> String {
+    format!("{value:#}\n")
+}

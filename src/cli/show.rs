@@ -1,0 +1,82 @@
+//! `fragbuf show`: one description, at any stage.
+
+use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target, tier};
+
+use super::input::Input;
+use super::output::{self, Failure};
+
+#[derive(clap::Args)]
+pub(crate) struct Show {
+    /// A technique's key, or a .fragbuf file
+    description: String,
+    /// Changes the description: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    set: Vec<(String, String)>,
+    /// The manifest, as JSON
+    #[arg(long)]
+    json: bool,
+    /// A stage: plan, manifest, or a target whose files are text
+    #[arg(long, value_name = "STAGE", conflicts_with = "json")]
+    dump: Option<String>,
+}
+
+impl Show {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        let registry = Registry::builtin();
+        let stage = self.dump.as_deref().unwrap_or(if self.json { "manifest" } else { "summary" });
+        let one: Vec<&'static Target> = target(stage).into_iter().collect();
+        let all: Vec<&'static Target> = TARGETS.iter().collect();
+        if one.is_empty() && !["plan", "manifest", "summary"].contains(&stage) {
+            let names: Vec<&str> = all.iter().map(|target| target.name).collect();
+            return Err(Failure::Usage(format!("no stage `{stage}`: give plan, manifest, {}", names.join(", "))));
+        }
+        if stage == "spirv" {
+            return Err(Failure::Usage("spirv is no text: `generate --target spirv` writes it".to_owned()));
+        }
+        let input = Input::read(&self.description, &registry)?;
+        let variant = input.variant(&self.set, &registry)?;
+        let targets = if one.is_empty() { &all } else { &one };
+        let request = Request { targets, form: Form::Program, prefix: "", group: 0 };
+        let generation = generate(&variant, &request, &registry).map_err(|faults| input.failure(faults))?;
+        output::print(&match stage {
+            "manifest" => output::json(&manifest(&generation, 0)),
+            "plan" => plans(&generation),
+            "summary" => summary(&generation),
+            _ => files(&generation),
+        })
+    }
+}
+
+fn plans(generation: &Generation) -> String {
+    generation.plans.iter().map(|planned| planned.plan.to_string()).collect()
+}
+
+fn summary(generation: &Generation) -> String {
+    let mut text = plans(generation);
+    text.push_str("targets\n");
+    for planned in &generation.plans {
+        for target in &planned.targets {
+            text.push_str(&format!("  {:12} {}  {}\n", target.name, tier(planned.plan.soundness, target), target.summary));
+        }
+    }
+    for (target, refusal) in &generation.refusals {
+        text.push_str(&format!("  {:12} —   {refusal}\n", target.name));
+    }
+    text
+}
+
+/// Every text file once, under its path.
+fn files(generation: &Generation) -> String {
+    let mut text = String::new();
+    let mut seen: Vec<&str> = Vec::new();
+    for file in &generation.files {
+        if !seen.contains(&file.path.as_str()) {
+            seen.push(&file.path);
+            text.push_str(&format!("// ==== {}\n{}\n", file.path, String::from_utf8_lossy(&file.bytes)));
+        }
+    }
+    for (target, refusal) in &generation.refusals {
+        text.push_str(&format!("// {}: {refusal}\n", target.name));
+    }
+    text
+}

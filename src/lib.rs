@@ -1,0 +1,34 @@
+//! fragbuf: one description of a per-pixel *fragment buffer* becomes complete GPU passes.
+//!
+//! A fragment buffer keeps more than one fragment per pixel: a k-buffer, an A-buffer, peeled layers. The description says
+//! what a fragment carries, how many stay, which one is worst, where they are stored, how writers of the same pixel are
+//! kept apart and what is made of them:
+//!
+//! ```
+//! # use fragbuf::{Registry, check, parse};
+//! let text = "
+//!     buffer Glass from kplus_array {
+//!         fragment { color: rgba8, depth: f32, id: u32 }
+//!         keep 4 least |f| f.depth - 0.25 * f.color.w;
+//!     }";
+//! let parsed = parse(text, "glass.fragbuf");
+//! assert!(parsed.diagnostics.is_empty());
+//! let variant = parsed.draft.and_then(|draft| check(&draft, &Registry::builtin()).ok());
+//! assert_eq!(variant.map(|variant| variant.keep), Some(Some(4)));
+//! ```
+//!
+//! From there [`generate`] makes files for every target, and [`manifest`] says how an engine runs them.
+//!
+//! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
+//! into a variant, and [`report`], which draws diagnostics with their source lines.
+
+pub mod load;
+pub mod report;
+
+pub use fragbuf_backends::{
+    Checked, File, Generation, Request, SCHEMA, TARGETS, Target, generate, manifest, plan_json, target, tier,
+};
+pub use fragbuf_codegen::{Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
+pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Selection, Variant, check};
+pub use fragbuf_syntax::{Parsed, parse};
+pub use fragbuf_templates::{Registry, vocabulary};

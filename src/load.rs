@@ -1,0 +1,58 @@
+//! A technique's key or a description's text, with changes from outside, becomes a variant.
+
+use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check};
+use fragbuf_syntax::parse;
+use fragbuf_templates::Registry;
+
+/// A description to load.
+#[derive(Clone, Debug)]
+pub enum Description {
+    /// A technique of the registry.
+    Technique(String),
+    /// A file's name, as messages give it, and its text.
+    Text {
+        /// The name.
+        file: String,
+        /// The text.
+        text: String,
+    },
+}
+
+/// Checks a description after the changes `set`, each a name and a value as in `--set name=value`.
+pub fn variant(
+    description: &Description,
+    set: &[(String, String)],
+    registry: &Registry,
+) -> Result<Variant, Diagnostics> {
+    let (mut draft, mut diagnostics) = match description {
+        Description::Technique(key) => {
+            (Draft::from_technique(key, &Origin::new(key.as_str(), 1, 1)), Diagnostics::new())
+        }
+        Description::Text { file, text } => {
+            let parsed = parse(text, file);
+            match parsed.draft {
+                Some(draft) => (draft, parsed.diagnostics),
+                None => return Err(parsed.diagnostics),
+            }
+        }
+    };
+    for (name, value) in set {
+        let origin = Origin::new("--set", 1, 1).with_length(name.chars().count() as u32);
+        if let Err(wanted) = draft.set(name, value, &origin) {
+            diagnostics.push(fragbuf_model::Diagnostic::new(
+                fragbuf_model::codes::BAD_OPTION,
+                &origin,
+                format!("`{value}` is no value for `{name}`"),
+                format!("give {wanted}"),
+            ));
+        }
+    }
+    // The rules run even over a draft with mistakes in it: all that is wrong comes at once.
+    match check(&draft, registry) {
+        Ok(variant) => diagnostics.gate(variant),
+        Err(more) => {
+            diagnostics.extend(more);
+            diagnostics.gate(()).and_then(|()| check(&draft, registry))
+        }
+    }
+}

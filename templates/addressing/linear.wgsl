@@ -1,0 +1,10 @@
+// Row after row: pixels of one row are neighbours in memory.
+
+fn pixel_index(position: vec2<f32>) -> u32 {
+    let at = vec2<u32>(position);
+    return at.y * frame.width + at.x;
+}
+
+fn pixel_count() -> u32 {
+    return frame.width * frame.height;
+}

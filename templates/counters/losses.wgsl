@@ -1,0 +1,7 @@
+// Losses are counted, other events are not: a frame that loses nothing never touches the counters.
+
+fn count_event(counter: u32) {}
+
+fn count_loss(counter: u32) {
+    counters_atomic_add(counter, 1u);
+}

@@ -1,0 +1,5 @@
+// No fragment is turned away.
+
+fn cull_fragment(pixel: u32, entry: Packed) -> bool {
+    return false;
+}

@@ -1,0 +1,25 @@
+// Exclusive prefix sums of the counts inside each block of 1024 pixels: every invocation adds up four neighbours, the
+// workgroup scans the 256 sums. The block's total goes to `block_sums`.
+
+const PIXELS_EACH = 4u;
+
+@compute @workgroup_size(256)
+fn scan_blocks(
+    @builtin(local_invocation_index) local: u32,
+    @builtin(workgroup_id) group: vec3<u32>,
+) {
+    let first = (group.x * 256u + local) * PIXELS_EACH;
+    let end = min(first + PIXELS_EACH, pixel_count());
+    var own = 0u;
+    for (var pixel = first; pixel < end; pixel++) {
+        own += counts_load(pixel);
+    }
+    var offset = workgroup_scan(local, own) - own;
+    for (var pixel = first; pixel < end; pixel++) {
+        offsets_store(pixel, offset);
+        offset += counts_load(pixel);
+    }
+    if local == 255u {
+        block_sums_store(group.x, offset);
+    }
+}

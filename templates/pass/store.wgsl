@@ -1,0 +1,21 @@
+// Stores the scene's fragments.
+
+@fragment
+fn store(varyings: Varyings) {
+    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+}
+
+/// Stores one fragment. `position` is the fragment's, in pixels.
+fn store_fragment(position: vec2<f32>, fragment: Fragment) {
+    if !admit(fragment) {
+        return;
+    }
+    count_event(GENERATED);
+    let pixel = pixel_index(position);
+    let entry = fragment_pack(fragment);
+    if cull_fragment(pixel, entry) {
+        count_event(CULLED);
+        return;
+    }
+    sync_store(pixel, entry);
+}

@@ -1,0 +1,13 @@
+// Front-to-back *over* (Porter & Duff 1984). Colours come in with straight alpha; the result is premultiplied, to be
+// blended over the background.
+
+fn resolve_layers() -> vec4<f32> {
+    var color = vec3<f32>(0.0);
+    var transmittance = 1.0;
+    for (var index = 0u; index < layer_count(); index++) {
+        let surface = layer(index).color;
+        color += transmittance * surface.a * surface.rgb;
+        transmittance *= 1.0 - surface.a;
+    }
+    return vec4<f32>(color, 1.0 - transmittance);
+}

@@ -1,0 +1,8 @@
+// Words of the buffer `counters`.
+
+const GENERATED = 0u;
+const CULLED = 1u;
+const DISPLACED = 2u;
+const POOL_EXHAUSTED = 3u;
+const SPIN_EXHAUSTED = 4u;
+const LAYERS_EXCEEDED = 5u;

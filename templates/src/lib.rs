@@ -1,0 +1,34 @@
+//! The registry of fragbuf: whole WGSL templates, each with the row of data that says what it needs and what it offers.
+//!
+//! [`vocabulary`] is what a row can say; one module per axis holds that axis's rows beside the text they include.
+//! [`Registry::builtin`] is all of them, and [`Registry::with`] adds a row of the user's own. Nothing here computes: the
+//! rules over rows are `fragbuf-model`'s, the passes made from them `fragbuf-codegen`'s.
+
+pub mod vocabulary;
+
+/// The whole WGSL file `templates/<path>.wgsl`, as a [`vocabulary::Template`].
+macro_rules! template {
+    ($path:literal) => {
+        $crate::vocabulary::Template {
+            path: concat!($path, ".wgsl"),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path, ".wgsl")),
+        }
+    };
+}
+
+mod addressing;
+mod counters;
+mod cull;
+mod overflow;
+mod pass;
+mod registry;
+mod resolve;
+mod shared;
+mod sort;
+mod storage;
+mod sync;
+mod technique;
+mod ties;
+
+pub use counters::COUNTERS;
+pub use registry::Registry;

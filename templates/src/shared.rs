@@ -1,0 +1,12 @@
+//! Texts that any template may call; what is not called is not linked.
+
+use crate::vocabulary::Template;
+
+pub(crate) const TEMPLATES: [Template; 6] = [
+    template!("shared/markers"),
+    template!("shared/sentinels"),
+    template!("shared/counter_names"),
+    template!("shared/encoding"),
+    template!("shared/layers"),
+    template!("shared/workgroup_scan"),
+];

@@ -1,0 +1,210 @@
+//! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
+
+use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Host, Pass, Resource, Row, Step};
+
+pub(crate) fn rows() -> Vec<Row> {
+    vec![linked_list(), exact_regions(), sorted_array(), max_array()]
+}
+
+fn linked_list() -> Row {
+    Row {
+        template: Some(template!("storage/linked_list")),
+        resources: vec![
+            Resource::new("heads", Element::Word, "first node of the pixel's list, plus one; 0: empty")
+                .by("pixel", "pixels")
+                .cleared(0),
+            Resource::new("links", Element::Word, "the node after this one, plus one; 0: the last")
+                .by("node", "fragments"),
+            Resource::new("nodes", Element::Entry, "the fragment of this node").by("node", "fragments"),
+            Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
+        ],
+        steps: vec![
+            Step::Pass(
+                Pass::geometry("store", "store")
+                    .uses("heads", Access::Atomic)
+                    .uses("links", Access::Plain)
+                    .uses("nodes", Access::Plain)
+                    .uses("pool", Access::Atomic),
+            ),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("heads", Access::Read)
+                    .uses("links", Access::Read)
+                    .uses("nodes", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow", "counters"],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsAll],
+        requires: vec![Fact::FragmentAtomics],
+        defaults: vec![("sync", "slot_counter")],
+        ..Row::new(
+            "storage",
+            "linked_list",
+            "a list per pixel through one pool of nodes",
+            "Yang et al. 2010; K15 §2",
+        )
+    }
+}
+
+fn exact_regions() -> Row {
+    let scan = |anchor: &str, groups: &'static str| Pass::compute(anchor, anchor, groups, "1");
+    Row {
+        template: Some(template!("storage/exact_regions")),
+        resources: vec![
+            Resource::new("counts", Element::Word, "fragments of the pixel; the store pass counts them down again")
+                .by("pixel", "pixels")
+                .cleared(0),
+            Resource::new("offsets", Element::Word, "where the pixel's region begins; one more for the end of the last")
+                .by("pixel", "pixels + 1"),
+            Resource::new("block_sums", Element::Word, "fragments before each block of 1024 pixels")
+                .by("block", "ceil_div(pixels, 1024)"),
+            Resource::new("entries", Element::Entry, "the fragments, pixel after pixel").by("place", "fragments"),
+        ],
+        steps: vec![
+            Step::Pass(Pass::geometry("count", "count").uses("counts", Access::Atomic)),
+            Step::Pass(
+                scan("scan_blocks", "ceil_div(pixels, 1024)")
+                    .uses("counts", Access::Read)
+                    .uses("offsets", Access::Plain)
+                    .uses("block_sums", Access::Plain),
+            ),
+            Step::Pass(scan("scan_sums", "1").uses("offsets", Access::Plain).uses("block_sums", Access::Plain)),
+            Step::Pass(
+                scan("scan_add", "ceil_div(pixels, 1024)")
+                    .uses("offsets", Access::Plain)
+                    .uses("block_sums", Access::Read),
+            ),
+            Step::Host(Host {
+                function: "allocate".to_owned(),
+                reads: vec!["offsets[pixels]".to_owned()],
+                sets: vec!["fragments".to_owned()],
+            }),
+            Step::Pass(
+                Pass::geometry("store", "store")
+                    .uses("counts", Access::Atomic)
+                    .uses("offsets", Access::Read)
+                    .uses("entries", Access::Plain),
+            ),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("offsets", Access::Read)
+                    .uses("entries", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow", "counters"],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Counted, Fact::Indexed],
+        requires: vec![Fact::FragmentAtomics],
+        defaults: vec![("sync", "slot_counter")],
+        ..Row::new(
+            "storage",
+            "exact_regions",
+            "count, prefix sum, store: a region of exactly its size per pixel",
+            "Vasilakis & Fudos 2012 (S-buffer); K15 §4.2",
+        )
+    }
+}
+
+fn sorted_array() -> Row {
+    Row {
+        template: Some(template!("storage/sorted_array")),
+        resources: array_resources("keys in ascending order; EMPTY past the last"),
+        steps: vec![
+            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            Step::Pass(
+                Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic),
+            ),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("keys", Access::Read)
+                    .uses("entries", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow"],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+            Fact::Sorted,
+            Fact::SurvivesRaces,
+        ],
+        requires: vec![Fact::FragmentAtomics],
+        defaults: vec![("sync", "none"), ("sort", "none")],
+        hazards: vec![
+            Hazard {
+                name: "lost-update",
+                what: "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted",
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
+                name: "duplicate",
+                what: "an entry moved by one fragment while another moves it too stands in two slots",
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
+                name: "torn",
+                what: "key and payload of a slot come from two fragments",
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
+                name: "unsorted",
+                what: "the entries of a pixel are not in the order of their keys",
+                unless: Some(Fact::Critical),
+            },
+        ],
+        ..Row::new(
+            "storage",
+            "sorted_array",
+            "k entries per pixel, kept in order by insertion",
+            "B06 §3; Bavoil et al. 2007",
+        )
+    }
+}
+
+fn max_array() -> Row {
+    let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are in");
+    resources.push(Resource::new("filled", Element::Word, "fragments kept, at most k").by("pixel", "pixels"));
+    Row {
+        template: Some(template!("storage/max_array")),
+        resources,
+        steps: vec![
+            Step::Pass(reset_pass().uses("keys", Access::Plain).uses("filled", Access::Plain)),
+            Step::Pass(
+                Pass::geometry("store", "store")
+                    .uses_rechecked("keys")
+                    .uses("entries", Access::Coherent)
+                    .uses("filled", Access::Coherent),
+            ),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("keys", Access::Read)
+                    .uses("entries", Access::Read)
+                    .uses("filled", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow"],
+        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
+        requires: vec![Fact::FragmentAtomics, Fact::Critical],
+        defaults: vec![("sync", "spin_lock"), ("cull", "early")],
+        ..Row::new("storage", "max_array", "k entries per pixel, the worst at slot 0", "K15 §3.2")
+    }
+}
+
+/// Keys apart from the rest: the early cull reads one atomic word, the critical section reads the others plainly.
+fn array_resources(keys: &'static str) -> Vec<Resource> {
+    vec![
+        Resource::new("keys", Element::Word, keys).by("slot", "k").by("pixel", "pixels"),
+        Resource::new("entries", Element::Beside, "what the fragments carry beside their keys")
+            .by("slot", "k")
+            .by("pixel", "pixels"),
+    ]
+}
+
+fn reset_pass() -> Pass {
+    Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
+}
+

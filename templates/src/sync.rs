@@ -1,0 +1,49 @@
+//! Axis `sync`: how writers of the same pixel are kept apart.
+
+use crate::vocabulary::{Access, Element, Fact, Parameter, Resource, Row, Soundness, Use};
+
+pub(crate) fn rows() -> Vec<Row> {
+    vec![none(), slot_counter(), spin_lock()]
+}
+
+fn none() -> Row {
+    Row {
+        template: Some(template!("sync/none")),
+        calls: vec!["storage"],
+        requires: vec![Fact::SurvivesRaces],
+        soundness: Soundness::Racy,
+        ..Row::new("sync", "none", "not at all: the hazards of the storage are kept", "B06 §3.1")
+    }
+}
+
+fn slot_counter() -> Row {
+    Row {
+        template: Some(template!("sync/none")),
+        calls: vec!["storage"],
+        requires: vec![Fact::OwnAtomics],
+        soundness: Soundness::Atomics,
+        ..Row::new("sync", "slot_counter", "by the storage's own counters: every fragment gets a place of its own", "K15 §2")
+    }
+}
+
+fn spin_lock() -> Row {
+    Row {
+        template: Some(template!("sync/spin_lock")),
+        resources: vec![
+            Resource::new("locks", Element::Word, "0: free, 1: taken").by("pixel", "pixels").cleared(0),
+        ],
+        uses: vec![Use::new("locks", Access::Atomic)],
+        calls: vec!["storage", "overflow", "counters"],
+        offers: vec![Fact::Critical],
+        requires: vec![Fact::FragmentAtomics],
+        parameters: vec![Parameter {
+            name: "limit",
+            constant: "SPIN_LIMIT",
+            default: "4096".into(),
+            range: (1, 1 << 24),
+            summary: "tries before a fragment is given up and counted",
+        }],
+        soundness: Soundness::Lock,
+        ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")
+    }
+}

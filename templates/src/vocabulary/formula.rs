@@ -1,0 +1,362 @@
+//! Sizes as formulas: the same text in a row, in a plan's dump and in the manifest.
+//!
+//! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
+//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`), allocation (`width height
+//! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A formula as written in a row.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Formula(pub Cow<'static, str>);
+
+impl From<&'static str> for Formula {
+    fn from(text: &'static str) -> Self {
+        Formula(Cow::Borrowed(text))
+    }
+}
+
+impl From<String> for Formula {
+    fn from(text: String) -> Self {
+        Formula(Cow::Owned(text))
+    }
+}
+
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// Why a formula has no value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FormulaError {
+    /// The text is no formula; `at` counts bytes from 0.
+    Malformed {
+        /// The whole text.
+        text: String,
+        /// Where reading stopped.
+        at: usize,
+    },
+    /// A symbol has no value yet.
+    Unbound(String),
+    /// A division by zero, or a result beyond 64 bits.
+    Overflow(String),
+}
+
+impl fmt::Display for FormulaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FormulaError::Malformed { text, at } => write!(f, "`{text}` is no formula from byte {at} on"),
+            FormulaError::Unbound(symbol) => write!(f, "`{symbol}` has no value yet"),
+            FormulaError::Overflow(text) => write!(f, "`{text}` divides by zero or exceeds 64 bits"),
+        }
+    }
+}
+
+impl std::error::Error for FormulaError {}
+
+/// A formula, read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Expression {
+    /// A whole number.
+    Number(u64),
+    /// A named value.
+    Symbol(String),
+    /// `+ - * /` or a function of two arguments (`pow2` of one), by its spelling.
+    Apply(&'static str, Vec<Expression>),
+}
+
+/// The functions and their number of arguments.
+const FUNCTIONS: [(&str, usize); 4] = [("min", 2), ("max", 2), ("ceil_div", 2), ("pow2", 1)];
+
+impl Formula {
+    /// Reads the text.
+    pub fn read(&self) -> Result<Expression, FormulaError> {
+        let mut reader = Reader { text: &self.0, at: 0 };
+        let expression = reader.sum()?;
+        reader.skip_spaces();
+        if reader.at < self.0.len() { Err(reader.malformed()) } else { Ok(expression) }
+    }
+
+    /// Reads the text and computes its value; `value` gives each symbol's.
+    pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<u64, FormulaError> {
+        self.read()?.evaluate(value)
+    }
+}
+
+impl Expression {
+    /// The value, where `value` gives each symbol's.
+    pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<u64, FormulaError> {
+        match self {
+            Expression::Number(number) => Ok(*number),
+            Expression::Symbol(name) => value(name).ok_or_else(|| FormulaError::Unbound(name.clone())),
+            Expression::Apply(operator, arguments) => {
+                let mut values = Vec::with_capacity(2);
+                for argument in arguments {
+                    values.push(argument.evaluate(value)?);
+                }
+                apply(operator, &values).ok_or_else(|| FormulaError::Overflow(format!("{operator}{values:?}")))
+            }
+        }
+    }
+
+    /// The formula as a sum of products. Divisions and functions that do not reduce to a number stay whole, as symbols.
+    pub fn polynomial(&self, value: &dyn Fn(&str) -> Option<u64>) -> Polynomial {
+        match self {
+            Expression::Number(number) => Polynomial::number(*number as i64),
+            Expression::Symbol(name) => match value(name) {
+                Some(number) => Polynomial::number(number as i64),
+                None => Polynomial::symbol(name),
+            },
+            Expression::Apply(operator, arguments) => {
+                let parts: Vec<Polynomial> = arguments.iter().map(|a| a.polynomial(value)).collect();
+                match (*operator, parts.as_slice()) {
+                    ("+", [a, b]) => a.plus(b, 1),
+                    ("-", [a, b]) => a.plus(b, -1),
+                    ("*", [a, b]) => a.times(b),
+                    (operator, parts) => opaque(operator, parts),
+                }
+            }
+        }
+    }
+}
+
+fn apply(operator: &str, values: &[u64]) -> Option<u64> {
+    match (operator, values) {
+        ("+", [a, b]) => a.checked_add(*b),
+        ("-", [a, b]) => a.checked_sub(*b),
+        ("*", [a, b]) => a.checked_mul(*b),
+        ("/", [a, b]) => a.checked_div(*b),
+        ("min", [a, b]) => Some(*a.min(b)),
+        ("max", [a, b]) => Some(*a.max(b)),
+        ("ceil_div", [a, b]) => (*b > 0).then(|| a.div_ceil(*b)),
+        ("pow2", [a]) => u32::try_from(*a).ok().and_then(|a| 1u64.checked_shl(a)),
+        _ => None,
+    }
+}
+
+/// A function whose arguments are all numbers is a number; any other is one symbol, named by its text.
+fn opaque(operator: &str, parts: &[Polynomial]) -> Polynomial {
+    let numbers: Option<Vec<u64>> = parts.iter().map(Polynomial::as_number).collect();
+    if let Some(result) = numbers.and_then(|numbers| apply(operator, &numbers)) {
+        return Polynomial::number(result as i64);
+    }
+    let texts: Vec<String> = parts.iter().map(Polynomial::to_string).collect();
+    match (operator, texts.as_slice()) {
+        ("/", [a, b]) => Polynomial::symbol(&format!("({a}/{b})")),
+        _ => Polynomial::symbol(&format!("{operator}({})", texts.join(", "))),
+    }
+}
+
+/// A sum of products of symbols, in normal form: equal formulas have equal polynomials.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Polynomial(BTreeMap<Vec<String>, i64>);
+
+impl Polynomial {
+    /// The constant `number`.
+    pub fn number(number: i64) -> Self {
+        let mut terms = BTreeMap::new();
+        if number != 0 {
+            terms.insert(Vec::new(), number);
+        }
+        Polynomial(terms)
+    }
+
+    /// The symbol `name`.
+    pub fn symbol(name: &str) -> Self {
+        Polynomial(BTreeMap::from([(vec![name.to_owned()], 1)]))
+    }
+
+    /// `self + factor * other`.
+    pub fn plus(&self, other: &Polynomial, factor: i64) -> Polynomial {
+        let mut terms = self.0.clone();
+        for (symbols, coefficient) in &other.0 {
+            *terms.entry(symbols.clone()).or_insert(0) += factor * coefficient;
+        }
+        terms.retain(|_, coefficient| *coefficient != 0);
+        Polynomial(terms)
+    }
+
+    /// `self * other`.
+    pub fn times(&self, other: &Polynomial) -> Polynomial {
+        let mut product = Polynomial::default();
+        for (left, a) in &self.0 {
+            for (right, b) in &other.0 {
+                let mut symbols = [left.as_slice(), right.as_slice()].concat();
+                symbols.sort();
+                product = product.plus(&Polynomial(BTreeMap::from([(symbols, 1)])), a * b);
+            }
+        }
+        product
+    }
+
+    /// The coefficient of the single factor `name`: what remains of each term that has `name` in it, without one of them.
+    pub fn coefficient(&self, name: &str) -> Polynomial {
+        let mut terms = BTreeMap::new();
+        for (symbols, coefficient) in &self.0 {
+            if let Some(index) = symbols.iter().position(|symbol| symbol == name) {
+                let mut rest = symbols.clone();
+                rest.remove(index);
+                terms.insert(rest, *coefficient);
+            }
+        }
+        Polynomial(terms)
+    }
+
+    /// Whether nothing is left.
+    pub fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn as_number(&self) -> Option<u64> {
+        match self.0.iter().next() {
+            None => Some(0),
+            Some((symbols, number)) if symbols.is_empty() && self.0.len() == 1 => u64::try_from(*number).ok(),
+            Some(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Polynomial {
+    /// The papers' notation: `2k+2`, `3f+1`; products of symbols are joined by `*`; the constant comes last.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return f.write_str("0");
+        }
+        let mut terms: Vec<_> = self.0.iter().collect();
+        terms.sort_by_key(|(symbols, _)| std::cmp::Reverse(symbols.len()));
+        for (index, (symbols, coefficient)) in terms.into_iter().enumerate() {
+            let sign = if *coefficient < 0 { "-" } else if index > 0 { "+" } else { "" };
+            let magnitude = coefficient.unsigned_abs();
+            let product = symbols.join("*");
+            match (magnitude, product.as_str()) {
+                (_, "") => write!(f, "{sign}{magnitude}")?,
+                (1, _) => write!(f, "{sign}{product}")?,
+                _ => write!(f, "{sign}{magnitude}{product}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn sum(&mut self) -> Result<Expression, FormulaError> {
+        self.chain(&[("+", '+'), ("-", '-')], Self::product)
+    }
+
+    fn product(&mut self) -> Result<Expression, FormulaError> {
+        self.chain(&[("*", '*'), ("/", '/')], Self::atom)
+    }
+
+    fn chain(
+        &mut self,
+        operators: &[(&'static str, char)],
+        operand: fn(&mut Self) -> Result<Expression, FormulaError>,
+    ) -> Result<Expression, FormulaError> {
+        let mut left = operand(self)?;
+        while let Some((name, _)) = operators.iter().find(|(_, sign)| self.take(*sign)) {
+            left = Expression::Apply(name, vec![left, operand(self)?]);
+        }
+        Ok(left)
+    }
+
+    fn atom(&mut self) -> Result<Expression, FormulaError> {
+        if self.take('(') {
+            let inner = self.sum()?;
+            return if self.take(')') { Ok(inner) } else { Err(self.malformed()) };
+        }
+        let word = self.word();
+        if word.is_empty() {
+            return Err(self.malformed());
+        }
+        if word.starts_with(|c: char| c.is_ascii_digit()) {
+            return word.parse().map(Expression::Number).map_err(|_| self.malformed());
+        }
+        match FUNCTIONS.iter().find(|(name, _)| *name == word) {
+            Some((name, arity)) if self.take('(') => self.arguments(name, *arity),
+            _ => Ok(Expression::Symbol(word)),
+        }
+    }
+
+    fn arguments(&mut self, name: &'static str, arity: usize) -> Result<Expression, FormulaError> {
+        let mut arguments = vec![self.sum()?];
+        while self.take(',') {
+            arguments.push(self.sum()?);
+        }
+        if arguments.len() != arity || !self.take(')') {
+            return Err(self.malformed());
+        }
+        Ok(Expression::Apply(name, arguments))
+    }
+
+    fn word(&mut self) -> String {
+        self.skip_spaces();
+        let rest = self.text.get(self.at..).unwrap_or("");
+        let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        self.at += length;
+        rest[..length].to_owned()
+    }
+
+    fn take(&mut self, sign: char) -> bool {
+        self.skip_spaces();
+        let found = self.text.get(self.at..).is_some_and(|rest| rest.starts_with(sign));
+        self.at += if found { sign.len_utf8() } else { 0 };
+        found
+    }
+
+    fn skip_spaces(&mut self) {
+        while self.text.as_bytes().get(self.at) == Some(&b' ') {
+            self.at += 1;
+        }
+    }
+
+    fn malformed(&self) -> FormulaError {
+        FormulaError::Malformed { text: self.text.to_owned(), at: self.at }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &'static str) -> Result<u64, FormulaError> {
+        Formula::from(text).evaluate(&|name| (name == "k").then_some(8))
+    }
+
+    #[test]
+    fn values_follow_precedence() {
+        assert_eq!(value("2 * k + 2"), Ok(18));
+        assert_eq!(value("2 * (k + 2) / 3"), Ok(6));
+        assert_eq!(value("k - 3 - 2"), Ok(3));
+        assert_eq!(value("ceil_div(k, 3) + pow2(k) + min(k, 3)"), Ok(262));
+    }
+
+    #[test]
+    fn what_has_no_value_says_why() {
+        assert_eq!(value("n"), Err(FormulaError::Unbound("n".into())));
+        assert!(matches!(value("k / 0"), Err(FormulaError::Overflow(_))));
+        assert!(matches!(value("3 - k"), Err(FormulaError::Overflow(_))));
+        for text in ["", "k +", "(k", "min(k)", "k k", "4é"] {
+            assert!(matches!(value(text), Err(FormulaError::Malformed { .. })), "{text}");
+        }
+    }
+
+    #[test]
+    fn polynomials_have_one_form() {
+        let form = |text: &'static str| {
+            Formula::from(text).read().map(|e| e.polynomial(&|name| (name == "w").then_some(2)).to_string())
+        };
+        assert_eq!(form("(k * w + 1) * pixels + pixels"), Ok("2k*pixels+2pixels".into()));
+        assert_eq!(form("3 * f - 3 * f"), Ok("0".into()));
+        assert_eq!(form("ceil_div(pixels, 1024) + 1"), Ok("ceil_div(pixels, 1024)+1".into()));
+        assert_eq!(form("w / 2 * k"), Ok("k".into()));
+    }
+}

@@ -1,0 +1,21 @@
+//! What a row, and so a plan, can say.
+//!
+//! Rows are data: a pass, a resource or a legality rule that cannot be said in these words is a reason to widen the words,
+//! never to compare a key in code.
+
+mod fact;
+mod formula;
+mod pass;
+mod resource;
+mod row;
+mod technique;
+
+pub use fact::Fact;
+pub use formula::{Expression, Formula, FormulaError, Polynomial};
+pub use pass::{
+    Access, Blend, Compare, DepthState, Edit, Host, Instance, Kind, Loads, Objects, Pass, Repeat, Role, Samples,
+    StencilOperation, StencilState, State, Step, Target, Until, Use,
+};
+pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
+pub use row::{Axis, Hazard, Order, Parameter, Row, Soundness, Template};
+pub use technique::{KeepDefault, Technique};

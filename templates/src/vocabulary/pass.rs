@@ -1,0 +1,349 @@
+//! What a technique does: passes and the steps around them.
+
+use super::{Formula, Resource};
+
+/// One step of a frame, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Draw or dispatch.
+    Pass(Pass),
+    /// Set every word of a resource.
+    Clear {
+        /// The resource.
+        resource: String,
+        /// The word.
+        value: u32,
+    },
+    /// Copy one resource over another of the same shape.
+    Copy {
+        /// Read.
+        from: String,
+        /// Written.
+        to: String,
+    },
+    /// Exchange the roles of two resources.
+    Swap(String, String),
+    /// Do the body again and again.
+    Repeat(Repeat),
+    /// The host decides: what it reads must have arrived before the frame goes on.
+    Host(Host),
+}
+
+/// A loop over steps. Inside, the symbol `iteration` counts from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repeat {
+    /// What is repeated.
+    pub body: Vec<Step>,
+    /// When it ends.
+    pub until: Until,
+    /// The bound that holds in any case; reaching it before the end is counted.
+    pub at_most: Formula,
+}
+
+/// When a loop ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Until {
+    /// After this many rounds.
+    Times(Formula),
+    /// When this one-word resource is zero after a round.
+    Zero(String),
+    /// When no sample passed in the pass with this anchor.
+    NoSamples(String),
+}
+
+/// A decision of the host between two submissions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Host {
+    /// The host function, a key of the axis `host`.
+    pub function: String,
+    /// Resources it reads back, with the part it needs: `offsets[pixels]`.
+    pub reads: Vec<String>,
+    /// Symbols it binds.
+    pub sets: Vec<String>,
+}
+
+/// One draw or dispatch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pass {
+    /// The name that edits, manifests and files use.
+    pub anchor: String,
+    /// What is drawn or dispatched.
+    pub kind: Kind,
+    /// The template with the entry points, a key of the axis `pass`.
+    pub skeleton: String,
+    /// Contracts bound otherwise than by the variant's own choice on the axis of that name.
+    pub roles: Vec<Role>,
+    /// The resources it touches, and how.
+    pub uses: Vec<Use>,
+    /// Fixed-function state.
+    pub state: State,
+    /// What is drawn, for a geometry pass.
+    pub objects: Objects,
+}
+
+/// What a pass draws or dispatches.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// The caller's scene.
+    Geometry,
+    /// One triangle over the whole frame.
+    Fullscreen,
+    /// Workgroups.
+    Compute {
+        /// How many along x, y and z.
+        groups: [Formula; 3],
+    },
+}
+
+/// Which objects a geometry pass draws.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Objects {
+    /// All of them.
+    All,
+    /// Those whose box passed the occlusion query of the pass with this anchor.
+    Visible(String),
+}
+
+/// A contract and the template instance that fulfils it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Role {
+    /// The contract, by the name of its axis.
+    pub contract: String,
+    /// Who fulfils it.
+    pub instance: Instance,
+}
+
+/// One use of a template in a program. Two instances of one template have different names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// The row.
+    pub row: String,
+    /// What replaces the contract's name in the names that the template exports, and precedes its private names. An
+    /// instance named after its contract keeps the template's names.
+    pub name: String,
+}
+
+/// How a pass touches a resource: this decides the type it is declared with there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Use {
+    /// The resource.
+    pub resource: String,
+    /// How.
+    pub access: Access,
+    /// What its loads must be.
+    pub loads: Loads,
+}
+
+/// Ways to touch a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read only.
+    Read,
+    /// Read and written, never the same word by two invocations at once.
+    Plain,
+    /// Atomic operations.
+    Atomic,
+    /// Words that the critical section of one pixel reads and writes: coherent where the target has it, else atomic.
+    Coherent,
+    /// Bound as a render target.
+    Attachment,
+    /// Read as a texture.
+    Sampled,
+    /// Read as the arguments of an indirect draw or dispatch.
+    Indirect,
+}
+
+/// What the loads of an atomic resource must be on a target without atomic loads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loads {
+    /// As strong as the atomic load that was checked.
+    Exact,
+    /// A hint only, or made again inside the critical section: a plain load of a volatile word will do.
+    Rechecked,
+}
+
+/// Fixed-function state of a pass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Depth test; `None`: off.
+    pub depth: Option<DepthState>,
+    /// Stencil test; `None`: off.
+    pub stencil: Option<StencilState>,
+    /// Colour targets, in the order of their locations.
+    pub targets: Vec<Target>,
+    /// Samples; `None`: one.
+    pub samples: Option<Samples>,
+}
+
+/// Depth test of a pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthState {
+    /// The attachment.
+    pub resource: String,
+    /// The test.
+    pub compare: Compare,
+    /// Whether passing fragments write their depth.
+    pub write: bool,
+    /// Whether the test must come before the shader.
+    pub early: bool,
+}
+
+/// Stencil test of a pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StencilState {
+    /// The attachment.
+    pub resource: String,
+    /// The test of the reference against the stored value.
+    pub compare: Compare,
+    /// What a failing fragment does.
+    pub fail: StencilOperation,
+    /// What a passing fragment does.
+    pub pass: StencilOperation,
+    /// The reference value.
+    pub reference: Formula,
+}
+
+/// What the stencil test does to the stored value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StencilOperation {
+    /// Leaves it.
+    Keep,
+    /// Sets it to the reference.
+    Replace,
+    /// One less, never below zero.
+    DecrementClamp,
+}
+
+/// Comparisons of depth and stencil tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compare {
+    /// Always passes.
+    Always,
+    /// New < stored.
+    Less,
+    /// New ≤ stored.
+    LessEqual,
+    /// New = stored.
+    Equal,
+    /// New > stored.
+    Greater,
+    /// New ≥ stored.
+    GreaterEqual,
+}
+
+/// One colour target of a pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// The attachment; `output` is the caller's.
+    pub resource: String,
+    /// How the new value meets the old.
+    pub blend: Blend,
+}
+
+/// How a colour target blends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blend {
+    /// The new value stands.
+    Replace,
+    /// new + (1 − new.alpha) · old: premultiplied *over*.
+    Over,
+    /// old + (1 − old.alpha) · new: premultiplied *under*, for front-to-back order.
+    Under,
+    /// The greater, per channel.
+    Max,
+    /// The lesser, per channel.
+    Min,
+    /// The sum.
+    Add,
+}
+
+/// Samples of a pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    /// Per pixel.
+    pub count: Formula,
+    /// Which are written, as a bit mask.
+    pub mask: Formula,
+}
+
+/// A change that the row of another axis makes to a technique's steps. Edits apply in the order of the axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// New steps before an anchor.
+    Before(String, Vec<Step>),
+    /// New steps after an anchor.
+    After(String, Vec<Step>),
+    /// The steps from the first anchor to the second become the body of a loop.
+    Around(String, String, Repeat),
+    /// The fixed-function state of an anchor.
+    SetState(String, State),
+    /// The skeleton of an anchor.
+    SetSkeleton(String, String),
+    /// A contract of an anchor, bound to an instance.
+    SetRole(String, Role),
+    /// A pass touches one resource more.
+    AddUse(String, Use),
+    /// The technique keeps one resource more.
+    AddResource(Resource),
+}
+
+impl Pass {
+    /// A geometry pass.
+    pub fn geometry(anchor: &str, skeleton: &str) -> Self {
+        Self::new(anchor, Kind::Geometry, skeleton)
+    }
+
+    /// A pass over the whole frame.
+    pub fn fullscreen(anchor: &str, skeleton: &str) -> Self {
+        Self::new(anchor, Kind::Fullscreen, skeleton)
+    }
+
+    /// A compute pass of `x` × `y` workgroups.
+    pub fn compute(anchor: &str, skeleton: &str, x: impl Into<Formula>, y: impl Into<Formula>) -> Self {
+        Self::new(anchor, Kind::Compute { groups: [x.into(), y.into(), Formula::from("1")] }, skeleton)
+    }
+
+    fn new(anchor: &str, kind: Kind, skeleton: &str) -> Self {
+        Pass {
+            anchor: anchor.to_owned(),
+            kind,
+            skeleton: skeleton.to_owned(),
+            roles: Vec::new(),
+            uses: Vec::new(),
+            state: State::default(),
+            objects: Objects::All,
+        }
+    }
+
+    /// Touches `resource` by `access`.
+    pub fn uses(mut self, resource: &str, access: Access) -> Self {
+        self.uses.push(Use::new(resource, access));
+        self
+    }
+
+    /// Touches `resource` atomically; its loads are hints, or made again inside the critical section.
+    pub fn uses_rechecked(mut self, resource: &str) -> Self {
+        self.uses.push(Use { loads: Loads::Rechecked, ..Use::new(resource, Access::Atomic) });
+        self
+    }
+
+    /// Binds `contract` to the row `row` under the name `name`.
+    pub fn role(mut self, contract: &str, row: &str, name: &str) -> Self {
+        let instance = Instance { row: row.to_owned(), name: name.to_owned() };
+        self.roles.push(Role { contract: contract.to_owned(), instance });
+        self
+    }
+
+    /// Writes to `resource` with `blend`.
+    pub fn target(mut self, resource: &str, blend: Blend) -> Self {
+        self.state.targets.push(Target { resource: resource.to_owned(), blend });
+        self
+    }
+}
+
+impl Use {
+    /// `resource` by `access`, loads exact.
+    pub fn new(resource: &str, access: Access) -> Self {
+        Use { resource: resource.to_owned(), access, loads: Loads::Exact }
+    }
+}

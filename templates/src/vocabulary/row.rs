@@ -1,0 +1,137 @@
+//! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
+
+use super::{Edit, Fact, Formula, Resource, Step, Use};
+
+/// One way to choose: `storage`, `sync`, `sort`, …
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The word of the language.
+    pub key: &'static str,
+    /// What is chosen.
+    pub summary: &'static str,
+    /// The value taken when neither the description, the preset nor another row's defaults say one.
+    pub default: Option<&'static str>,
+    /// Whether a user chooses on it; the others (`pass`, `shared`) hold texts that plans refer to.
+    pub chosen: bool,
+}
+
+/// One value on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The word of the language, and the stem of the template's file.
+    pub key: String,
+    /// Its axis.
+    pub axis: String,
+    /// What it does, in one line.
+    pub summary: &'static str,
+    /// Where it comes from: paper and section.
+    pub paper: &'static str,
+    /// The template; `None` where the row only changes plans or constants.
+    pub template: Option<Template>,
+    /// What it keeps in memory.
+    pub resources: Vec<Resource>,
+    /// How a pass that calls this row touches the row's own resources. A row with steps says so in its passes instead.
+    pub uses: Vec<Use>,
+    /// The steps of a frame, for the row that a plan starts from (a storage).
+    pub steps: Vec<Step>,
+    /// Contracts that the template calls, by axis.
+    pub calls: Vec<&'static str>,
+    /// What it gives to the other rows.
+    pub offers: Vec<Fact>,
+    /// What it needs from them.
+    pub requires: Vec<Fact>,
+    /// What it changes in the steps of others.
+    pub edits: Vec<Edit>,
+    /// Values on other axes that suit it, taken when nothing else is said.
+    pub defaults: Vec<(&'static str, &'static str)>,
+    /// What a user can set on it.
+    pub parameters: Vec<Parameter>,
+    /// What can go wrong by design.
+    pub hazards: Vec<Hazard>,
+    /// What its safety under concurrency rests on.
+    pub soundness: Soundness,
+    /// The order it imposes on fragments with equal keys, for an axis that says so.
+    pub order: Option<Order>,
+}
+
+/// A whole WGSL file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Template {
+    /// Its path under `templates/`.
+    pub path: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// A number that a user can set on a row; it becomes a generated constant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// The word in `{ name: value }`.
+    pub name: &'static str,
+    /// The generated constant.
+    pub constant: &'static str,
+    /// The value when nothing is said, over the symbols of generation time.
+    pub default: Formula,
+    /// Least and greatest.
+    pub range: (u32, u32),
+    /// What it does.
+    pub summary: &'static str,
+}
+
+/// What can go wrong by design, and is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hazard {
+    /// Its name.
+    pub name: &'static str,
+    /// What happens.
+    pub what: &'static str,
+    /// The hazard exists only while this is not offered.
+    pub unless: Option<Fact>,
+}
+
+/// What the safety of a row under concurrency rests on. The weakest of the chosen rows decides the tier on a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Soundness {
+    /// Nothing concurrent, or single-object atomics and pass borders: T1.
+    Atomics,
+    /// Interlock: T2.
+    Interlock,
+    /// A lock: T3 with fences, T4 without.
+    Lock,
+    /// Nothing: T5.
+    Racy,
+}
+
+/// How fragments with equal keys are ordered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// By their remaining words: the result depends on the multiset of fragments alone.
+    Payload,
+    /// Not at all: whichever comes first.
+    Unordered,
+}
+
+impl Row {
+    /// A row with nothing but its names.
+    pub fn new(axis: &str, key: &str, summary: &'static str, paper: &'static str) -> Self {
+        Row {
+            key: key.to_owned(),
+            axis: axis.to_owned(),
+            summary,
+            paper,
+            template: None,
+            resources: Vec::new(),
+            uses: Vec::new(),
+            steps: Vec::new(),
+            calls: Vec::new(),
+            offers: Vec::new(),
+            requires: Vec::new(),
+            edits: Vec::new(),
+            defaults: Vec::new(),
+            parameters: Vec::new(),
+            hazards: Vec::new(),
+            soundness: Soundness::Atomics,
+            order: None,
+        }
+    }
+}

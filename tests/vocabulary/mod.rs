@@ -1,0 +1,81 @@
+//! Rows that are data only: techniques whose templates are not written yet, planned from the vocabulary alone. What does
+//! not fit here would have to change the vocabulary, and so every row after it.
+
+mod rows;
+
+use fragbuf_codegen::{Plan, plan};
+use fragbuf_model::{Draft, Origin, check};
+use fragbuf_templates::Registry;
+
+fn planned(key: &str) -> Plan {
+    let registry = rows::registry();
+    let draft = Draft::from_technique(key, &Origin::new(key, 1, 1));
+    let variant = check(&draft, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let everything = fragbuf_templates::vocabulary::Fact::ALL;
+    let selection = variant.select(everything).unwrap_or_else(|refusal| panic!("{refusal}"));
+    plan(&variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+#[test]
+fn stencil_routing_fits() {
+    let plan = planned("kb_sr");
+    assert_eq!(plan.words_per_pixel, "3k");
+    insta::assert_snapshot!("kb_sr", plan);
+}
+
+#[test]
+fn exact_regions_fit() {
+    let plan = planned("ab_sb");
+    assert_eq!((plan.words_per_pixel.as_str(), plan.geometry_passes.as_str()), ("2f+2", "2"));
+    insta::assert_snapshot!("ab_sb", plan);
+}
+
+#[test]
+fn dual_peeling_fits() {
+    let plan = planned("dual");
+    assert_eq!(plan.words_per_pixel, "6");
+    insta::assert_snapshot!("dual", plan);
+}
+
+#[test]
+fn array_or_heap_per_pixel_fits() {
+    let plan = planned("kplus_ab_sb");
+    assert_eq!(plan.words_per_pixel, "2f_k+3");
+    insta::assert_snapshot!("kplus_ab_sb", plan);
+}
+
+#[test]
+fn repeated_passes_fit() {
+    let plan = planned("kb_multi");
+    // Catalogue: 2k. The word more is the depth buffer that makes k + 1 passes enough.
+    assert_eq!((plan.words_per_pixel.as_str(), plan.geometry_passes.as_str()), ("2k+1", "k+1"));
+    insta::assert_snapshot!("kb_multi", plan);
+}
+
+#[test]
+fn front_to_back_peeling_fits() {
+    let plan = planned("f2b");
+    assert_eq!(plan.words_per_pixel, "3");
+    insta::assert_snapshot!("f2b", plan);
+}
+
+#[test]
+fn a_host_decision_fits() {
+    insta::assert_snapshot!("predict_k", planned("predict_k"));
+}
+
+#[test]
+fn an_edit_of_an_unknown_pass_is_refused() {
+    use fragbuf_templates::vocabulary::{Edit, Row};
+    let row = Row {
+        template: rows::registry().row("cull", "none").and_then(|row| row.template),
+        edits: vec![Edit::SetSkeleton("no_such_pass".to_owned(), "store".to_owned())],
+        ..Row::new("cull", "none", "", "")
+    };
+    let registry = Registry::builtin().with(row);
+    let draft = Draft::from_technique("ab_ll", &Origin::new("ab_ll", 1, 1));
+    let variant = check(&draft, &registry).unwrap();
+    let selection = variant.select(fragbuf_templates::vocabulary::Fact::ALL).unwrap();
+    let faults = plan(&variant, &selection, &registry).unwrap_err();
+    assert!(faults.to_string().contains("`no_such_pass`"), "{faults}");
+}

@@ -1,0 +1,299 @@
+//! The rows, and the techniques that choose them.
+
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{
+    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row, Samples,
+    Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
+};
+
+pub(super) fn registry() -> Registry {
+    let allocation =
+        Axis { key: "allocation", summary: "who decides how much is kept", default: Some("as_said"), chosen: true };
+    Registry::builtin()
+        .with_axis(allocation, "overflow")
+        .with(Row::new("allocation", "as_said", "what the description says", ""))
+        .with(predict_k())
+        .with(fixed_function())
+        .with(stencil_routed())
+        .with(front_to_back())
+        .with(dual())
+        .with(repeated_array())
+        .with(bounded_regions())
+        .with(Row { template: template_of("max_array"), ..Row::new("storage", "region_array", "in a region: array", "") })
+        .with(Row { template: template_of("max_array"), ..Row::new("storage", "region_heap", "in a region: heap", "") })
+        .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
+        .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
+        .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
+        .with_technique(technique("kb_multi", KeepDefault::Best(8), vec![("storage", "repeated_array")]))
+        .with_technique(technique("kplus_ab_sb", KeepDefault::Best(8), vec![("storage", "bounded_regions")]))
+        .with_technique(technique(
+            "predict_k",
+            KeepDefault::Best(8),
+            vec![("storage", "bounded_regions"), ("allocation", "predict_k")],
+        ))
+}
+
+fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static str)>) -> Technique {
+    Technique { key: key.to_owned(), title: "", paper: "", summary: "", keep, choices }
+}
+
+fn template_of(storage: &str) -> Option<fragbuf_templates::vocabulary::Template> {
+    Registry::builtin().row("storage", storage).and_then(|row| row.template)
+}
+
+fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {
+    Resource::new(name, Element::Texture(format), summary).by("pixel", "pixels")
+}
+
+fn fixed_function() -> Row {
+    Row { requires: vec![Fact::FixedFunction], ..Row::new("sync", "fixed_function", "by tests and blending", "") }
+}
+
+/// Myers & Bavoil 2007: sample i of a pixel takes the i-th fragment.
+fn stencil_routed() -> Row {
+    let per_sample = |name, format, summary| {
+        Resource::new(name, Element::Texture(format), summary).by("sample", "k").by("pixel", "pixels")
+    };
+    let mut route = Pass::fullscreen("route", "route");
+    route.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Always,
+        fail: StencilOperation::Keep,
+        pass: StencilOperation::Replace,
+        reference: "iteration + 2".into(),
+    });
+    route.state.samples = Some(Samples { count: "k".into(), mask: "pow2(iteration)".into() });
+    let mut store = Pass::geometry("store", "store_routed")
+        .target("depths", Blend::Replace)
+        .target("colors", Blend::Replace);
+    store.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Equal,
+        fail: StencilOperation::DecrementClamp,
+        pass: StencilOperation::DecrementClamp,
+        reference: "2".into(),
+    });
+    store.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k) - 1".into() });
+    let mut overflow = Pass::fullscreen("overflow", "count_overflow").uses("overflowed", Access::Atomic);
+    overflow.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Equal,
+        fail: StencilOperation::Keep,
+        pass: StencilOperation::Keep,
+        reference: "0".into(),
+    });
+    overflow.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k - 1)".into() });
+    Row {
+        resources: vec![
+            per_sample("depths", TextureFormat::R32Float, "depth of the sample's fragment"),
+            per_sample("colors", TextureFormat::Rgba8Unorm, "colour of the sample's fragment"),
+            per_sample("routing", TextureFormat::Depth24PlusStencil8, "fragments to go before this sample's, plus two"),
+            Resource::new("overflowed", Element::Word, "pixels whose last sample was passed").cleared(0),
+        ],
+        steps: vec![
+            Step::Repeat(Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() }),
+            Step::Pass(store),
+            Step::Pass(overflow),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("depths", Access::Sampled)
+                    .uses("colors", Access::Sampled)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        offers: vec![Fact::FixedFunction],
+        requires: vec![Fact::SampleMask, Fact::OneWordBesideDepth],
+        defaults: vec![("sync", "fixed_function")],
+        ..Row::new("storage", "stencil_routed", "samples of a multisampled target", "Myers & Bavoil 2007")
+    }
+}
+
+/// Everitt 2001: each round draws what lies behind the last round's nearest.
+fn front_to_back() -> Row {
+    let mut peel = Pass::geometry("peel", "peel").uses("last_depth", Access::Sampled).target("layer", Blend::Replace);
+    peel.state.depth =
+        Some(DepthState { resource: "next_depth".to_owned(), compare: Compare::Less, write: true, early: false });
+    let blend = Pass::fullscreen("blend", "blend").uses("layer", Access::Sampled).target("output", Blend::Under);
+    Row {
+        resources: vec![
+            texture("last_depth", TextureFormat::Depth32Float, "the depth peeled last").cleared(0),
+            texture("next_depth", TextureFormat::Depth32Float, "the depth being peeled"),
+            texture("layer", TextureFormat::Rgba8Unorm, "the layer being peeled"),
+        ],
+        steps: vec![Step::Repeat(Repeat {
+            body: vec![
+                Step::Clear { resource: "next_depth".to_owned(), value: 0x3f80_0000 },
+                Step::Pass(peel),
+                Step::Pass(blend),
+                Step::Swap("last_depth".to_owned(), "next_depth".to_owned()),
+            ],
+            until: Until::NoSamples("peel".to_owned()),
+            at_most: "1024".into(),
+        })],
+        offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
+        defaults: vec![("sync", "fixed_function"), ("sort", "none")],
+        ..Row::new("storage", "front_to_back", "one layer a round", "Everitt 2001")
+    }
+}
+
+/// Bavoil & Myers 2008: nearest and farthest of what is left, by maximum blending of (-z, z).
+fn dual() -> Row {
+    let first = Pass::geometry("bounds", "bounds").target("last_bounds", Blend::Max);
+    let peel = Pass::geometry("peel", "peel_both")
+        .uses("last_bounds", Access::Sampled)
+        .uses("left", Access::Atomic)
+        .target("next_bounds", Blend::Max)
+        .target("front", Blend::Under)
+        .target("back", Blend::Over);
+    let composite = Pass::fullscreen("composite", "composite")
+        .uses("front", Access::Sampled)
+        .uses("back", Access::Sampled)
+        .target("output", Blend::Over);
+    Row {
+        resources: vec![
+            texture("last_bounds", TextureFormat::Rg32Float, "(-nearest, farthest) of what is left")
+                .cleared(0xff80_0000),
+            texture("next_bounds", TextureFormat::Rg32Float, "the same for the next round"),
+            texture("front", TextureFormat::Rgba8Unorm, "layers from the front").cleared(0),
+            texture("back", TextureFormat::Rgba8Unorm, "layers from the back").cleared(0),
+            Resource::new("left", Element::Word, "fragments between the bounds, of this round"),
+        ],
+        steps: vec![
+            Step::Pass(first),
+            Step::Repeat(Repeat {
+                body: vec![
+                    Step::Clear { resource: "left".to_owned(), value: 0 },
+                    Step::Clear { resource: "next_bounds".to_owned(), value: 0xff80_0000 },
+                    Step::Pass(peel),
+                    Step::Swap("last_bounds".to_owned(), "next_bounds".to_owned()),
+                ],
+                until: Until::Zero("left".to_owned()),
+                at_most: "512".into(),
+            }),
+            Step::Pass(composite),
+        ],
+        offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
+        requires: vec![Fact::MinMaxBlend],
+        defaults: vec![("sync", "fixed_function"), ("sort", "none")],
+        ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
+    }
+}
+
+/// Liu et al. 2009: unsynchronised, repeated until a whole pass changes nothing.
+fn repeated_array() -> Row {
+    let mut store = Pass::geometry("store", "store_again")
+        .uses("keys", Access::Atomic)
+        .uses("entries", Access::Atomic)
+        .uses("changed", Access::Atomic);
+    store.state.depth =
+        Some(DepthState { resource: "nearest".to_owned(), compare: Compare::Less, write: true, early: false });
+    Row {
+        resources: vec![
+            Resource::new("keys", Element::Word, "keys in no order").by("slot", "k").by("pixel", "pixels"),
+            Resource::new("entries", Element::Beside, "payloads").by("slot", "k").by("pixel", "pixels"),
+            texture("nearest", TextureFormat::Depth32Float, "turns away what a pass has seen nearer"),
+            Resource::new("changed", Element::Word, "entries that this pass changed"),
+        ],
+        steps: vec![
+            Step::Pass(
+                Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
+                    .uses("keys", Access::Plain),
+            ),
+            Step::Repeat(Repeat {
+                body: vec![
+                    Step::Clear { resource: "changed".to_owned(), value: 0 },
+                    Step::Clear { resource: "nearest".to_owned(), value: 0x3f80_0000 },
+                    Step::Pass(store),
+                ],
+                until: Until::Zero("changed".to_owned()),
+                at_most: "k + 1".into(),
+            }),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("keys", Access::Read)
+                    .uses("entries", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        offers: vec![Fact::KeepsBest, Fact::SurvivesRaces, Fact::CanReplace],
+        defaults: vec![("sync", "none")],
+        soundness: Soundness::Racy,
+        ..Row::new("storage", "repeated_array", "k entries, repaired by the next pass", "Liu et al. 2009")
+    }
+}
+
+/// K15 Alg. 3: regions of min(f, k); array or heap by the pixel.
+fn bounded_regions() -> Row {
+    let scan = |anchor: &str, groups: &'static str| {
+        Step::Pass(
+            Pass::compute(anchor, anchor, groups, "1")
+                .uses("counts", Access::Read)
+                .uses("offsets", Access::Plain)
+                .uses("block_sums", Access::Plain),
+        )
+    };
+    Row {
+        resources: vec![
+            Resource::new("counts", Element::Word, "fragments of the pixel; then its lock and how many are in")
+                .by("pixel", "pixels")
+                .cleared(0),
+            Resource::new("offsets", Element::Word, "where the pixel's region begins").by("pixel", "pixels + 1"),
+            Resource::new("bounds", Element::Word, "key of the worst kept fragment, EMPTY until the region is full")
+                .by("pixel", "pixels"),
+            Resource::new("block_sums", Element::Word, "sums of blocks").by("block", "ceil_div(pixels, 1024)"),
+            Resource::new("regions", Element::Entry, "the fragments, pixel after pixel").by("place", "kept"),
+        ],
+        steps: vec![
+            Step::Pass(Pass::geometry("count", "count").uses("counts", Access::Atomic)),
+            scan("scan_blocks", "ceil_div(pixels, 1024)"),
+            scan("scan_sums", "1"),
+            scan("scan_add", "ceil_div(pixels, 1024)"),
+            Step::Host(Host {
+                function: "allocate".to_owned(),
+                reads: vec!["offsets[pixels]".to_owned()],
+                sets: vec!["kept".to_owned()],
+            }),
+            Step::Pass(
+                Pass::geometry("store", "store_by_size")
+                    .role("array", "region_array", "array")
+                    .role("heap", "region_heap", "heap")
+                    .uses("counts", Access::Atomic)
+                    .uses("offsets", Access::Read)
+                    .uses_rechecked("bounds")
+                    .uses("regions", Access::Coherent),
+            ),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("offsets", Access::Read)
+                    .uses("regions", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        offers: vec![Fact::KeepsBest, Fact::Counted, Fact::BoundAnyInstant, Fact::OwnAtomics],
+        defaults: vec![("sync", "slot_counter"), ("cull", "early")],
+        soundness: Soundness::Lock,
+        ..Row::new("storage", "bounded_regions", "regions of min(f, k) per pixel", "K15 Alg. 3")
+    }
+}
+
+/// K15 Eq. 4-7: k from a histogram of depth complexity, a memory budget and a hit ratio.
+fn predict_k() -> Row {
+    let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 256)", "1")
+        .uses("counts", Access::Read)
+        .uses("histogram", Access::Atomic);
+    let decide = Host {
+        function: "predict_k".to_owned(),
+        reads: vec!["histogram".to_owned()],
+        sets: vec!["k".to_owned()],
+    };
+    Row {
+        edits: vec![
+            Edit::AddResource(
+                Resource::new("histogram", Element::Word, "pixels by fragment count").by("bin", "1024").cleared(0),
+            ),
+            Edit::After("count".to_owned(), vec![Step::Pass(histogram), Step::Host(decide)]),
+        ],
+        requires: vec![Fact::Counted],
+        ..Row::new("allocation", "predict_k", "k from a budget and a hit ratio", "K15 Eq. 4-7")
+    }
+}
