@@ -15,7 +15,7 @@ const MEMORY_SCOPE: &str = "GL_KHR_memory_scope_semantics";
 
 impl FunctionPrinter<'_, '_> {
     fn root_global(&self, pointer: Handle<Expression>) -> Option<Handle<GlobalVariable>> {
-        match root(self.function, pointer) {
+        match root(self.printer.module, self.function, pointer) {
             Some(Place::Global(global)) => Some(global),
             _ => None,
         }

@@ -3,7 +3,7 @@
 //! In: expressions and statements. Out: for each its [`Footprint`]; two steps whose footprints do not conflict may trade
 //! places. Textures and uniforms never appear: nothing writes them while a shader reads them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{
     AddressSpace, Block, Expression, Function, GlobalVariable, Handle, LocalVariable, Module, Statement, StorageAccess, TypeInner,
@@ -12,13 +12,16 @@ use naga::{
 use crate::Marker;
 
 /// A piece of memory that is read or written as one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
     Local(Handle<LocalVariable>),
     /// What a pointer parameter points to.
     Parameter(u32),
+    /// A global of this invocation alone.
+    Private(Handle<GlobalVariable>),
+    /// A global that other invocations see.
     Global(Handle<GlobalVariable>),
-    /// Any global: what calls, atomics and fences may touch or order.
+    /// All globals that other invocations see: what atomics and fences order.
     Memory,
 }
 
@@ -69,12 +72,15 @@ impl Footprint {
 }
 
 /// The variable that a pointer points into.
-pub fn root(function: &Function, mut pointer: Handle<Expression>) -> Option<Place> {
+pub fn root(module: &Module, function: &Function, mut pointer: Handle<Expression>) -> Option<Place> {
     loop {
         match function.expressions[pointer] {
             Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => pointer = base,
             Expression::LocalVariable(local) => return Some(Place::Local(local)),
-            Expression::GlobalVariable(global) => return Some(Place::Global(global)),
+            Expression::GlobalVariable(global) => {
+                let private = module.global_variables[global].space == AddressSpace::Private;
+                return Some(if private { Place::Private(global) } else { Place::Global(global) });
+            }
             Expression::FunctionArgument(index) => return Some(Place::Parameter(index)),
             _ => return None,
         }
@@ -94,7 +100,7 @@ fn is_mutable(module: &Module, place: Place) -> bool {
 /// What evaluating an expression touches, its operands apart.
 pub fn of_expression(module: &Module, function: &Function, expression: Handle<Expression>) -> Footprint {
     match function.expressions[expression] {
-        Expression::Load { pointer } => match root(function, pointer) {
+        Expression::Load { pointer } => match root(module, function, pointer) {
             Some(place) if is_mutable(module, place) => Footprint::reading(place),
             Some(_) => Footprint::default(),
             None => Footprint::reading(Place::Memory),
@@ -141,16 +147,12 @@ fn of_body(module: &Module, function: &Function, calls: &Calls) -> Footprint {
             whole.join(&of_statement(module, function, statement, calls));
         }
     });
-    // To the caller, locals do not exist, parameters are told by the arguments, and which global it is matters little.
+    // The caller cannot see locals, and knows better what parameters point to.
     let outward = |places: &[Place]| {
-        let touched = places.iter().any(|place| matches!(place, Place::Global(_) | Place::Memory));
-        if touched { vec![Place::Memory] } else { Vec::new() }
+        let seen: BTreeSet<Place> = places.iter().copied().filter(|place| !matches!(place, Place::Local(_))).collect();
+        seen.into_iter().collect()
     };
-    let parameters = |places: &[Place]| places.iter().copied().filter(|place| matches!(place, Place::Parameter(_))).collect::<Vec<_>>();
-    let mut footprint = Footprint { reads: outward(&whole.reads), writes: outward(&whole.writes), uniform: whole.uniform };
-    footprint.reads.extend(parameters(&whole.reads));
-    footprint.writes.extend(parameters(&whole.writes));
-    footprint
+    Footprint { reads: outward(&whole.reads), writes: outward(&whole.writes), uniform: whole.uniform }
 }
 
 /// Visits every statement, outer ones first.
@@ -178,7 +180,7 @@ pub fn inner_blocks(statement: &Statement) -> Vec<&Block> {
 pub fn of_statement(module: &Module, function: &Function, statement: &Statement, calls: &Calls) -> Footprint {
     match *statement {
         Statement::Store { pointer, .. } => {
-            let place = root(function, pointer).unwrap_or(Place::Memory);
+            let place = root(module, function, pointer).unwrap_or(Place::Memory);
             let inner = &function.expressions[pointer];
             // Storing to an atomic is ordered like every other atomic operation, below.
             let atomic = !matches!(inner, Expression::LocalVariable(_)) && is_atomic(module, function, pointer);
@@ -188,7 +190,7 @@ pub fn of_statement(module: &Module, function: &Function, statement: &Statement,
             let Some(summary) = calls.get(&callee) else { return Footprint::writing(Place::Memory) };
             let bind = |places: &[Place]| {
                 let bound = |place: &Place| match *place {
-                    Place::Parameter(index) => arguments.get(index as usize).and_then(|pointer| root(function, *pointer)).unwrap_or(Place::Memory),
+                    Place::Parameter(index) => arguments.get(index as usize).and_then(|pointer| root(module, function, *pointer)).unwrap_or(Place::Memory),
                     other => other,
                 };
                 places.iter().map(bound).collect::<Vec<_>>()

@@ -52,7 +52,7 @@ fn mentioned(order: &Order, step: usize) -> BTreeSet<Handle<LocalVariable>> {
         _ => Vec::new(),
     };
     for pointer in pointers.into_iter().filter(|pointer| order.is_pointer(*pointer)) {
-        if let Some(Place::Local(local)) = footprint::root(order.function, pointer) {
+        if let Some(Place::Local(local)) = footprint::root(order.module, order.function, pointer) {
             locals.insert(local);
         }
     }

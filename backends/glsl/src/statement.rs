@@ -216,8 +216,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 format!("{name}_result")
             }
             Expression::AtomicResult { .. } => "old_value".to_owned(),
-            Expression::Load { pointer } => match crate::footprint::root(self.function, pointer) {
-                Some(crate::footprint::Place::Global(global)) => {
+            Expression::Load { pointer } => match crate::footprint::root(self.printer.module, self.function, pointer) {
+                Some(crate::footprint::Place::Global(global) | crate::footprint::Place::Private(global)) => {
                     format!("{}_value", self.printer.module.global_variables[global].name.as_deref().unwrap_or("loaded"))
                 }
                 Some(crate::footprint::Place::Local(local)) => {

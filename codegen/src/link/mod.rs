@@ -39,10 +39,11 @@ impl Source {
         Source { name: template.path.to_owned(), text: template.text.to_owned(), origins: None, renames }
     }
 
-    /// A user's function.
+    /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
+    /// lies.
     pub(crate) fn user(function: &UserFunction) -> Self {
         Source {
-            name: function.origin.file.to_string(),
+            name: "description".to_owned(),
             text: function.wgsl.clone(),
             origins: Some(function.lines.clone()),
             renames: Renames::default(),
@@ -74,9 +75,10 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
     let mut current = None;
     for &id in &reached {
         let (source, item) = &items[id];
-        if current != Some(*source) {
+        let name = sources[*source].name.as_str();
+        if current != Some(name) {
             writer.banner(&sources[*source]);
-            current = Some(*source);
+            current = Some(name);
         }
         writer.item(&sources[*source], item, &prefixed);
     }

@@ -141,7 +141,7 @@ pub(crate) struct For {
 /// What a loop goes through.
 #[derive(Debug)]
 pub(crate) enum Over {
-    Range { variable: Option<VariableId>, kind: Type, from: Expr, to: Expr, inclusive: bool, reversed: bool },
+    Range { variable: Option<VariableId>, kind: Type, from: Box<Expr>, to: Box<Expr>, inclusive: bool, reversed: bool },
     Fragments { index: Option<VariableId>, fragment: Option<VariableId>, reversed: bool },
 }
 

@@ -62,7 +62,7 @@ impl Checker<'_, '_, '_> {
             return None;
         }
         let variable = self.loop_name(pattern, kind)?;
-        Some(Over::Range { variable, kind, from, to, inclusive, reversed })
+        Some(Over::Range { variable, kind, from: Box::new(from), to: Box::new(to), inclusive, reversed })
     }
 
     fn range_type(&mut self, from: &Expr, to: &Expr) -> Option<Type> {
