@@ -109,6 +109,7 @@ impl Checker<'_, '_, '_> {
         let mut existing: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
         existing.extend(["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"]);
         let hint = match near::nearest(name, &existing) {
+            _ if self.lookup(name).is_some() => format!("`{name}` is a variable: write it without `(…)`"),
             Some(near) => format!("did you mean `{near}`?"),
             None if methods::find(Type::F32, name).is_some() => format!("it is a method: write `x.{name}()`"),
             None => format!("declare it in the buffer: `fn {} (x: f32) -> f32 {{ … }}`", last_word(name)),
@@ -176,7 +177,7 @@ impl Checker<'_, '_, '_> {
         }
         let existing: Vec<&str> = methods::names_on(kind).collect();
         let hint = match existing.is_empty() {
-            true => format!("{of} has no methods here; use its fields"),
+            true => format!("{of} has no methods here: use operators or fields"),
             false => near::hint(name, &existing),
         };
         self.report.error(codes::UNKNOWN_METHOD, place, format!("{of} has no method `{name}` here"), hint);
@@ -199,7 +200,9 @@ impl Checker<'_, '_, '_> {
                 let message = format!("the list of fragments has no method `{name}` here");
                 let hint = match near::nearest(name, &["len", "is_empty"]) {
                     Some(near) => format!("did you mean `{near}`?"),
-                    None => "there are `len()` and `is_empty()`; go through it with `for f in fragments { … }`".to_string(),
+                    None => {
+                        "there are `len()` and `is_empty()`; go through it with `for f in fragments { … }`".to_string()
+                    }
                 };
                 self.report.error(codes::UNKNOWN_METHOD, place, message, hint);
                 Expr::error(origin)
