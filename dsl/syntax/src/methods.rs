@@ -18,7 +18,7 @@ pub(crate) struct Method {
     pub gives: Slot,
     pub wgsl: Spelling,
     /// What to know of its meaning; the rows that say nothing mean the same to the bit or to WGSL's accuracy.
-    #[allow(dead_code, reason = "documentation that the tests print")]
+    #[expect(dead_code, reason = "for readers of the table")]
     pub note: &'static str,
 }
 

@@ -21,7 +21,8 @@ impl Random {
 
 fn texts(directory: &str) -> Vec<String> {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(directory);
-    let mut paths: Vec<_> = fs::read_dir(directory).expect("there").map(|entry| entry.expect("readable").path()).collect();
+    let mut paths: Vec<_> =
+        fs::read_dir(directory).expect("there").map(|entry| entry.expect("readable").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "fragbuf"));
     paths.sort();
     paths.iter().map(|path| fs::read_to_string(path).expect("readable")).collect()
@@ -70,22 +71,30 @@ fn truncated_at_every_letter() {
     }
 }
 
+/// The text with its open brackets closed, and without those that close nothing.
+fn closed(text: &str) -> String {
+    let mut open = Vec::new();
+    let mut result = String::new();
+    for letter in text.chars() {
+        match letter {
+            '(' => open.push(')'),
+            '{' => open.push('}'),
+            '[' => open.push(']'),
+            ')' | '}' | ']' if open.last() != Some(&letter) => continue,
+            ')' | '}' | ']' => drop(open.pop()),
+            _ => {}
+        }
+        result.push(letter);
+    }
+    result.extend(open.into_iter().rev());
+    result
+}
+
 #[test]
 fn truncated_and_closed_again() {
     for text in texts("good") {
         for (index, _) in text.char_indices().step_by(3) {
-            let mut open = Vec::new();
-            for letter in text[..index].chars() {
-                match letter {
-                    '(' => open.push(')'),
-                    '{' => open.push('}'),
-                    '[' => open.push(']'),
-                    ')' | '}' | ']' => drop(open.pop()),
-                    _ => {}
-                }
-            }
-            let closing: String = open.into_iter().rev().collect();
-            read(&format!("{}{closing}", &text[..index]));
+            read(&closed(&text[..index]));
         }
     }
 }
@@ -113,17 +122,21 @@ fn tokens_deleted_doubled_and_swapped() {
             }
         }
         read(&mutated.concat());
+        read(&closed(&mutated.concat()));
     }
 }
 
 #[test]
 fn words_in_any_order() {
     let mut random = Random(42);
-    let words: Vec<String> = texts("good").iter().flat_map(|text| tokens(text)).filter(|token| token != " ").collect();
-    for _ in 0..1500 {
-        let body: Vec<&str> = (0..random.next(60)).map(|_| words[random.next(words.len())].as_str()).collect();
-        read(&format!("buffer B {{ {} }}", body.join(" ")));
-        read(&format!("buffer B {{ resolve |fragments, u| {{ {} }} }}", body.join(" ")));
+    let words: Vec<String> =
+        texts("good").iter().flat_map(|text| tokens(text)).filter(|token| !token.trim().is_empty()).collect();
+    for _ in 0..4000 {
+        let body: Vec<&str> = (0..random.next(40)).map(|_| words[random.next(words.len())].as_str()).collect();
+        let body = closed(&body.join(" "));
+        read(&format!("buffer B {{ {body} }}"));
+        read(&format!("buffer B {{ resolve |fragments, u| {{ {body} }} }}"));
+        read(&format!("buffer B {{ keep 8 least |f, u| {body} ; }}"));
     }
 }
 
@@ -175,7 +188,7 @@ fn nothing_nests_too_deep() {
 fn long_chains_of_helpers() {
     let count = 2_000;
     let functions: String =
-        (0..count).map(|index| format!("fn f{index}(x: f32) -> f32 {{ f{}(x) }}\n", (index + 1) % count)).collect();
+        (0..count).map(|index| format!("fn g{index}(x: f32) -> f32 {{ g{}(x) }}\n", (index + 1) % count)).collect();
     let parsed = parse(&format!("buffer B {{ {functions} }}"), "chain");
     assert_eq!(parsed.diagnostics.iter().count(), 1, "one ring of calls");
 }

@@ -85,11 +85,13 @@ fn glass_as_a_draft() {
     let draft = draft("glass");
     assert_eq!(draft.name.value, "Glass");
     assert_eq!(draft.preset.map(|preset| preset.value).as_deref(), Some("kplus_array"));
-    let attributes: Vec<_> = draft.attributes.iter().map(|row| (row.name.value.as_str(), row.format.value.keyword())).collect();
+    let attributes: Vec<_> =
+        draft.attributes.iter().map(|row| (row.name.value.as_str(), row.format.value.keyword())).collect();
     let expected =
         [("color", "rgba8"), ("depth", "f32"), ("id", "u32"), ("normal", "octahedral"), ("velocity", "vec3")];
     assert_eq!(attributes, expected);
-    let uniforms: Vec<_> = draft.uniforms.iter().map(|row| (row.name.value.as_str(), row.kind.value.keyword())).collect();
+    let uniforms: Vec<_> =
+        draft.uniforms.iter().map(|row| (row.name.value.as_str(), row.kind.value.keyword())).collect();
     assert_eq!(uniforms, [("cut", "f32"), ("eye", "vec3"), ("steps", "u32")]);
     let keep = draft.keep.expect("it keeps");
     assert_eq!(keep.count.value, KeepCount::AtMost(8));
@@ -106,7 +108,8 @@ fn choices_as_written() {
     let sync = &draft.choices[1].alternatives;
     let values: Vec<&str> = sync.iter().map(|alternative| alternative.value.value.as_str()).collect();
     assert_eq!(values, ["interlock", "spin_lock", "none"]);
-    let options: Vec<_> = sync[1].options.iter().map(|(name, value)| (name.value.as_str(), value.value.clone())).collect();
+    let options: Vec<_> =
+        sync[1].options.iter().map(|(name, value)| (name.value.as_str(), value.value.clone())).collect();
     assert_eq!(options, [("limit", OptionValue::Number(4096)), ("order", OptionValue::Word("front".to_string()))]);
     assert_eq!((sync[1].value.origin.line, sync[1].value.origin.column, sync[1].value.origin.length), (4, 26, 9));
 }

@@ -42,7 +42,8 @@ fn taken_names_change_and_others_stay() {
     for name in taken() {
         assert_eq!(mangled(name), format!("{name}_"));
     }
-    for name in ["f", "depth", "color", "id", "normal", "velocity", "x", "_x", "Glass", "sum", "weight", "min_", "a__b"] {
+    for name in ["f", "depth", "color", "id", "normal", "velocity", "x", "_x", "Glass", "sum", "weight", "min_", "a__b"]
+    {
         let expected = if name.ends_with('_') { format!("{name}_") } else { name.to_string() };
         assert_eq!(mangled(name), expected);
     }
@@ -50,7 +51,8 @@ fn taken_names_change_and_others_stay() {
 
 #[test]
 fn different_names_stay_different() {
-    let stems: Vec<&str> = taken().into_iter().chain(["x", "_", "__", "__x", "_x", "rust", "rust_", "rust__x", "0"]).collect();
+    let stems: Vec<&str> =
+        taken().into_iter().chain(["x", "_", "__", "__x", "_x", "rust", "rust_", "rust__x", "0"]).collect();
     let mut spelled: BTreeMap<String, String> = BTreeMap::new();
     for stem in stems {
         for prefix in ["", "_", "__", "rust", "rust_", "user_"] {

@@ -30,6 +30,10 @@ impl Checker<'_, '_, '_> {
         let place = self.at(call.func.span());
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         match words.as_slice() {
+            [name] if self.hides_function(name) => {
+                let message = format!("the variable `{name}` hides the function `{name}`");
+                self.refuse(origin, message, "rename one of them")
+            }
             ["vec2"] => self.vector(2, &call.args, origin),
             ["vec3"] => self.vector(3, &call.args, origin),
             ["vec4"] => self.vector(4, &call.args, origin),
@@ -37,6 +41,11 @@ impl Checker<'_, '_, '_> {
             [owner, name] => self.associated(owner, name, &call.args, origin, &place),
             _ => self.unknown_function(&words.join("::"), &call.args, origin, &place),
         }
+    }
+
+    fn hides_function(&self, name: &str) -> bool {
+        let function = self.environment.helpers.iter().any(|helper| helper.name == name);
+        (function || matches!(name, "vec2" | "vec3" | "vec4")) && self.lookup(name).is_some()
     }
 
     fn vector(&mut self, size: u8, arguments: &Arguments, origin: Origin) -> Expr {
@@ -51,10 +60,6 @@ impl Checker<'_, '_, '_> {
             return self.unknown_function(name, arguments, origin, place);
         };
         let Some(helper) = environment.helpers.get(index) else { return Expr::error(origin) };
-        if self.lookup(name).is_some() {
-            let message = format!("the variable `{name}` hides the function `{name}`");
-            return self.refuse(origin, message, "rename one of them");
-        }
         self.uses.push(Use::Helper(index, origin.clone()));
         if arguments.len() != helper.parameters.len() {
             let (message, hint) = count_words(name, helper.parameters.len(), arguments.len());
