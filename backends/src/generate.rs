@@ -150,7 +150,9 @@ fn emit(
 fn share(files: &mut [File]) {
     for index in 1..files.len() {
         let (before, rest) = files.split_at_mut(index);
-        if let Some(first) = before.iter().find(|file| file.bytes == rest[0].bytes && suffix(&file.path) == suffix(&rest[0].path)) {
+        if let Some(first) =
+            before.iter().find(|file| file.bytes == rest[0].bytes && suffix(&file.path) == suffix(&rest[0].path))
+        {
             rest[0].path.clone_from(&first.path);
         }
     }

@@ -2,7 +2,6 @@
 
 mod instances;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, codes};
@@ -169,10 +168,8 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
         templates.push(instances::skeleton(skeleton, registry)?);
     }
-    let mut wanted = BTreeSet::new();
-    templates.iter().for_each(|source| source.mentions(&mut wanted));
-    let mut sources = emit::sources(plan, pass, linking, &|name| wanted.contains(name));
-    sources.extend(templates.iter().cloned());
+    let mut sources = emit::sources(plan, pass, linking, &|name| templates.iter().any(|source| source.mentions(name)));
+    sources.extend(templates);
     let export = format!("{}_fragment", pass.skeleton);
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };

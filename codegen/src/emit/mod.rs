@@ -13,7 +13,8 @@ use crate::{Linking, Plan};
 /// The generated sources of one pass. `wanted` says which names the templates mention; declarations that nothing reaches
 /// are dropped by the linker.
 pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, wanted: &dyn Fn(&str) -> bool) -> Vec<Source> {
-    let mut sources = vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
+    let mut sources =
+        vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
     if pass.kind == Kind::Geometry {
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }

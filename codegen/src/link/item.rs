@@ -109,7 +109,9 @@ fn item_length<'a>(tokens: impl Iterator<Item = Token<'a>>) -> Option<usize> {
 }
 
 fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
-    let keyword = tokens.iter().position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
+    let keyword = tokens
+        .iter()
+        .position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
     let mut rest = tokens[keyword + 1..].iter();
     let mut next = rest.next()?;
     if next.text == "<" {
@@ -155,6 +157,7 @@ fn stage(tokens: &[Token<'_>]) -> Option<Stage> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 
