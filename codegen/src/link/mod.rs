@@ -195,13 +195,14 @@ impl Writer {
         }
         self.text.push_str(&prefixed.apply(item.text));
         self.text.push('\n');
-        for at in (item.first_line..).take(item.text.lines().count()) {
-            self.lines.push(match &source.origins {
-                Some(origins) => {
-                    origins.get(at - 1).map_or(LineOrigin::None, |origin| LineOrigin::User(origin.clone()))
+        let lines = item.text.lines().count();
+        match &source.origins {
+            Some(origins) => {
+                for at in (item.first_line..).take(lines) {
+                    self.lines.run(1, origins.get(at - 1).map_or(LineOrigin::None, |o| LineOrigin::User(o.clone())));
                 }
-                None => LineOrigin::Source { name: source.name.clone(), line: at },
-            });
+            }
+            None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
         }
         if !item.is_short {
             self.blank_line();
