@@ -188,7 +188,8 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
         templates.push(instances::skeleton(skeleton, registry)?);
     }
-    let mut sources = emit::sources(plan, pass, linking, &|name| templates.iter().any(|source| source.mentions(name)));
+    let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
+    let mut sources = emit::sources(plan, pass, linking, &atomics);
     sources.extend(templates);
     let export = format!("{}_fragment", pass.skeleton);
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };

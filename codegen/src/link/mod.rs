@@ -46,10 +46,14 @@ impl Source {
         Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(function.lines.clone()) }
     }
 
-    /// Whether one of its declarations mentions `name`.
-    pub(crate) fn mentions(&self, name: &str) -> bool {
-        // A text that does not parse mentions nothing here; linking says what is wrong with it.
-        self.items().is_ok_and(|items| items.as_slice().iter().any(|item| item.mentions.binary_search(&name).is_ok()))
+    /// The atomic accessors that its declarations mention: buffers offer many, and few are ever used.
+    pub(crate) fn atomic_accessors(&self) -> Vec<String> {
+        match self.items() {
+            Ok(Items::Kept(text)) => text.atomic_accessors.iter().map(|name| (*name).to_owned()).collect(),
+            Ok(Items::Parsed(items)) => atomic_accessors(&items).into_iter().map(str::to_owned).collect(),
+            // Linking says what is wrong with it.
+            Err(_) => Vec::new(),
+        }
     }
 
     fn items(&self) -> Result<Items<'_>, String> {
@@ -63,32 +67,41 @@ impl Source {
 
 /// The declarations of a source: a template's are found once and kept.
 enum Items<'a> {
-    Kept(Arc<Vec<Item<'static>>>),
+    Kept(Arc<KeptText>),
     Parsed(Vec<Item<'a>>),
 }
 
 impl Items<'_> {
     fn as_slice(&self) -> &[Item<'_>] {
         match self {
-            Items::Kept(items) => items,
+            Items::Kept(text) => &text.items,
             Items::Parsed(items) => items,
         }
     }
 }
 
-/// The declarations of a text that lives as long as the program does.
-fn kept_items(text: &'static str) -> Result<Arc<Vec<Item<'static>>>, usize> {
-    type Kept = BTreeMap<(usize, usize), Arc<Vec<Item<'static>>>>;
-    static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
+/// What is known of a text that lives as long as the program does.
+struct KeptText {
+    items: Vec<Item<'static>>,
+    atomic_accessors: Vec<&'static str>,
+}
+
+fn kept_items(text: &'static str) -> Result<Arc<KeptText>, usize> {
+    static KEPT: LazyLock<Mutex<BTreeMap<(usize, usize), Arc<KeptText>>>> = LazyLock::new(Mutex::default);
     let key = (text.as_ptr() as usize, text.len());
     // A thread that panicked while holding the lock left only whole entries behind.
     let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some(items) = kept.get(&key) {
-        return Ok(items.clone());
+    if let Some(text) = kept.get(&key) {
+        return Ok(text.clone());
     }
-    let items = Arc::new(item::parse(text)?);
-    kept.insert(key, items.clone());
-    Ok(items)
+    let items = item::parse(text)?;
+    let known = Arc::new(KeptText { atomic_accessors: atomic_accessors(&items), items });
+    kept.insert(key, known.clone());
+    Ok(known)
+}
+
+fn atomic_accessors<'a>(items: &[Item<'a>]) -> Vec<&'a str> {
+    items.iter().flat_map(|item| item.mentions.iter().copied()).filter(|name| name.contains("_atomic_")).collect()
 }
 
 /// What linking yields.
