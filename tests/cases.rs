@@ -71,6 +71,7 @@ pub fn named() -> Vec<Case> {
                 ("k", "all"),
             ],
         ),
+        ("interlock_else_lock", technique("kplus_array"), vec![("sync", "interlock else spin_lock")]),
         (
             "locked_sorted_array",
             technique("kb"),

@@ -66,7 +66,7 @@ fn every_combination_generates_or_is_refused_with_a_way_out() {
                     Ok(variant) => {
                         accepted += 1;
                         let generation = generated(&variant);
-                        assert_eq!(generation.refusals.len(), 0);
+                        assert!(!generation.plans.is_empty(), "some target can express whatever is accepted");
                         let files = generation.files;
                         if covers_more(payload, choices, &mut covered) {
                             covering.extend(files.iter().cloned());

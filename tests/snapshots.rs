@@ -9,7 +9,10 @@ fn plans_and_wgsl() {
     for (name, description, set) in named() {
         let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
         let generation = generated(&variant);
-        insta::assert_snapshot!(format!("{name}.plan"), generation.plans[0].plan);
+        for planned in &generation.plans {
+            let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
+            insta::assert_snapshot!(format!("{name}.plan.{}", targets[0]), planned.plan);
+        }
         for file in generation.files.iter().filter(|file| file.target == "wgsl") {
             let text = String::from_utf8(file.bytes.clone()).unwrap();
             insta::assert_snapshot!(format!("{name}.{}.wgsl", file.pass), text);
@@ -19,9 +22,12 @@ fn plans_and_wgsl() {
 
 #[test]
 fn glsl() {
-    for (case, passes) in
-        [("kplus_array", ["store", "resolve"]), ("custom", ["store", "resolve"]), ("ab_sb", ["scan_blocks", "store"])]
-    {
+    for (case, passes) in [
+        ("kplus_array", ["store", "resolve"]),
+        ("custom", ["store", "resolve"]),
+        ("ab_sb", ["scan_blocks", "store"]),
+        ("interlock_else_lock", ["store", "store"]),
+    ] {
         let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
         let generation = generated(&checked(&description, &set).unwrap());
         for file in generation.files.iter().filter(|file| passes.contains(&file.pass.as_str())) {

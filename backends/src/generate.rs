@@ -79,7 +79,9 @@ fn plan_for(
         generation.refusals.push((target, refusal));
         return Ok(None);
     }
-    let selection = match variant.select(target.offers) {
+    let mut offers = target.offers.to_vec();
+    offers.extend((request.form == Form::Program).then_some(Fact::OwnEntryPoints));
+    let selection = match variant.select(&offers) {
         Ok(selection) => selection,
         Err(refusal) => {
             generation.refusals.push((target, refusal));

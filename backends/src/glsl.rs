@@ -3,8 +3,16 @@
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
 
-use crate::fence::MEMORY_FENCE;
+use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MEMORY_FENCE};
 use crate::target::{Emission, File, stage_name, stage_suffix};
+
+/// `templates/shared/markers.wgsl`, in GLSL's words.
+const MARKERS: [(&str, Marker); 4] = [
+    (MEMORY_FENCE, Marker::MemoryFence),
+    (HELPER_LANE, Marker::HelperLane),
+    (CRITICAL_BEGIN, Marker::CriticalBegin),
+    (CRITICAL_END, Marker::CriticalEnd),
+];
 
 pub(crate) fn emit_opengl(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     emit(emission, Dialect::OpenGl450)
@@ -32,8 +40,9 @@ fn emit(emission: &Emission<'_>, dialect: Dialect) -> Result<Vec<File>, String> 
 fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<String, String> {
     let checked = emission.checked;
     let source = &checked.pass().text;
-    let fence = format!("{}{MEMORY_FENCE}", emission.prefix);
-    let helper = format!("{}is_helper_lane", emission.prefix);
+    let markers: Vec<(String, Marker)> =
+        MARKERS.iter().map(|(name, marker)| (format!("{}{name}", emission.prefix), *marker)).collect();
+    let markers: Vec<(&str, Marker)> = markers.iter().map(|(name, marker)| (name.as_str(), *marker)).collect();
     let plain_loads: Vec<&str> = emission.rechecked.iter().map(String::as_str).collect();
     let notes = &checked.pass().notes;
     let header = match unit {
@@ -43,7 +52,7 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
     let options = Options {
         dialect,
         header: &header,
-        markers: &[(&fence, Marker::MemoryFence), (&helper, Marker::HelperLane)],
+        markers: &markers,
         bindings: &|group, binding| slot(dialect, group, binding),
         plain_loads: &plain_loads,
     };

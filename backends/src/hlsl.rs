@@ -2,7 +2,7 @@
 
 use naga::back::hlsl;
 
-use crate::fence::with_fences;
+use crate::markers::with_fences;
 use crate::target::{Emission, File};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {

@@ -8,11 +8,11 @@
 //! read WGSL for its meaning and never replace strings in naga's output.
 
 mod check;
-mod fence;
 mod generate;
 mod glsl;
 mod hlsl;
 mod manifest;
+mod markers;
 mod msl;
 mod spirv;
 mod target;

@@ -1,12 +1,14 @@
-//! SPIR-V by naga, with fences in place of their markers. One module per entry point.
+//! SPIR-V by naga, with the words that WGSL lacks in place of their markers. One module per entry point.
 //!
 //! Clip space is WGSL's (y up, z from 0 to 1), as in wgpu: a Vulkan host sets a viewport of negative height. Indices are
 //! not clamped and loops not bounded at run time: generated code is ours, and the interpreter covers it.
 
+mod edits;
+
 use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use crate::fence::with_fences;
+use crate::markers::with_fences;
 use crate::target::{Emission, File, stage_name, stage_of, stage_suffix};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
@@ -18,6 +20,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
+        let words = edits::apply(words, emission.prefix)?;
         let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let path = emission.path(&format!(".{}.spv", stage_suffix(entry.stage)));
         files.push(emission.file(path, vec![(stage_name(entry.stage), entry.name.clone())], bytes));

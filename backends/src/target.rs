@@ -47,7 +47,8 @@ pub struct File {
     pub bytes: Vec<u8>,
 }
 
-const TEXT_FACTS: &[Fact] = &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable];
+/// What both dialects of GLSL offer.
+const GLSL_FACTS: &[Fact] = &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::Linkable];
 
 /// Every target, in the order in which files and manifests list them.
 pub const TARGETS: &[Target] = &[
@@ -69,28 +70,28 @@ pub const TARGETS: &[Target] = &[
         name: "glsl",
         summary: "GLSL 4.50 for OpenGL 4.5, explicit locations and bindings",
         profile: Profile::Native,
-        offers: TEXT_FACTS,
+        offers: GLSL_FACTS,
         emit: glsl::emit_opengl,
     },
     Target {
         name: "glsl-vulkan",
         summary: "GLSL 4.50 for Vulkan 1.1",
         profile: Profile::Native,
-        offers: TEXT_FACTS,
+        offers: GLSL_FACTS,
         emit: glsl::emit_vulkan,
     },
     Target {
         name: "spirv",
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent],
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock],
         emit: spirv::emit,
     },
     Target {
         name: "hlsl",
         summary: "HLSL, shader model 6.0",
         profile: Profile::Native,
-        offers: TEXT_FACTS,
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable],
         emit: hlsl::emit,
     },
     Target {

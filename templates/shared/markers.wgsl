@@ -1,6 +1,6 @@
 // What WGSL cannot say. The printers of other targets put their own words in place of calls to these functions: a
-// memory fence, the built-in for helper invocations. In plain WGSL they do nothing, and the soundness tier says
-// what that costs.
+// memory fence, the built-in for helper invocations, the ends of an interlock. In plain WGSL they do nothing, and
+// the soundness tier says what that costs.
 
 /// Orders this invocation's accesses to buffers before the call ahead of those after it, for every other invocation.
 fn memory_fence() {}
@@ -9,3 +9,9 @@ fn memory_fence() {}
 fn is_helper_lane() -> bool {
     return false;
 }
+
+/// From here to `critical_end` no other invocation of the same pixel is inside. Stands at the top level of an entry
+/// point.
+fn critical_begin() {}
+
+fn critical_end() {}

@@ -24,6 +24,12 @@ pub(crate) fn rows() -> Vec<Row> {
         row("scan_add", "adds each block's sum to its pixels", template!("pass/scan_add"), vec!["addressing"]),
         row("store", "stores the scene's fragments", template!("pass/store"), geometry),
         row(
+            "store_ordered",
+            "stores the scene's fragments inside an interlock",
+            template!("pass/store_ordered"),
+            vec!["addressing", "storage", "cull", "counters"],
+        ),
+        row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),

@@ -1,9 +1,9 @@
 //! Axis `sync`: how writers of the same pixel are kept apart.
 
-use crate::vocabulary::{Access, Element, Fact, Parameter, Resource, Row, Soundness, Use};
+use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
-    vec![none(), slot_counter(), spin_lock()]
+    vec![none(), slot_counter(), spin_lock(), interlock()]
 }
 
 fn none() -> Row {
@@ -48,5 +48,20 @@ fn spin_lock() -> Row {
         }],
         soundness: Soundness::Lock,
         ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")
+    }
+}
+
+fn interlock() -> Row {
+    Row {
+        offers: vec![Fact::Critical],
+        requires: vec![Fact::FragmentAtomics, Fact::Coherent, Fact::Interlock, Fact::OwnEntryPoints],
+        edits: vec![Edit::SetSkeleton("store".to_owned(), "store_ordered".to_owned())],
+        soundness: Soundness::Interlock,
+        ..Row::new(
+            "sync",
+            "interlock",
+            "by fragment shader interlock, in any order",
+            "Salvi 2013 (pixel sync); K15 §3.2",
+        )
     }
 }

@@ -87,7 +87,8 @@ struct KeptText {
 }
 
 fn kept_items(text: &'static str) -> Result<Arc<KeptText>, usize> {
-    static KEPT: LazyLock<Mutex<BTreeMap<(usize, usize), Arc<KeptText>>>> = LazyLock::new(Mutex::default);
+    type Kept = BTreeMap<(usize, usize), Arc<KeptText>>;
+    static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
     let key = (text.as_ptr() as usize, text.len());
     // A thread that panicked while holding the lock left only whole entries behind.
     let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

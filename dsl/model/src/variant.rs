@@ -136,6 +136,7 @@ const TARGET_FACTS: &[Fact] = &[
     Fact::MinMaxBlend,
     Fact::SampleMask,
     Fact::Linkable,
+    Fact::OwnEntryPoints,
 ];
 
 /// Whether `fact` is a target's to offer.

@@ -48,4 +48,5 @@ facts! {
     MinMaxBlend "blending by minimum and maximum";
     SampleMask "a fixed sample mask and several samples per pixel";
     Linkable "functions that a caller's own shader can call";
+    OwnEntryPoints "entry points of its own: `--form program`";
 }

@@ -1,10 +1,18 @@
+//! Marker functions: what WGSL has no word for (`templates/shared/markers.wgsl`), by name, before any prefix.
+//!
 //! Memory fences for targets that naga writes: its validator refuses them in fragment shaders, so they take the place of
-//! the marker's calls after validation.
+//! the marker's calls after validation. The other markers are each target's own affair.
 
 use naga::{Block, Statement};
 
-/// The marker's name before any prefix.
+/// Orders memory accesses.
 pub(crate) const MEMORY_FENCE: &str = "memory_fence";
+/// Whether this is a helper invocation.
+pub(crate) const HELPER_LANE: &str = "is_helper_lane";
+/// The interlock begins.
+pub(crate) const CRITICAL_BEGIN: &str = "critical_begin";
+/// The interlock ends.
+pub(crate) const CRITICAL_END: &str = "critical_end";
 
 /// The module with a fence over storage buffers in place of every call to the marker.
 pub(crate) fn with_fences(module: &naga::Module, prefix: &str) -> naga::Module {

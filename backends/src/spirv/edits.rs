@@ -1,0 +1,99 @@
+//! What naga cannot write in SPIR-V, put in afterwards: the built-in for helper invocations and the ends of an interlock.
+//!
+//! In: the words of a module with one entry point, in which markers are functions with names. Out: the same module, calls
+//! to markers replaced, with what they need declared. A module without such calls comes back as it was.
+
+use rspirv::binary::Assemble;
+use rspirv::dr::{Instruction, Module, Operand, load_words};
+use rspirv::spirv::{BuiltIn, Capability, Decoration, ExecutionMode, Op, StorageClass, Word};
+
+use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
+
+/// Applies the edits; `prefix` precedes the markers' names.
+pub(super) fn apply(words: Vec<u32>, prefix: &str) -> Result<Vec<u32>, String> {
+    let mut module = load_words(&words).map_err(|error| format!("naga's SPIR-V cannot be read back: {error}"))?;
+    let begin = replace(&mut module, &format!("{prefix}{CRITICAL_BEGIN}"), |_| {
+        Some(Instruction::new(Op::BeginInvocationInterlockEXT, None, None, vec![]))
+    });
+    let end = replace(&mut module, &format!("{prefix}{CRITICAL_END}"), |_| {
+        Some(Instruction::new(Op::EndInvocationInterlockEXT, None, None, vec![]))
+    });
+    if begin || end {
+        declare_interlock(&mut module)?;
+    }
+    let helper = read_helper_invocation(&mut module, &format!("{prefix}{HELPER_LANE}"))?;
+    Ok(if begin || end || helper { module.assemble() } else { words })
+}
+
+/// Replaces every call of the function called `name`; whether there was one.
+fn replace(module: &mut Module, name: &str, with: impl Fn(&Instruction) -> Option<Instruction>) -> bool {
+    let Some(function) = named(module, name) else { return false };
+    let mut found = false;
+    for instruction in module.all_inst_iter_mut().filter(|instruction| calls(instruction, function)) {
+        if let Some(other) = with(instruction) {
+            *instruction = other;
+            found = true;
+        }
+    }
+    found
+}
+
+fn named(module: &Module, name: &str) -> Option<Word> {
+    module.debug_names.iter().find_map(|instruction| match instruction.operands.as_slice() {
+        [Operand::IdRef(id), Operand::LiteralString(text)] if text == name => Some(*id),
+        _ => None,
+    })
+}
+
+fn calls(instruction: &Instruction, function: Word) -> bool {
+    instruction.class.opcode == Op::FunctionCall && instruction.operands.first() == Some(&Operand::IdRef(function))
+}
+
+fn declare_interlock(module: &mut Module) -> Result<(), String> {
+    let entry = entry_point(module)?;
+    let capability = Operand::Capability(Capability::FragmentShaderPixelInterlockEXT);
+    module.capabilities.push(Instruction::new(Op::Capability, None, None, vec![capability]));
+    let extension = Operand::LiteralString("SPV_EXT_fragment_shader_interlock".to_owned());
+    module.extensions.push(Instruction::new(Op::Extension, None, None, vec![extension]));
+    let mode = Operand::ExecutionMode(ExecutionMode::PixelInterlockUnorderedEXT);
+    module.execution_modes.push(Instruction::new(Op::ExecutionMode, None, None, vec![Operand::IdRef(entry), mode]));
+    Ok(())
+}
+
+fn entry_point(module: &Module) -> Result<Word, String> {
+    match module.entry_points.first().map(|entry| entry.operands.as_slice()) {
+        Some([_, Operand::IdRef(id), ..]) => Ok(*id),
+        _ => Err("a module without an entry point".to_owned()),
+    }
+}
+
+/// Every call becomes a load of an input variable that is the built-in.
+fn read_helper_invocation(module: &mut Module, name: &str) -> Result<bool, String> {
+    let Some(function) = named(module, name) else { return Ok(false) };
+    let call = module.all_inst_iter().find(|instruction| calls(instruction, function));
+    let Some(boolean) = call.and_then(|call| call.result_type) else { return Ok(false) };
+    let header = module.header.as_mut().ok_or("a module without a header")?;
+    let (pointer, variable) = (header.bound, header.bound + 1);
+    header.bound += 2;
+    let input = Operand::StorageClass(StorageClass::Input);
+    module.types_global_values.push(Instruction::new(
+        Op::TypePointer,
+        None,
+        Some(pointer),
+        vec![input.clone(), Operand::IdRef(boolean)],
+    ));
+    module.types_global_values.push(Instruction::new(Op::Variable, Some(pointer), Some(variable), vec![input]));
+    let built_in = [Operand::Decoration(Decoration::BuiltIn), Operand::BuiltIn(BuiltIn::HelperInvocation)];
+    module.annotations.push(Instruction::new(
+        Op::Decorate,
+        None,
+        None,
+        std::iter::once(Operand::IdRef(variable)).chain(built_in).collect(),
+    ));
+    for entry in &mut module.entry_points {
+        entry.operands.push(Operand::IdRef(variable));
+    }
+    Ok(replace(module, name, |call| {
+        Some(Instruction::new(Op::Load, Some(boolean), call.result_id, vec![Operand::IdRef(variable)]))
+    }))
+}
