@@ -55,6 +55,8 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         markers: &markers,
         bindings: &|group, binding| slot(dialect, group, binding),
         plain_loads: &plain_loads,
+        // Templates write workgroup variables before they read them; SPIR-V is made on the same terms.
+        zero_workgroup_memory: false,
     };
     print(checked.module(), checked.info(), source, unit, &options).map_err(|faults| {
         let texts: Vec<String> = faults

@@ -5,10 +5,10 @@ fn depth_bits(depth: f32) -> u32 {
     return bitcast<u32>(max(depth, 0.0)) & 0x7fffffffu;
 }
 
-/// Any number as a word: negative ones have all their bits flipped, the others only the sign.
+/// Any number as a word: negative ones have all their bits flipped, the others only the sign. No NaN becomes EMPTY.
 fn ordered_bits(value: f32) -> u32 {
     let bits = bitcast<u32>(value);
-    return bits ^ select(0x80000000u, 0xffffffffu, (bits & 0x80000000u) != 0u);
+    return min(bits ^ select(0x80000000u, 0xffffffffu, (bits & 0x80000000u) != 0u), EMPTY - 1u);
 }
 
 /// A unit vector as two 16-bit coordinates on the octahedron (Cigolle et al. 2014). The zero vector counts as +z.

@@ -120,7 +120,7 @@ fn zeros(printer: &mut Printer) -> Vec<String> {
     for handle in private.into_iter().filter(|handle| printer.is_long_private_array(*handle)).collect::<Vec<_>>() {
         set_to_zero(printer, handle, "    ", &mut lines);
     }
-    if !shared.is_empty() {
+    if !shared.is_empty() && printer.options.zero_workgroup_memory {
         lines.push("    if (gl_LocalInvocationIndex == 0u) {".to_owned());
         for handle in shared {
             set_to_zero(printer, handle, "        ", &mut lines);

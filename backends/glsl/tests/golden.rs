@@ -531,8 +531,14 @@ fn header_stands_below_the_version() {
     let (module, info) = support::parse(source);
     let slot = |_, _| fragbuf_glsl::Slot::default();
     let header = "made by a test\nin two lines";
-    let options =
-        fragbuf_glsl::Options { dialect: Dialect::Vulkan450, header, markers: &[], bindings: &slot, plain_loads: &[] };
+    let options = fragbuf_glsl::Options {
+        dialect: Dialect::Vulkan450,
+        header,
+        markers: &[],
+        bindings: &slot,
+        plain_loads: &[],
+        zero_workgroup_memory: true,
+    };
     let text = fragbuf_glsl::print(&module, &info, source, Unit::EntryPoint("main"), &options).unwrap();
     assert!(
         text.starts_with("#version 450\n\n// made by a test\n// in two lines\n\nlayout(local_size_x = 1"),

@@ -39,7 +39,14 @@ pub fn print_with(
 ) -> Result<String, Vec<Unprintable>> {
     let (module, info) = parse(source);
     let bindings = |group: u32, binding: u32| Slot { set: group, binding: group * 16 + binding };
-    let options = Options { dialect, header: "", markers: MARKERS, bindings: &bindings, plain_loads };
+    let options = Options {
+        dialect,
+        header: "",
+        markers: MARKERS,
+        bindings: &bindings,
+        plain_loads,
+        zero_workgroup_memory: true,
+    };
     fragbuf_glsl::print(&module, &info, source, unit, &options)
 }
 

@@ -1,0 +1,21 @@
+//! The least there is to do: a description in, the store pass in WGSL out.
+//!
+//! `cargo run --example minimal`
+
+use fragbuf::{Form, Registry, Request, check, generate, parse, target};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let text = "buffer Nearest from kplus_array { keep 4; }";
+    let parsed = parse(text, "nearest.fragbuf");
+    let draft = parsed.draft.filter(|_| parsed.diagnostics.is_empty()).ok_or_else(|| parsed.diagnostics.to_string())?;
+    let registry = Registry::builtin();
+    let variant = check(&draft, &registry).map_err(|faults| faults.to_string())?;
+
+    let wgsl = target("wgsl").ok_or("no such target")?;
+    let request = Request { targets: &[wgsl], form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&variant, &request, &registry).map_err(|faults| faults.to_string())?;
+    for file in generation.files.iter().filter(|file| file.pass == "store") {
+        std::io::Write::write_all(&mut std::io::stdout(), &file.bytes)?;
+    }
+    Ok(())
+}
