@@ -1,0 +1,409 @@
+//! A plan, ready to run: pipelines, buffers of the right size, bind groups.
+//!
+//! In: a device, a queue, shaders and settings. Out: frames to record ([`Renderer::begin`]), and what they kept, counted
+//! and took. Nothing here submits anything, apart from [`Renderer::render`].
+
+use fragbuf_codegen::Plan;
+use fragbuf_templates::vocabulary::Pass;
+
+use crate::action::{Action, actions, index};
+use crate::layout::{Slot, bind_group_layout, check, slots};
+use crate::memory::Memory;
+use crate::pipeline::{DUMMY_FORMAT, Maker, Pipeline};
+use crate::scope::scoped;
+use crate::symbols::{Symbols, counted_symbols};
+use crate::timing::Timing;
+use crate::uniforms::{set, zeros};
+use crate::{Counters, Error, Frame, PassTime, Pending, Settings, Shaders, Sizing, Value, VertexInputs, counters};
+
+/// Runs one plan on one device.
+pub struct Renderer {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) plan: Plan,
+    pub(crate) group: u32,
+    pub(crate) actions: Vec<Action>,
+    pub(crate) passes: Vec<Prepared>,
+    pub(crate) timing: Option<Timing>,
+    /// Whether host steps are carried out; else what they set has been reserved.
+    pub(crate) exact: bool,
+    pub(crate) sized: Sized,
+    /// Words of 64 KiB each, for clears to something else than zero.
+    pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
+    pub(crate) frame_id: u64,
+    inputs: VertexInputs,
+    blocks: Blocks,
+    uniforms: Vec<u32>,
+    k: Option<u32>,
+}
+
+/// A pass and what it runs with.
+pub(crate) struct Prepared {
+    pub(crate) pass: Pass,
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) layout: wgpu::BindGroupLayout,
+    pub(crate) pipeline: Pipeline,
+}
+
+/// Everything that depends on the size of the frame, replaced as one.
+pub(crate) struct Sized {
+    pub(crate) symbols: Symbols,
+    pub(crate) memory: Memory,
+    pub(crate) groups: Vec<wgpu::BindGroup>,
+    /// The attachment of passes without a target.
+    pub(crate) dummy: wgpu::TextureView,
+}
+
+/// The uniform buffers.
+struct Blocks {
+    frame: wgpu::Buffer,
+    own: wgpu::Buffer,
+    camera: wgpu::Buffer,
+    filler: wgpu::Buffer,
+}
+
+impl Renderer {
+    /// Makes pipelines and buffers. Fails where the plan has a step that the runtime does not run, where the device lacks
+    /// a feature, a limit or memory, and where no one says how many fragments there may be.
+    pub async fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        shaders: &Shaders,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let plan = shaders.plan.clone();
+        let actions = actions(&plan)?;
+        let missing = shaders.features() - device.features();
+        if !missing.is_empty() {
+            return Err(Error::MissingFeatures(missing));
+        }
+        let inputs = VertexInputs::of(&plan);
+        let own = settings.vertices.clone();
+        let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
+        let maker = Maker { device, shaders, settings, vertices: &vertices };
+        let mut passes = Vec::new();
+        for pass in plan.passes() {
+            let slots = slots(&plan, pass);
+            check(device, pass, &slots)?;
+            let what = format!("the bind group layout of pass `{}`", pass.anchor);
+            let layout = scoped(device, &what, 0, || bind_group_layout(device, pass, &slots)).await?;
+            let pipeline = maker.make(pass, &layout).await?;
+            passes.push(Prepared { pass: pass.clone(), slots, layout, pipeline });
+        }
+        let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let names = passes.iter().map(|prepared| prepared.pass.anchor.clone()).collect();
+        let timing = if timed { Some(Timing::new(device, queue, names).await?) } else { None };
+        let k = plan.frame.iter().any(|field| field == "k").then_some(plan.variant.keep).flatten();
+        let (counted, exact) = counted(&plan, &actions, settings)?;
+        let symbols = Symbols { width: settings.width, height: settings.height, k, counted };
+        let uniforms = zeros(&plan.variant.uniforms);
+        let make = || (Blocks::new(device, &plan, &uniforms), patterns(device, &actions));
+        let (blocks, patterns) = scoped(device, "the uniform buffers", 0, make).await?;
+        let sized = Sized::new(device, &plan, &passes, &blocks, symbols, None).await?;
+        let renderer = Renderer {
+            device: device.clone(),
+            queue: queue.clone(),
+            group: shaders.group,
+            plan,
+            actions,
+            passes,
+            timing,
+            exact,
+            sized,
+            patterns,
+            frame_id: 0,
+            inputs,
+            blocks,
+            uniforms,
+            k,
+        };
+        renderer.set_camera(&IDENTITY);
+        renderer.write_uniforms();
+        Ok(renderer)
+    }
+
+    /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:
+    /// uniform buffers are written ahead of the next submission.
+    pub fn begin(&mut self) -> Result<Frame, Error> {
+        self.write_frame()?;
+        self.frame_id += 1;
+        Ok(Frame::new(self.frame_id))
+    }
+
+    /// Resizes the frame to `width` × `height` pixels. On an error the old size stays.
+    pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
+        let symbols = Symbols { width, height, ..self.sized.symbols.clone() };
+        self.reallocate(symbols).await
+    }
+
+    /// Keeps `k` fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers are
+    /// reallocated only for more than there ever was room for.
+    pub async fn set_k(&mut self, k: u32) -> Result<(), Error> {
+        let name = || "k".to_owned();
+        let Some(room) = self.sized.symbols.k else {
+            return Err(Error::BadValue { name: name(), wanted: "left alone: this plan keeps every fragment".to_owned() });
+        };
+        if k == 0 || k > self.capacity() {
+            return Err(Error::BadValue { name: name(), wanted: format!("from 1 to the capacity, {}", self.capacity()) });
+        }
+        if k > room {
+            self.reallocate(Symbols { k: Some(k), ..self.sized.symbols.clone() }).await?;
+        }
+        self.frame_id += 1;
+        self.k = Some(k);
+        Ok(())
+    }
+
+    /// Makes room for `fragments` fragments in the whole frame, where the plan needs room and no host step makes it.
+    pub async fn reserve(&mut self, fragments: u32) -> Result<(), Error> {
+        let mut symbols = self.sized.symbols.clone();
+        for (_, value) in &mut symbols.counted {
+            *value = fragments.into();
+        }
+        self.exact = false;
+        self.reallocate(symbols).await
+    }
+
+    /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
+    pub fn set_camera(&self, view_projection: &[f32; 16]) {
+        self.queue.write_buffer(&self.blocks.camera, 0, &bytes(&view_projection.map(f32::to_bits)));
+    }
+
+    /// One of the description's own uniforms, from the next submission on.
+    pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
+        set(&mut self.uniforms, &self.plan.variant.uniforms, name, value)?;
+        self.write_uniforms();
+        Ok(())
+    }
+
+    /// Bytes of all buffers of the plan's resources, as wgpu has them: what the plan's formulas say for this size, for the
+    /// greatest k so far and for the room there is ([`Renderer::symbol`]).
+    pub fn allocated_bytes(&self) -> u64 {
+        self.sized.memory.bytes()
+    }
+
+    /// The value of a symbol of the plan's formulas that the buffers were sized with.
+    pub fn symbol(&self, name: &str) -> Option<u64> {
+        self.sized.symbols.value(&self.plan, name)
+    }
+
+    /// The greatest k that needs no new pipelines.
+    pub fn capacity(&self) -> u32 {
+        self.plan.bound.value("capacity").and_then(|capacity| u32::try_from(capacity).ok()).unwrap_or(0)
+    }
+
+    /// Fragments that a pixel keeps; `None`: all.
+    pub fn k(&self) -> Option<u32> {
+        self.k
+    }
+
+    /// What is run.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What a vertex of a geometry pass carries.
+    pub fn vertex_inputs(&self) -> &VertexInputs {
+        &self.inputs
+    }
+
+    /// The bind group layout of the pass `anchor`, for a pipeline of the caller's own around its shader functions.
+    pub fn bind_group_layout(&self, anchor: &str) -> Option<&wgpu::BindGroupLayout> {
+        self.passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
+    }
+
+    /// Records the readback of what the frame counted. `None`: the plan counts nothing.
+    pub fn counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Counters>> {
+        let buffer = self.buffer(counters::RESOURCE)?;
+        let decode = |words: Vec<u32>| Counters::from_words(&words);
+        Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), decode))
+    }
+
+    /// Records the readback of the time that each pass of the finished frame took. `None`: passes are not timed.
+    pub fn pass_times(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<PassTime>>> {
+        self.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
+    }
+
+    /// Records the readback of a resource, all its words. `None`: the plan does not have it, or it is empty.
+    pub fn words(&self, resource: &str, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<u32>>> {
+        let buffer = self.buffer(resource)?;
+        Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), |words| words))
+    }
+
+    /// The buffer of a resource. `None`: the plan does not have it, or it is empty.
+    pub fn buffer(&self, resource: &str) -> Option<&wgpu::Buffer> {
+        self.sized.memory.filled(index(&self.plan, resource).ok()?)
+    }
+
+    /// Gives the buffers the sizes of `symbols`, or leaves everything as it is.
+    pub(crate) async fn reallocate(&mut self, symbols: Symbols) -> Result<(), Error> {
+        if symbols != self.sized.symbols {
+            let old = Some(&self.sized);
+            self.sized = Sized::new(&self.device, &self.plan, &self.passes, &self.blocks, symbols, old).await?;
+        }
+        self.frame_id += 1;
+        Ok(())
+    }
+
+    /// Writes the frame's uniform buffer, ahead of the next submission.
+    pub(crate) fn write_frame(&self) -> Result<(), Error> {
+        let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
+        self.queue.write_buffer(&self.blocks.frame, 0, &bytes(&live.frame_words(&self.plan)?));
+        Ok(())
+    }
+
+    fn write_uniforms(&self) {
+        if !self.uniforms.is_empty() {
+            self.queue.write_buffer(&self.blocks.own, 0, &bytes(&self.uniforms));
+        }
+    }
+}
+
+impl Sized {
+    async fn new(
+        device: &wgpu::Device,
+        plan: &Plan,
+        passes: &[Prepared],
+        blocks: &Blocks,
+        symbols: Symbols,
+        old: Option<&Sized>,
+    ) -> Result<Self, Error> {
+        check_size(device, &symbols)?;
+        let memory = Memory::allocate(device, plan, &symbols, old.map(|old| &old.memory)).await?;
+        let groups = || passes.iter().map(|prepared| bind_group(device, prepared, blocks, &memory)).collect();
+        let groups = scoped(device, "the bind groups", 0, groups).await?;
+        let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
+        let dummy = match same {
+            Some(old) => old.dummy.clone(),
+            None => scoped(device, "the attachment of geometry passes", symbols.pixels(), || dummy(device, &symbols)).await?,
+        };
+        Ok(Sized { symbols, memory, groups, dummy })
+    }
+}
+
+/// What passes without a target are attached to. Nothing is ever written to it, and tilers give it no memory.
+fn dummy(device: &wgpu::Device, symbols: &Symbols) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("fragbuf no target"),
+        size: wgpu::Extent3d { width: symbols.width, height: symbols.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DUMMY_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TRANSIENT_ATTACHMENT,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn check_size(device: &wgpu::Device, symbols: &Symbols) -> Result<(), Error> {
+    let limit = device.limits().max_texture_dimension_2d;
+    for (what, size) in [("the frame's width", symbols.width), ("the frame's height", symbols.height)] {
+        if size == 0 {
+            return Err(Error::BadValue { name: what.to_owned(), wanted: "at least 1".to_owned() });
+        }
+        if size > limit {
+            return Err(Error::TooLarge {
+                what: what.to_owned(),
+                needed: size.into(),
+                limit: limit.into(),
+                limit_name: "max_texture_dimension_2d",
+                hint: "render the picture in tiles",
+            });
+        }
+    }
+    Ok(())
+}
+
+fn bind_group(device: &wgpu::Device, prepared: &Prepared, blocks: &Blocks, memory: &Memory) -> wgpu::BindGroup {
+    let buffer = |slot: &Slot| match *slot {
+        Slot::Filler => &blocks.filler,
+        Slot::Frame => &blocks.frame,
+        Slot::Uniforms => &blocks.own,
+        Slot::Camera => &blocks.camera,
+        Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),
+    };
+    let slots = (0..).zip(&prepared.slots);
+    let entries: Vec<wgpu::BindGroupEntry<'_>> =
+        slots.map(|(binding, slot)| wgpu::BindGroupEntry { binding, resource: buffer(slot).as_entire_binding() }).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(&prepared.pass.anchor),
+        layout: &prepared.layout,
+        entries: &entries,
+    })
+}
+
+impl Blocks {
+    fn new(device: &wgpu::Device, plan: &Plan, uniforms: &[u32]) -> Self {
+        let block = |label: &str, words: usize| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: 4 * words.max(1).next_multiple_of(4) as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        Blocks {
+            frame: block("fragbuf frame", plan.frame.len()),
+            own: block("fragbuf uniforms", uniforms.len()),
+            camera: block("fragbuf camera", IDENTITY.len()),
+            filler: block("fragbuf nothing", 0),
+        }
+    }
+}
+
+const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+/// Bytes that one copy of a pattern clears.
+pub(crate) const PATTERN: u64 = 1 << 16;
+
+/// A buffer full of each word that some step clears to, zero apart.
+fn patterns(device: &wgpu::Device, actions: &[Action]) -> Vec<(u32, wgpu::Buffer)> {
+    let mut patterns: Vec<(u32, wgpu::Buffer)> = Vec::new();
+    for action in actions {
+        let Action::Clear { value, .. } = *action else { continue };
+        if value == 0 || patterns.iter().any(|(known, _)| *known == value) {
+            continue;
+        }
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("fragbuf clear"),
+            size: PATTERN,
+            usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: true,
+        });
+        if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+            view.copy_from_slice(&bytes(&vec![value; PATTERN as usize / 4]));
+        }
+        buffer.unmap();
+        patterns.push((value, buffer));
+    }
+    patterns
+}
+
+/// What is counted, as it stands before the first frame, and whether host steps will count it.
+fn counted(plan: &Plan, actions: &[Action], settings: &Settings) -> Result<(Vec<(String, u64)>, bool), Error> {
+    let names = counted_symbols(plan);
+    let decided = |name: &String| actions.iter().any(|action| matches!(action, Action::Host(host) if host.sets(name)));
+    let exact = match settings.sizing {
+        Sizing::Auto => names.iter().all(decided),
+        Sizing::Exact => true,
+        Sizing::Reserve { .. } => false,
+    };
+    if let Some(name) = names.iter().find(|name| exact && !decided(name)) {
+        return Err(Error::Unsupported {
+            what: format!("exact sizing of `{name}`, which no step of this plan counts"),
+            hint: "reserve: `Sizing::Reserve { fragments }`".to_owned(),
+        });
+    }
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let room = match settings.sizing {
+        _ if exact => 0,
+        Sizing::Reserve { fragments } => fragments.into(),
+        Sizing::Auto | Sizing::Exact => pixels * u64::from(Sizing::AUTO_PER_PIXEL),
+    };
+    Ok((names.into_iter().map(|name| (name, room)).collect(), exact))
+}
+
+fn bytes(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
