@@ -9,10 +9,9 @@ use fragbuf_templates::vocabulary::{Access, Kind, Pass};
 
 use crate::Error;
 
-/// Bindings of the three uniform blocks.
-pub(crate) const FRAME: u32 = 0;
-pub(crate) const UNIFORMS: u32 = 1;
-pub(crate) const CAMERA: u32 = 2;
+/// Bindings of the description's uniforms and of the camera; the frame's is 0.
+const UNIFORMS: usize = 1;
+const CAMERA: usize = 2;
 
 /// What stands at one binding of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,10 +29,10 @@ pub(crate) enum Slot {
 pub(crate) fn slots(plan: &Plan, pass: &Pass) -> Vec<Slot> {
     let mut slots = vec![Slot::Frame, Slot::Filler, Slot::Filler];
     if !plan.variant.uniforms.is_empty() {
-        slots[UNIFORMS as usize] = Slot::Uniforms;
+        slots[UNIFORMS] = Slot::Uniforms;
     }
     if pass.kind == Kind::Geometry {
-        slots[CAMERA as usize] = Slot::Camera;
+        slots[CAMERA] = Slot::Camera;
     }
     for (index, planned) in plan.resources.iter().enumerate() {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);

@@ -197,6 +197,11 @@ impl Renderer {
         self.k
     }
 
+    /// The device that it was made on.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
     /// What is run.
     pub fn plan(&self) -> &Plan {
         &self.plan

@@ -4,7 +4,7 @@ mod adapter;
 mod offscreen;
 
 pub use adapter::{Choice, adapters};
-pub use offscreen::Offscreen;
+pub use offscreen::{BLENDED, Offscreen};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

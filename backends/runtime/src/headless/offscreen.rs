@@ -1,7 +1,13 @@
 //! A target that can be read back.
+//!
+//! Blend in [`BLENDED`] where colours matter to 1/255: a driver may blend 8-bit targets in 8-bit arithmetic, which rounds
+//! colour, alpha and product apart (lavapipe does, and is off by up to 1.1/255).
 
 use crate::scope::scoped;
 use crate::{Error, Pending, block_on};
+
+/// The format to blend in: every WebGPU device can, and its steps are an eighth of an 8-bit target's or finer.
+pub const BLENDED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// A picture of one format and size on the device.
 pub struct Offscreen {
@@ -65,5 +71,54 @@ impl Offscreen {
         let bytes: Vec<u8> = pending.wait(device)?.into_iter().flat_map(u32::to_le_bytes).collect();
         let row = (self.texture.width() * self.texel) as usize;
         Ok(bytes.chunks(self.padded as usize).flat_map(|padded| padded.iter().copied().take(row)).collect())
+    }
+
+    /// Red, green, blue and alpha of every pixel, row after row from the top, for the formats `Rgba8Unorm`, `Rgba16Float`
+    /// and `Rgba32Float`. Submits and blocks.
+    pub fn colors(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<[f32; 4]>, Error> {
+        let channels: Vec<f32> = match self.texture.format() {
+            wgpu::TextureFormat::Rgba8Unorm => {
+                self.read(device, queue)?.into_iter().map(|byte| f32::from(byte) / 255.0).collect()
+            }
+            wgpu::TextureFormat::Rgba16Float => {
+                let bytes = self.read(device, queue)?;
+                bytes.as_chunks().0.iter().map(|half| half_to_float(u16::from_le_bytes(*half))).collect()
+            }
+            wgpu::TextureFormat::Rgba32Float => {
+                self.read(device, queue)?.as_chunks().0.iter().map(|float| f32::from_le_bytes(*float)).collect()
+            }
+            other => {
+                return Err(Error::BadValue {
+                    name: format!("the target's format, {other:?},"),
+                    wanted: "Rgba8Unorm, Rgba16Float or Rgba32Float".to_owned(),
+                });
+            }
+        };
+        Ok(channels.as_chunks().0.to_vec())
+    }
+}
+
+/// IEEE 754 binary16 to binary32, exactly.
+fn half_to_float(half: u16) -> f32 {
+    let sign = u32::from(half >> 15) << 31;
+    let (exponent, fraction) = (u32::from(half >> 10 & 31), u32::from(half & 1023));
+    match exponent {
+        // Zero and subnormals: fraction · 2⁻²⁴.
+        0 => f32::from_bits(sign | (fraction as f32 / 16_777_216.0).to_bits()),
+        31 => f32::from_bits(sign | 0x7f80_0000 | fraction << 13),
+        _ => f32::from_bits(sign | (exponent + 112) << 23 | fraction << 13),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::half_to_float;
+
+    #[test]
+    fn halves_are_exact() {
+        let halves = [0x3c00, 0xc000, 0x3555, 0x0001, 0x7bff, 0x0000];
+        let floats = [1.0, -2.0, 0.333_251_95, 5.960_464_5e-8, 65504.0, 0.0];
+        assert_eq!(halves.map(half_to_float), floats);
+        assert_eq!(half_to_float(0x7c00), f32::INFINITY);
     }
 }
