@@ -43,7 +43,7 @@ fn cases() -> Vec<(&'static str, Vec<Quad>)> {
     ]
 }
 
-fn scattered(count: u32, seed: u64) -> Vec<Quad> {
+pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
     let mut numbers = Numbers::seeded(seed);
     let quad = |id| {
         let (x0, y0) = (numbers.below(SIZE), numbers.below(SIZE));
@@ -156,10 +156,13 @@ const GLASS: &str = "
         }
     }";
 
+/// Depth − alpha / 4: an opaque fragment may be kept though a nearer one is not.
+pub const GLASS_KEEPS: &str = "keep 3 least |f| f.depth - 0.25 * f.color.w;";
+
 const GAIN: [f32; 4] = [0.25, 9.0, 9.0, 0.125];
 const CUT: f32 = 0.125;
 
-fn glass(technique: &str, keep: &str) -> Variant {
+pub fn glass(technique: &str, keep: &str) -> Variant {
     described(&GLASS.replace("TECHNIQUE", technique).replace("KEEP", keep))
 }
 
@@ -176,14 +179,13 @@ fn glass_resolve(kept: &[Quad]) -> [f64; 4] {
     sum
 }
 
-fn set_uniforms(renderer: &mut Renderer) {
+pub fn set_uniforms(renderer: &mut Renderer) {
     renderer.set_uniform("cut", Value::F32(CUT)).unwrap();
     renderer.set_uniform("gain", Value::Vec4(GAIN)).unwrap();
 }
 
 #[test]
 fn a_description_with_a_criterion_of_its_own() {
-    // Depth − alpha / 4: an opaque fragment may be kept though a nearer one is not.
     fn criterion(quad: &Quad) -> u32 {
         let bits = (quad.depth - 0.25 * quad.rgba()[3]).to_bits();
         if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -194,7 +196,7 @@ fn a_description_with_a_criterion_of_its_own() {
         nearer: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id, criterion(quad)],
         resolve: glass_resolve,
     };
-    let keep = "keep 3 least |f| f.depth - 0.25 * f.color.w;";
+    let keep = GLASS_KEEPS;
     check(&glass("kplus_array", keep), &settings(), &rules, set_uniforms);
     // The sorted array is in the order of the criterion, which is not the order of depth.
     check(&glass("kb", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);

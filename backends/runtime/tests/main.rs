@@ -10,3 +10,4 @@ mod quads;
 mod stage;
 
 mod capture;
+mod translations;

@@ -1,0 +1,99 @@
+//! The same technique by every language that this device takes: the linked WGSL of both profiles, our SPIR-V and our GLSL
+//! (through glslang) passed through. Pictures and kept sets are equal to the bit.
+
+use std::process::Command;
+
+use fragbuf_backends::{Request, generate, target};
+use fragbuf_codegen::{EntryPoint, Form, Stage};
+use fragbuf_model::Variant;
+use fragbuf_runtime::{Code, Module, Renderer, Shaders};
+use fragbuf_templates::Registry;
+
+use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
+use crate::stage::{device, renderer, see, settings, shaders, technique};
+
+/// The files of the target `glsl-vulkan`, compiled.
+fn glsl_shaders(variant: &Variant) -> Shaders {
+    let targets = [target("glsl-vulkan").unwrap()];
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    let modules = generation.files.iter().map(|file| {
+        let (stage, name) = file.entry_points[0].clone();
+        let (stage, suffix) = match stage {
+            "vertex" => (Stage::Vertex, "vert"),
+            "fragment" => (Stage::Fragment, "frag"),
+            _ => (Stage::Compute, "comp"),
+        };
+        let code = Code::SpirV(glslang(&file.bytes, suffix));
+        Module { pass: file.pass.clone(), entry_points: vec![EntryPoint { name, stage }], code }
+    });
+    let plan = generation.plans[0].plan.clone();
+    Shaders { modules: modules.collect(), plan, group: 0, profile: targets[0].profile }
+}
+
+/// Compiles one stage with `glslangValidator`, which must be installed.
+fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, binary) = (folder.path().join(format!("shader.{stage}")), folder.path().join("shader.spv"));
+    std::fs::write(&source, text).unwrap();
+    let mut command = Command::new("glslangValidator");
+    command.args(["-V", "--target-env", "vulkan1.1", "-o"]).arg(&binary).arg(&source);
+    let output = command.output().expect("`glslangValidator` is needed: install the package glslang-tools");
+    assert!(output.status.success(), "{}\n{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(text));
+    let bytes = std::fs::read(&binary).unwrap();
+    bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
+}
+
+/// Every language shows and keeps what portable WGSL does.
+fn check(variant: &Variant, prepare: impl Fn(&mut Renderer)) {
+    let stage = device();
+    let languages = [
+        ("wgsl", shaders(variant, "wgsl")),
+        ("wgsl-native", shaders(variant, "wgsl-native")),
+        ("spirv", shaders(variant, "spirv")),
+        ("glsl-vulkan", glsl_shaders(variant)),
+    ];
+    let mut expected = Vec::new();
+    for (name, shaders) in languages {
+        let mut renderer = renderer(&stage, &shaders, &settings()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        prepare(&mut renderer);
+        for seed in 0..4 {
+            let seen = see(&stage, &mut renderer, &scattered(8, seed));
+            if name == "wgsl" {
+                expected.push(seen);
+                continue;
+            }
+            let expected = &expected[seed as usize];
+            assert_eq!(seen.kept, expected.kept, "{name}");
+            assert_eq!(seen.counters, expected.counters, "{name}");
+            assert_eq!(seen.pixels, expected.pixels, "{name}");
+        }
+    }
+    let colors = expected.iter().flat_map(|seen| &seen.pixels);
+    assert!(colors.clone().any(|color| Some(color) != colors.clone().next()), "the pictures are not empty");
+}
+
+#[test]
+fn the_array_with_the_worst_at_slot_0() {
+    check(&technique("kplus_array", &[("k", "3"), ("counters", "all")]), |_| {});
+}
+
+#[test]
+fn the_sorted_array() {
+    check(&technique("kb", &[("k", "3"), ("counters", "all")]), |_| {});
+}
+
+#[test]
+fn the_linked_list() {
+    check(&technique("ab_ll", &[("counters", "all")]), |_| {});
+}
+
+#[test]
+fn exact_regions() {
+    check(&technique("ab_sb", &[("counters", "all")]), |_| {});
+}
+
+#[test]
+fn functions_of_the_descriptions_own() {
+    check(&glass("kplus_array", GLASS_KEEPS), set_uniforms);
+}
