@@ -1,5 +1,21 @@
 //! What fragbuf promises, a module per kind of promise. External validators must be installed: nothing is skipped.
 #![allow(missing_docs, reason = "tests are read, not documented")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints what it counted"
+)]
 
+mod cases;
+mod command_line;
+mod diagnostics;
+mod fuzz;
+mod instances;
+mod oracle;
+mod product;
+mod snapshots;
+mod tidy;
+mod validators;
 mod vocabulary;

@@ -1,5 +1,6 @@
 //! GLSL by our own printer, one file per entry point; a module is one file without `main`.
 
+use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
 
 use crate::fence::MEMORY_FENCE;
@@ -43,7 +44,7 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         dialect,
         header: &header,
         markers: &[(&fence, Marker::MemoryFence), (&helper, Marker::HelperLane)],
-        bindings: &|set, binding| Slot { set, binding },
+        bindings: &|group, binding| slot(dialect, group, binding),
         plain_loads: &plain_loads,
     };
     print(checked.module(), checked.info(), source, unit, &options).map_err(|faults| {
@@ -59,4 +60,13 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
 fn is_vertex(emission: &Emission<'_>, name: &str) -> bool {
     let mut entries = emission.checked.pass().entry_points.iter();
     entries.any(|entry| entry.name == name && entry.stage == fragbuf_codegen::Stage::Vertex)
+}
+
+/// OpenGL has no sets, one row of bindings for uniform blocks and one for buffers, which may be no longer than 8.
+pub(crate) fn slot(dialect: Dialect, group: u32, binding: u32) -> Slot {
+    match (dialect, binding.checked_sub(FIRST_BINDING)) {
+        (Dialect::Vulkan450, _) => Slot { set: group, binding },
+        (Dialect::OpenGl450, None) => Slot { set: 0, binding: group * FIRST_BINDING + binding },
+        (Dialect::OpenGl450, Some(buffer)) => Slot { set: 0, binding: group * 8 + buffer },
+    }
 }

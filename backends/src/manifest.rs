@@ -1,6 +1,7 @@
 //! What an engine follows: `manifest.json`. The schema is versioned; fields are only ever added within a version.
 
 use fragbuf_codegen::{GENERATOR, Plan, Planned as PlannedResource};
+use fragbuf_glsl::Dialect;
 use fragbuf_model::mangled;
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::{
@@ -9,6 +10,7 @@ use fragbuf_templates::vocabulary::{
 };
 use serde_json::{Map, Value, json};
 
+use crate::glsl::slot;
 use crate::generate::{Generation, Planned};
 use crate::tier;
 
@@ -125,12 +127,20 @@ fn uniform_blocks(plan: &Plan, group: u32) -> Value {
         .map(|uniform| json!({ "name": mangled(&uniform.name.value), "type": uniform.kind.value.wgsl_type() }))
         .collect();
     let camera = json!([{ "name": "view_projection", "type": "mat4x4<f32>" }]);
-    let mut blocks = vec![json!({ "name": "frame", "group": group, "binding": 0, "fields": frame })];
+    let block = |name: &str, binding: u32, fields: Value| {
+        let opengl = opengl_binding(group, binding);
+        json!({ "name": name, "group": group, "binding": binding, "opengl_binding": opengl, "fields": fields })
+    };
+    let mut blocks = vec![block("frame", 0, frame.into())];
     if !own.is_empty() {
-        blocks.push(json!({ "name": "uniforms", "group": group, "binding": 1, "fields": own }));
+        blocks.push(block("uniforms", 1, own.into()));
     }
-    blocks.push(json!({ "name": "camera", "group": group, "binding": 2, "fields": camera }));
+    blocks.push(block("camera", 2, camera));
     blocks.into()
+}
+
+fn opengl_binding(group: u32, binding: u32) -> u32 {
+    slot(Dialect::OpenGl450, group, binding).binding
 }
 
 /// Inputs of the vertex stage of geometry passes, in program form.
@@ -163,6 +173,7 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         "name": resource.name,
         "group": group,
         "binding": planned.binding,
+        "opengl_binding": opengl_binding(group, planned.binding),
         "element": element,
         "extents": extents,
         "words": planned.words.0,

@@ -2,6 +2,9 @@
 
 mod instances;
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Kind, Pass};
@@ -111,7 +114,7 @@ pub enum LineOrigin {
     /// A template or generated text, by its name and line.
     Source {
         /// `storage/max_array.wgsl`, `generated/buffers`.
-        name: String,
+        name: Arc<str>,
         /// From 1.
         line: usize,
     },
@@ -153,18 +156,23 @@ pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Progr
 }
 
 fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, String> {
-    let mut sources = emit::sources(plan, pass, linking);
-    sources.extend(registry.shared().iter().map(|template| Source::template(*template, link::Renames::default())));
-    sources.extend(instances::sources(pass, plan, registry)?);
     let is_library = linking.form == Form::Module && pass.kind == Kind::Geometry;
     let stage_text = match pass.kind {
         Kind::Geometry if !is_library => Some("geometry"),
         Kind::Fullscreen => Some("fullscreen"),
         _ => None,
     };
+    let no_renames = link::Renames::default();
+    let mut templates: Vec<Source> =
+        registry.shared().iter().map(|template| Source::template(*template, &no_renames)).collect();
+    templates.extend(instances::sources(pass, plan, registry)?);
     for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
-        sources.push(instances::skeleton(skeleton, registry)?);
+        templates.push(instances::skeleton(skeleton, registry)?);
     }
+    let mut wanted = BTreeSet::new();
+    templates.iter().for_each(|source| source.mentions(&mut wanted));
+    let mut sources = emit::sources(plan, pass, linking, &|name| wanted.contains(name));
+    sources.extend(templates.iter().cloned());
     let export = format!("{}_fragment", pass.skeleton);
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };

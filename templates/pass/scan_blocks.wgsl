@@ -1,5 +1,5 @@
-// Exclusive prefix sums of the counts inside each block of 1024 pixels: every invocation adds up four neighbours, the
-// workgroup scans the 256 sums. The block's total goes to `block_sums`.
+// Exclusive prefix sums of the counts inside each block of 1024 pixels: every invocation adds up four neighbours,
+// the workgroup scans the 256 sums. The block's total goes to `block_sums`.
 
 const PIXELS_EACH = 4u;
 

@@ -1,5 +1,5 @@
-// Exclusive prefix sum over the sums of all blocks, in one workgroup that goes through them 256 at a time. The grand total
-// is the end of the last pixel's region.
+// Exclusive prefix sum over the sums of all blocks, in one workgroup that goes through them 256 at a time. The
+// grand total is the end of the last pixel's region.
 
 @compute @workgroup_size(256)
 fn scan_sums(@builtin(local_invocation_index) local: u32) {

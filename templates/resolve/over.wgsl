@@ -1,5 +1,5 @@
-// Front-to-back *over* (Porter & Duff 1984). Colours come in with straight alpha; the result is premultiplied, to be
-// blended over the background.
+// Front-to-back *over* (Porter & Duff 1984). Colours come in with straight alpha; the result is premultiplied, to
+// be blended over the background.
 
 fn resolve_layers() -> vec4<f32> {
     var color = vec3<f32>(0.0);

@@ -1,7 +1,7 @@
 // The S-buffer (Vasilakis & Fudos 2012): one geometry pass counts, a prefix sum turns counts into offsets, a second
-// geometry pass stores. Regions lie one after the other in the order of pixels, so the end of one is the offset of the
-// next. The store pass counts each pixel's count down again, which gives every fragment a place of its own; a fragment
-// that the first pass did not see finds none, and never writes into a neighbour.
+// geometry pass stores. Regions lie one after the other in the order of pixels, so the end of one is the offset of
+// the next. The store pass counts each pixel's count down again, which gives every fragment a place of its own; a
+// fragment that the first pass did not see finds none, and never writes into a neighbour.
 //
 // Memory: entry_words words per fragment, 2 per pixel.
 

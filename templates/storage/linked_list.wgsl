@@ -1,6 +1,7 @@
-// A list per pixel through one pool of nodes (Yang et al. 2010). A fragment takes the next node of the pool, then becomes
-// the head of its pixel's list by one exchange. Links are written by their owner alone and read only after the pass, so
-// the lists are whole whatever the order. They are stored plus one: memory cleared to 0 is a frame of empty lists.
+// A list per pixel through one pool of nodes (Yang et al. 2010). A fragment takes the next node of the pool, then
+// becomes the head of its pixel's list by one exchange. Links are written by their owner alone and read only after
+// the pass, so the lists are whole whatever the order. They are stored plus one: memory cleared to 0 is a frame of
+// empty lists.
 //
 // Memory: entry_words + 1 words per fragment, 1 per pixel.
 

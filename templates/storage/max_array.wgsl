@@ -1,9 +1,9 @@
-// The k+-buffer's array (K15 sec. 3.2). Slots k-1, k-2, ... fill first; slot 0 comes last and from then on holds the worst kept
-// fragment. Until it is written its key is EMPTY, which nothing exceeds.
+// The k+-buffer's array (K15 sec. 3.2). Slots k-1, k-2, ... fill first; slot 0 comes last and from then on holds
+// the worst kept fragment. Until it is written its key is EMPTY, which nothing exceeds.
 //
-// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. So a fragment may be turned away by
-// reading that one word outside the lock. It holds because slot 0 is written once per insert, straight to the new worst,
-// which is found first; the hole that the new worst leaves is filled afterwards.
+// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. So a fragment may be turned
+// away by reading that one word outside the lock. It holds because slot 0 is written once per insert, straight to
+// the new worst, which is found first; the hole that the new worst leaves is filled afterwards.
 //
 // Memory: k * entry_words + 1 words per pixel, and the lock's.
 

@@ -1,8 +1,8 @@
-// The k-buffer (Bavoil et al. 2007): k entries per pixel in the order of their keys. A fragment walks the array from the
-// best entry on; where it is better it takes the slot, and what stood there walks on in its place.
+// The k-buffer (Bavoil et al. 2007): k entries per pixel in the order of their keys. A fragment walks the array
+// from the best entry on; where it is better it takes the slot, and what stood there walks on in its place.
 //
-// Without a critical section two fragments of one pixel may walk at once. Every word is atomic, so that what they read is
-// always some word that was written; but entries can be lost, doubled, torn and left unsorted.
+// Without a critical section two fragments of one pixel may walk at once. Every word is atomic, so that what they
+// read is always some word that was written; but entries can be lost, doubled, torn and left unsorted.
 //
 // Memory: k * entry_words words per pixel.
 

@@ -1,8 +1,8 @@
-// One lock word per pixel (K15 sec. 3.2). The number of tries is bounded, because no API promises that the holder ever runs
-// again; a fragment that is given up is counted. Memory: 1 word per pixel.
+// One lock word per pixel (K15 sec. 3.2). The number of tries is bounded, because no API promises that the holder
+// ever runs again; a fragment that is given up is counted. Memory: 1 word per pixel.
 //
-// The fences make what the last holder wrote visible to the next. Plain WGSL has none in a fragment shader: there the
-// order rests on what GPUs happen to do (tier T4).
+// The fences make what the last holder wrote visible to the next. Plain WGSL has none in a fragment shader: there
+// the order rests on what GPUs happen to do (tier T4).
 
 const FREE = 0u;
 const TAKEN = 1u;

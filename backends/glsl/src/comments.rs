@@ -90,7 +90,7 @@ impl<'a> Comments<'a> {
 
     /// The comment on the line where a statement ends, behind it.
     pub fn behind(&mut self, end: usize) -> Option<&'a str> {
-        let line_end = self.source[end..].find('\n').map_or(self.source.len(), |length| end + length);
+        let line_end = self.source.get(end..)?.find('\n').map_or(self.source.len(), |length| end + length);
         let mut behind = self.take(|comment| comment.trailing && (end..line_end).contains(&comment.start));
         behind.pop()
     }
@@ -104,6 +104,17 @@ impl<'a> Comments<'a> {
             }
         }
         texts
+    }
+
+    /// The `//` lines directly above a position, as above a function; doc comments end them.
+    pub fn above(&self, position: usize) -> Vec<&'a str> {
+        let Some(before) = self.source.get(..position) else { return Vec::new() };
+        let line = before.rfind('\n').map_or(0, |at| at + 1);
+        let lines = before[..line].lines().rev().map(str::trim);
+        let plain = |text: &&str| text.starts_with("//") && !text.starts_with("///") && !text.starts_with("//!");
+        let mut found: Vec<&str> = lines.take_while(plain).collect();
+        found.reverse();
+        found
     }
 
     /// Whether the source leaves a line free above the position, or above the comments that stand directly above it.

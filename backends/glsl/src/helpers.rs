@@ -46,6 +46,13 @@ impl Helper {
         }
     }
 
+    /// The definition, once per shader: two libraries included in one shader may need the same function.
+    pub fn guarded(self) -> String {
+        let words: String = format!("{self:?}").chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { ' ' }).collect();
+        let guard = format!("WGSL_{}", words.split_whitespace().collect::<Vec<_>>().join("_").to_ascii_uppercase());
+        format!("#ifndef {guard}\n#define {guard}\n{}#endif\n", self.text())
+    }
+
     /// The definition.
     pub fn text(self) -> String {
         match self {

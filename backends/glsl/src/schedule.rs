@@ -292,6 +292,11 @@ impl<'a, 'm> Decision<'a, 'm> {
         if name_of(self.order, expression).is_some() {
             return;
         }
+        let is_result = self.order.evaluated.get(&expression).is_some_and(|step| self.order.steps[*step].statement.is_some());
+        if is_result || self.circuits.contains_key(&expression) {
+            footprint.join(&self.origin(expression).map(|(_, _, own)| own).unwrap_or_default());
+            return;
+        }
         footprint.join(&footprint::of_expression(self.order.module, self.order.function, expression));
         for (operand, _, _) in self.order.operands(expression) {
             self.join_operands(operand, footprint);

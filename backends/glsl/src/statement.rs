@@ -107,6 +107,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
         if !simple || !for_loop || outlives || self.is_long_zero(statement) {
             return None;
         }
+        // The header swallows this statement, so what is declared before it comes first.
+        self.declarations_before(statement, span);
         self.lead(*loop_span);
         self.enter();
         self.simple(statement)

@@ -47,7 +47,9 @@ fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls
     let module = printer.module;
     let info = printer.info;
     let function = &module.functions[handle];
-    let mut lines = printer.documentation(|documentation| documentation.functions.get(&handle));
+    let above = module.functions.get_span(handle).to_range().map(|range| printer.comments.above(range.start));
+    let mut lines: Vec<String> = above.into_iter().flatten().map(str::to_owned).collect();
+    lines.extend(printer.documentation(|documentation| documentation.functions.get(&handle)));
     let name = printer.names.functions.get(&handle).cloned().unwrap_or_default();
     let result = match &function.result {
         Some(result) => printer.type_name(result.ty, Span::UNDEFINED),
@@ -169,7 +171,7 @@ fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
 fn assemble(printer: &mut Printer, mut stage: Vec<String>, interface: Vec<String>, bodies: Vec<Vec<String>>, versioned: bool) -> String {
     stage.extend(printer.needs.interlock.map(|interlock| format!("layout({interlock}) in;")));
     let (structures, constants, globals) = declarations(printer);
-    let helpers: Vec<_> = printer.needs.helpers.iter().map(|helper| helper.text()).collect();
+    let helpers: Vec<_> = printer.needs.helpers.iter().map(|helper| if versioned { helper.text() } else { helper.guarded() }).collect();
 
     let mut sections: Vec<Vec<String>> = Vec::new();
     let mut head = Vec::new();

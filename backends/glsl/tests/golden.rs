@@ -137,7 +137,7 @@ void spin(uint n) {
     uint i = 0u;
     while (true) {
         if (a[i] == n) {
-            i += 1u;
+            i++;
             a[0] = i;
             if (i == 9u) {
                 break;
@@ -145,16 +145,14 @@ void spin(uint n) {
             continue;
         }
         a[i] = n;
-        i += 1u;
+        i++;
         a[0] = i;
         if (i == 9u) {
             break;
         }
     }
 }
-"
-        .replace("i += 1u;", "i++;")
-        .as_str(),
+",
     );
 }
 
@@ -288,6 +286,50 @@ fn effects_are_not_skipped() {
 uint choose(bool c) {
     uint bump_result = bump(0u);
     return c ? a[1] : bump_result;
+}
+",
+    );
+}
+
+#[test]
+fn effects_inside_arguments_are_not_skipped() {
+    expect(
+        "nested",
+        "fn nested(c: bool) -> u32 {
+            a[bump(1u)] = a[2];
+            a[3] = bump(bump(4u));
+            return select(0u, read(bump(0u)), c) + a[5];
+        }",
+        "
+uint nested(bool c) {
+    uint bump_result = bump(1u);
+    a[bump_result] = a[2];
+    a[3] = bump(bump(4u));
+    uint read_result = read(bump(0u));
+    return (c ? read_result : 0u) + a[5];
+}
+",
+    );
+}
+
+#[test]
+fn effects_keep_their_order_in_a_condition() {
+    expect(
+        "guarded",
+        "fn guarded(i: u32) -> u32 {
+            while a[0] > 1u && bump(0u) < 5u { a[1] += bump(i); }
+            let sum = a[i] + u32(bump(1u) > 2u || bump(2u) > 3u);
+            return sum;
+        }",
+        "
+uint guarded(uint i) {
+    while (a[0] > 1u && bump(0u) < 5u) {
+        uint a_value = a[1];
+        a[1] = a_value + bump(i);
+    }
+    uint a_value = a[i];
+    uint sum = a_value + uint(bump(1u) > 2u || bump(2u) > 3u);
+    return sum;
 }
 ",
     );
@@ -433,4 +475,76 @@ fn plain_loads_are_allowed_by_name() {
     assert!(plain.contains("coherent volatile buffer LocksBuffer"), "{plain}");
     let vulkan = print_with(&source, Unit::Library, Dialect::Vulkan450, &["locks"]).unwrap();
     assert!(vulkan.contains("atomicLoad(locks[i], gl_ScopeDevice"), "{vulkan}");
+}
+
+#[test]
+fn vertex_stage_of_opengl() {
+    let source = "
+/// The camera.
+struct Frame {
+    /// World to clip space.
+    view: mat4x4<f32>,
+}
+/// Set once a frame.
+@group(0) @binding(2) var<uniform> frame: Frame;
+struct Varyings { @builtin(position) position: vec4<f32>, @location(0) @interpolate(flat) id: u32 }
+@vertex
+fn geometry(@location(0) position: vec3<f32>, @builtin(vertex_index) index: u32) -> Varyings {
+    // three vertices each
+    let id = index / 3u;
+    return Varyings(frame.view * vec4<f32>(position, 1.0), id);
+}
+";
+    let text = print(source, Unit::EntryPoint("geometry"), Dialect::OpenGl450).unwrap();
+    let expected = "#version 450
+
+/// The camera.
+struct Frame {
+    /// World to clip space.
+    mat4 view;
+};
+
+layout(location = 0) in vec3 in_position;
+layout(location = 0) flat out uint out_id;
+
+/// Set once a frame.
+layout(std140, binding = 2) uniform FrameBlock {
+    Frame frame;
+};
+
+void main() {
+    uint index = uint(gl_VertexID);
+    // three vertices each
+    uint id = index / 3u;
+    gl_Position = frame.view * vec4(in_position, 1.0);
+    // OpenGL clips depth to -w..w, WGSL to 0..w.
+    gl_Position.z = 2.0 * gl_Position.z - gl_Position.w;
+    out_id = id;
+}
+";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn header_stands_below_the_version() {
+    let source = "/// Doubles.\nfn twice(n: u32) -> u32 { return n * 2u; }\n@compute @workgroup_size(1) fn main() { let n = twice(1u); }";
+    let (module, info) = support::parse(source);
+    let slot = |_, _| fragbuf_glsl::Slot::default();
+    let header = "made by a test\nin two lines";
+    let options = fragbuf_glsl::Options { dialect: Dialect::Vulkan450, header, markers: &[], bindings: &slot, plain_loads: &[] };
+    let text = fragbuf_glsl::print(&module, &info, source, Unit::EntryPoint("main"), &options).unwrap();
+    assert!(text.starts_with("#version 450\n\n// made by a test\n// in two lines\n\nlayout(local_size_x = 1"), "{text}");
+    let library = fragbuf_glsl::print(&module, &info, source, Unit::Library, &options).unwrap();
+    let expected = "// made by a test\n// in two lines\n\n/// Doubles.\nuint twice(uint n) {\n    return n * 2u;\n}\n";
+    assert_eq!(library, expected);
+    // A text that the module does not come from costs the comments, and nothing else.
+    let strange = fragbuf_glsl::print(&module, &info, "\u{1F600} // ?", Unit::EntryPoint("main"), &options).unwrap();
+    assert!(strange.contains("uint n = twice(1u);"), "{strange}");
+}
+
+#[test]
+fn comments_above_functions_go_along() {
+    let source = "// The head of a file.\n\n// Two lines\n// about it.\nfn twice(n: u32) -> u32 {\n    return n * 2u;\n}\n";
+    let text = print(source, Unit::Library, Dialect::OpenGl450).unwrap();
+    assert_eq!(text, "// Two lines\n// about it.\nuint twice(uint n) {\n    return n * 2u;\n}\n");
 }

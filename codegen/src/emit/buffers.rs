@@ -8,12 +8,13 @@ use fragbuf_templates::vocabulary::{Access, Element, Expression, Formula, Pass, 
 
 use crate::{Linking, Plan, Planned, Profile};
 
-pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking) -> String {
+pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, wanted: &dyn Fn(&str) -> bool) -> String {
     let mut text = uniform_blocks(plan, linking);
     for planned in &plan.resources {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
         if let Some(usage) = usage.filter(|usage| is_buffer(&planned.resource, usage)) {
-            Accessors { plan, planned, access: shader_access(usage.access, linking.profile) }.write(linking, &mut text);
+            let access = shader_access(usage.access, linking.profile);
+            Accessors { plan, planned, access, wanted }.write(linking, &mut text);
         }
     }
     text
@@ -63,6 +64,7 @@ struct Accessors<'a> {
     plan: &'a Plan,
     planned: &'a Planned,
     access: ShaderAccess,
+    wanted: &'a dyn Fn(&str) -> bool,
 }
 
 /// Atomic operations that return the old value.
@@ -160,8 +162,14 @@ impl Accessors<'_> {
         let (name, place) = (self.name(), self.place(None));
         let parameters = self.parameters(&["value: u32"]);
         for (operation, function) in OPERATIONS {
+            if !(self.wanted)(&format!("{name}_atomic_{operation}")) {
+                continue;
+            }
             let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> u32 {{");
             let _ = writeln!(text, "    return {function}(&{place}, value);\n}}\n");
+        }
+        if !(self.wanted)(&format!("{name}_atomic_compare_exchange")) {
+            return;
         }
         let parameters = self.parameters(&["expected: u32", "value: u32"]);
         let _ = writeln!(text, "fn {name}_atomic_compare_exchange({parameters}) -> bool {{");

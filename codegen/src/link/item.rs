@@ -5,14 +5,14 @@ use crate::program::Stage;
 
 /// One declaration at module scope.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Item {
-    pub(super) name: String,
+pub(super) struct Item<'a> {
+    pub(super) name: &'a str,
     /// From the first comment or attribute above to the closing brace or semicolon.
-    pub(super) text: String,
+    pub(super) text: &'a str,
     /// Line of `text`'s first line in its source, from 1.
     pub(super) first_line: usize,
     /// Every name in it, members apart.
-    pub(super) mentions: Vec<String>,
+    pub(super) mentions: Vec<&'a str>,
     /// For an entry point.
     pub(super) stage: Option<Stage>,
     /// One line: set next to its like, without a blank line between.
@@ -20,24 +20,27 @@ pub(super) struct Item {
 }
 
 /// The declarations in order. `Err`: the line of something that is none.
-pub(super) fn parse(text: &str) -> Result<Vec<Item>, usize> {
+pub(super) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
     let all = tokens(text);
-    let code: Vec<Token<'_>> = all.iter().copied().filter(|token| token.kind != TokenKind::Comment).collect();
+    let code: Vec<usize> = (0..all.len()).filter(|&index| all[index].kind != TokenKind::Comment).collect();
     let mut items = Vec::new();
-    let mut at = 0;
+    let (mut at, mut line, mut counted) = (0, 1, 0);
     while at < code.len() {
-        let length = item_length(&code[at..]).ok_or_else(|| line_of(text, code[at].at))?;
-        let tokens = &code[at..at + length];
-        let name = declared_name(tokens).ok_or_else(|| line_of(text, code[at].at))?;
+        let rest = code[at..].iter().map(|&index| all[index]);
+        let length = item_length(rest).ok_or_else(|| line_of(text, all[code[at]].at))?;
+        let tokens: Vec<Token<'_>> = code[at..at + length].iter().map(|&index| all[index]).collect();
+        let name = declared_name(&tokens).ok_or_else(|| line_of(text, tokens[0].at))?;
         let last = tokens[length - 1];
-        let start = with_comments(text, &all, tokens[0].at);
+        let start = with_comments(text, &all[..code[at]], tokens[0].at);
+        line += newlines(&text[counted..start]);
+        counted = start;
         let item_text = &text[start..last.at + last.text.len()];
         items.push(Item {
-            name: name.to_owned(),
-            text: item_text.to_owned(),
-            first_line: line_of(text, start),
-            mentions: mentions(tokens),
-            stage: stage(tokens),
+            name,
+            text: item_text,
+            first_line: line,
+            mentions: mentions(&tokens),
+            stage: stage(&tokens),
             is_short: !item_text.contains('\n'),
         });
         at += length;
@@ -47,10 +50,15 @@ pub(super) fn parse(text: &str) -> Result<Vec<Item>, usize> {
 
 /// The comment at the top of a file that a blank line parts from the first declaration, with that blank line.
 pub(crate) fn head(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().collect();
-    let comments = lines.iter().take_while(|line| line.starts_with("//") && !line.starts_with("///")).count();
-    let is_apart = lines.get(comments).is_some_and(|line| line.is_empty());
-    if comments == 0 || !is_apart { String::new() } else { format!("{}\n\n", lines[..comments].join("\n")) }
+    let mut length = 0;
+    for line in text.split_inclusive('\n') {
+        if !line.starts_with("//") || line.starts_with("///") {
+            let is_apart = length > 0 && line == "\n";
+            return if is_apart { text[..length + 1].to_owned() } else { String::new() };
+        }
+        length += line.len();
+    }
+    String::new()
 }
 
 /// Functions by name, with everything between the name and the body.
@@ -61,30 +69,35 @@ pub(crate) fn heads(text: &str) -> Vec<(String, String)> {
         .filter_map(|item| {
             let start = item.text.find(&format!("fn {}(", item.name))?;
             let head = item.text[start + 3 + item.name.len()..].split(" {").next()?;
-            Some((item.name, head.to_owned()))
+            Some((item.name.to_owned(), head.to_owned()))
         })
         .collect()
 }
 
 /// Everything that a text declares.
 pub(crate) fn names(text: &str) -> Vec<String> {
-    parse(text).unwrap_or_default().into_iter().map(|item| item.name).collect()
+    parse(text).unwrap_or_default().into_iter().map(|item| item.name.to_owned()).collect()
 }
 
 fn line_of(text: &str, at: usize) -> usize {
-    text[..at].bytes().filter(|byte| *byte == b'\n').count() + 1
+    newlines(&text[..at]) + 1
+}
+
+fn newlines(text: &str) -> usize {
+    text.bytes().filter(|byte| *byte == b'\n').count()
 }
 
 /// Up to the brace that closes the first one opened, or the semicolon before any.
-fn item_length(tokens: &[Token<'_>]) -> Option<usize> {
+fn item_length<'a>(tokens: impl Iterator<Item = Token<'a>>) -> Option<usize> {
     let mut depth = 0usize;
-    for (index, token) in tokens.iter().enumerate() {
+    let mut tokens = tokens.enumerate().peekable();
+    while let Some((index, token)) = tokens.next() {
         match token.text {
             "{" => depth += 1,
             "}" => {
                 depth = depth.checked_sub(1)?;
                 if depth == 0 {
-                    let semicolon = tokens.get(index + 1).is_some_and(|next| next.text == ";");
+                    let semicolon = tokens.peek().is_some_and(|(_, next)| next.text == ";");
                     return Some(index + 1 + usize::from(semicolon));
                 }
             }
@@ -108,28 +121,27 @@ fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
     (next.kind == TokenKind::Name).then_some(next.text)
 }
 
-/// Where the comments begin that stand directly above `at`, line by line.
-fn with_comments(text: &str, all: &[Token<'_>], at: usize) -> usize {
+/// Where the comments begin that stand directly above `at`, line by line; `before` are the tokens up to it.
+fn with_comments(text: &str, before: &[Token<'_>], at: usize) -> usize {
     let mut start = at;
-    for token in all.iter().rev().filter(|token| token.at < at && token.kind == TokenKind::Comment) {
+    for token in before.iter().rev().take_while(|token| token.kind == TokenKind::Comment) {
         let between = &text[token.at + token.text.len()..start];
-        if !between.trim().is_empty() || between.matches('\n').count() != 1 {
+        if !between.trim().is_empty() || newlines(between) != 1 {
             break;
         }
         start = token.at;
     }
-    // A comment that opens the file and belongs to it as a whole is its head; one that touches the item is the item's.
     start
 }
 
-fn mentions(tokens: &[Token<'_>]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for (index, token) in tokens.iter().enumerate() {
-        let is_member = index > 0 && tokens[index - 1].text == ".";
-        if token.kind == TokenKind::Name && !is_member && !names.iter().any(|name| name == token.text) {
-            names.push(token.text.to_owned());
-        }
-    }
+fn mentions<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+    let names = tokens.iter().enumerate().filter(|(index, token)| {
+        let is_member = *index > 0 && tokens[index - 1].text == ".";
+        token.kind == TokenKind::Name && !is_member
+    });
+    let mut names: Vec<&str> = names.map(|(_, token)| token.text).collect();
+    names.sort_unstable();
+    names.dedup();
     names
 }
 
@@ -150,7 +162,7 @@ mod tests {
     fn items_carry_their_comments_and_attributes() {
         let text = "// Head of the file.\n\n// Of a.\n/// Doc.\n@group(0) @binding(1)\nvar<storage, read> a: array<u32>;\nconst B = 2u;\n";
         let items = parse(text).unwrap();
-        let names: Vec<&str> = items.iter().map(|item| item.name.as_str()).collect();
+        let names: Vec<&str> = items.iter().map(|item| item.name).collect();
         assert_eq!(names, ["a", "B"]);
         assert!(items[0].text.starts_with("// Of a.\n/// Doc.\n@group"));
         assert_eq!(items[0].first_line, 3);
@@ -160,7 +172,7 @@ mod tests {
     #[test]
     fn members_are_no_mentions_and_heads_are_found() {
         let text = "fn f(a: u32) -> u32 {\n    return b.c;\n}\n";
-        assert_eq!(parse(text).unwrap()[0].mentions, ["fn", "f", "a", "u32", "return", "b"]);
+        assert_eq!(parse(text).unwrap()[0].mentions, ["a", "b", "f", "fn", "return", "u32"]);
         assert_eq!(heads(text), [("f".to_owned(), "(a: u32) -> u32".to_owned())]);
         assert_eq!(parse("const A = 1u;\n}\n"), Err(2));
     }

@@ -10,7 +10,9 @@ mod token;
 pub(crate) use item::{head, heads, names};
 pub(crate) use rename::Renames;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
@@ -22,33 +24,83 @@ use item::Item;
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     /// Its banner, and what the line map calls it.
-    name: String,
-    text: String,
+    name: Arc<str>,
+    text: Cow<'static, str>,
     origins: Option<Vec<Origin>>,
-    renames: Renames,
 }
 
 impl Source {
     /// Text made for this program.
     pub(crate) fn generated(name: &str, text: String) -> Self {
-        Source { name: format!("generated/{name}"), text, origins: None, renames: Renames::default() }
+        Source { name: format!("generated/{name}").into(), text: text.into(), origins: None }
     }
 
     /// A template, renamed for its instance.
-    pub(crate) fn template(template: Template, renames: Renames) -> Self {
-        Source { name: template.path.to_owned(), text: template.text.to_owned(), origins: None, renames }
+    pub(crate) fn template(template: Template, renames: &Renames) -> Self {
+        Source { name: template.path.into(), text: renames.apply(template.text), origins: None }
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
     /// lies.
     pub(crate) fn user(function: &UserFunction) -> Self {
         Source {
-            name: "description".to_owned(),
-            text: function.wgsl.clone(),
+            name: "description".into(),
+            text: function.wgsl.clone().into(),
             origins: Some(function.lines.clone()),
-            renames: Renames::default(),
         }
     }
+
+    /// Adds the names that its declarations mention to `names`.
+    pub(crate) fn mentions<'a>(&'a self, names: &mut BTreeSet<Cow<'a, str>>) {
+        match self.items() {
+            Ok(Items::Kept(items)) => {
+                names.extend(items.iter().flat_map(|item| item.mentions.iter().map(|name| Cow::Borrowed(*name))));
+            }
+            Ok(Items::Parsed(items)) => {
+                names.extend(items.iter().flat_map(|item| item.mentions.iter().map(|name| Cow::Borrowed(*name))));
+            }
+            // Linking will say what is wrong.
+            Err(_) => {}
+        }
+    }
+
+    fn items(&self) -> Result<Items<'_>, String> {
+        let parsed = match &self.text {
+            Cow::Borrowed(text) => kept_items(text).map(Items::Kept),
+            Cow::Owned(text) => item::parse(text).map(Items::Parsed),
+        };
+        parsed.map_err(|line| format!("{}:{line}: not a declaration", self.name))
+    }
+}
+
+/// The declarations of a source: a template's are found once and kept.
+enum Items<'a> {
+    Kept(Arc<Vec<Item<'static>>>),
+    Parsed(Vec<Item<'a>>),
+}
+
+impl Items<'_> {
+    fn as_slice(&self) -> &[Item<'_>] {
+        match self {
+            Items::Kept(items) => items,
+            Items::Parsed(items) => items,
+        }
+    }
+}
+
+/// The declarations of a text that lives as long as the program does.
+fn kept_items(text: &'static str) -> Result<Arc<Vec<Item<'static>>>, usize> {
+    type Kept = BTreeMap<(usize, usize), Arc<Vec<Item<'static>>>>;
+    static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
+    let key = (text.as_ptr() as usize, text.len());
+    // A thread that panicked while holding the lock left only whole entries behind.
+    let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some(items) = kept.get(&key) {
+        return Ok(items.clone());
+    }
+    let items = Arc::new(item::parse(text)?);
+    kept.insert(key, items.clone());
+    Ok(items)
 }
 
 /// What linking yields.
@@ -63,47 +115,39 @@ pub(crate) struct Linked {
 /// Links `sources`. Roots are the entry points, or `exports` where there are any. `prefix` goes before every name but the
 /// entry points'. `Err`: names that sources declare twice, or an export that none declares.
 pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &str) -> Result<Linked, String> {
-    let items = renamed_items(sources)?;
+    let lists: Vec<Items<'_>> = sources.iter().map(Source::items).collect::<Result<_, _>>()?;
+    let items: Vec<(usize, &Item<'_>)> = lists
+        .iter()
+        .enumerate()
+        .flat_map(|(source, list)| list.as_slice().iter().map(move |item| (source, item)))
+        .collect();
     let index = declarations(&items)?;
     let reached = reach(&items, &index, exports)?;
-    let entry_points: Vec<EntryPoint> =
-        reached.iter().filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.clone(), stage })).collect();
-    let globals: BTreeSet<&str> = index.keys().map(String::as_str).collect();
-    let prefixed = Renames::prefix(prefix, globals.iter().copied().filter(|name| !is_entry(name, &entry_points)));
+    let entry_points: Vec<EntryPoint> = reached
+        .iter()
+        .filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.to_owned(), stage }))
+        .collect();
+    let is_entry = |name: &str| entry_points.iter().any(|entry| entry.name == name);
+    let prefixed = Renames::prefix(prefix, index.keys().copied().filter(|name| !is_entry(name)));
     let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
     writer.lines.skip(header.lines().count());
-    let mut current = None;
+    let mut current: Option<&str> = None;
     for &id in &reached {
-        let (source, item) = &items[id];
-        let name = sources[*source].name.as_str();
-        if current != Some(name) {
-            writer.banner(&sources[*source]);
-            current = Some(name);
+        let (source, item) = items[id];
+        if current != Some(&sources[source].name) {
+            writer.banner(&sources[source]);
+            current = Some(&sources[source].name);
         }
-        writer.item(&sources[*source], item, &prefixed);
+        writer.item(&sources[source], item, &prefixed);
     }
-    let declared = reached.iter().map(|&id| items[id].1.name.clone()).collect();
+    let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
     Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
 }
 
-fn is_entry(name: &str, entry_points: &[EntryPoint]) -> bool {
-    entry_points.iter().any(|entry| entry.name == name)
-}
-
-fn renamed_items(sources: &[Source]) -> Result<Vec<(usize, Item)>, String> {
-    let mut items = Vec::new();
-    for (index, source) in sources.iter().enumerate() {
-        let text = source.renames.apply(&source.text);
-        let parsed = item::parse(&text).map_err(|line| format!("{}:{line}: not a declaration", source.name))?;
-        items.extend(parsed.into_iter().map(|item| (index, item)));
-    }
-    Ok(items)
-}
-
-fn declarations(items: &[(usize, Item)]) -> Result<BTreeMap<String, usize>, String> {
+fn declarations<'a>(items: &[(usize, &Item<'a>)]) -> Result<BTreeMap<&'a str, usize>, String> {
     let mut index = BTreeMap::new();
     for (id, (_, item)) in items.iter().enumerate() {
-        if index.insert(item.name.clone(), id).is_some() {
+        if index.insert(item.name, id).is_some() {
             return Err(format!("`{}` is declared twice", item.name));
         }
     }
@@ -111,13 +155,17 @@ fn declarations(items: &[(usize, Item)]) -> Result<BTreeMap<String, usize>, Stri
 }
 
 /// The items that the roots reach, in the order of the sources.
-fn reach(items: &[(usize, Item)], index: &BTreeMap<String, usize>, exports: &[&str]) -> Result<Vec<usize>, String> {
+fn reach(
+    items: &[(usize, &Item<'_>)],
+    index: &BTreeMap<&str, usize>,
+    exports: &[&str],
+) -> Result<BTreeSet<usize>, String> {
     let mut waiting: Vec<usize> = Vec::new();
     if exports.is_empty() {
         waiting.extend((0..items.len()).filter(|&id| items[id].1.stage.is_some()));
     }
     for export in exports {
-        waiting.push(*index.get(*export).ok_or_else(|| format!("nothing declares `{export}`"))?);
+        waiting.push(*index.get(export).ok_or_else(|| format!("nothing declares `{export}`"))?);
     }
     let mut reached = BTreeSet::new();
     while let Some(id) = waiting.pop() {
@@ -125,7 +173,7 @@ fn reach(items: &[(usize, Item)], index: &BTreeMap<String, usize>, exports: &[&s
             waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name)));
         }
     }
-    Ok(reached.into_iter().collect())
+    Ok(reached)
 }
 
 struct Writer {
@@ -137,7 +185,10 @@ impl Writer {
     fn banner(&mut self, source: &Source) {
         self.blank_line();
         let head = head(&source.text);
-        self.text.push_str(&format!("// ---- {}\n{head}", source.name));
+        self.text.push_str("// ---- ");
+        self.text.push_str(&source.name);
+        self.text.push('\n');
+        self.text.push_str(&head);
         self.lines.skip(1 + head.lines().count());
     }
 
@@ -148,15 +199,13 @@ impl Writer {
         }
     }
 
-    fn item(&mut self, source: &Source, item: &Item, prefixed: &Renames) {
+    fn item(&mut self, source: &Source, item: &Item<'_>, prefixed: &Renames) {
         if !item.is_short {
             self.blank_line();
         }
-        let text = prefixed.apply(&item.text);
-        for (offset, line) in text.lines().enumerate() {
-            self.text.push_str(line);
-            self.text.push('\n');
-            let at = item.first_line + offset;
+        self.text.push_str(&prefixed.apply(item.text));
+        self.text.push('\n');
+        for at in (item.first_line..).take(item.text.lines().count()) {
             self.lines.push(match &source.origins {
                 Some(origins) => origins.get(at - 1).map_or(LineOrigin::None, |origin| LineOrigin::User(origin.clone())),
                 None => LineOrigin::Source { name: source.name.clone(), line: at },

@@ -1,5 +1,6 @@
 //! New names for old, on tokens: members of structs keep theirs.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::token::{Token, TokenKind, tokens};
@@ -23,9 +24,9 @@ impl Renames {
     }
 
     /// `text` with the new names.
-    pub(crate) fn apply(&self, text: &str) -> String {
+    pub(crate) fn apply<'a>(&self, text: &'a str) -> Cow<'a, str> {
         if self.0.is_empty() {
-            return text.to_owned();
+            return Cow::Borrowed(text);
         }
         let all = tokens(text);
         let mut out = String::with_capacity(text.len() * 2);
@@ -47,7 +48,7 @@ impl Renames {
             }
         }
         out.push_str(&text[copied..]);
-        out
+        Cow::Owned(out)
     }
 }
 

@@ -32,23 +32,27 @@ fn complete_pass(
     registry: &Registry,
 ) -> Result<(), String> {
     let skeleton = registry.row("pass", &pass.skeleton);
-    let mut wanted: Vec<&str> = skeleton.map(|row| row.calls.clone()).unwrap_or_default();
+    let mut wanted: Vec<String> = skeleton.map(|row| row.calls.iter().map(|call| (*call).to_owned()).collect()).unwrap_or_default();
+    wanted.extend(pass.roles.iter().map(|role| role.contract.clone()));
     let mut next = 0;
-    while let Some(contract) = wanted.get(next).copied() {
+    while let Some(contract) = wanted.get(next).cloned() {
         next += 1;
         let row = match pass.roles.iter().find(|role| role.contract == contract) {
             Some(role) => instance_row(role, selection, registry)?,
             None => {
-                let Some(selected) = selection.row(contract) else {
+                let Some(selected) = selection.row(&contract) else {
                     return Err(format!("pass `{}` calls `{contract}`, and nothing fulfils it", pass.anchor));
                 };
-                let instance = Instance { row: selected.row.key.clone(), name: contract.to_owned() };
-                pass.roles.push(Role { contract: contract.to_owned(), instance });
+                let instance = Instance { row: selected.row.key.clone(), name: contract.clone() };
+                pass.roles.push(Role { contract, instance });
                 &selected.row
             }
         };
-        let more: Vec<&str> = row.calls.iter().copied().filter(|call| !wanted.contains(call)).collect();
-        wanted.extend(more);
+        for call in &row.calls {
+            if !wanted.iter().any(|known| known == call) {
+                wanted.push((*call).to_owned());
+            }
+        }
     }
     for role in pass.roles.clone() {
         let row = instance_row(&role, selection, registry)?;

@@ -12,7 +12,7 @@ use crate::{CONTRACTS, Plan};
 /// The skeleton's text.
 pub(super) fn skeleton(key: &str, registry: &Registry) -> Result<Source, String> {
     let template = registry.row("pass", key).and_then(|row| row.template);
-    template.map(|template| Source::template(template, Renames::default())).ok_or_else(|| format!("no text for the skeleton `{key}`"))
+    template.map(|template| Source::template(template, &Renames::default())).ok_or_else(|| format!("no text for the skeleton `{key}`"))
 }
 
 /// One source per role, in the order of the axes. An instance of two roles is linked once.
@@ -22,7 +22,7 @@ pub(super) fn sources(pass: &Pass, plan: &Plan, registry: &Registry) -> Result<V
         let row = instance_row(role, &plan.selection, registry)?;
         if let Some(template) = row.template {
             let renames = renames(role, axis_of(&role.contract, registry), row, template.text);
-            sources.push(Source::template(template, renames));
+            sources.push(Source::template(template, &renames));
         }
     }
     Ok(sources)

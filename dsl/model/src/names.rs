@@ -4,6 +4,8 @@
 //! different names stay different. Keywords of other targets are each printer's own affair.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
 
 /// `name` as generated WGSL spells it: itself, or with `_` appended where a keyword, a reserved word, a built-in or a
 /// name of generated code is in the way. No two names are spelled alike:
@@ -23,9 +25,10 @@ pub fn mangled(name: &str) -> Cow<'_, str> {
 
 /// Whether WGSL or generated code already has this name.
 fn is_taken(name: &str) -> bool {
-    let in_list = |list: &str| list.split_ascii_whitespace().any(|word| word == name);
-    PREFIXES.iter().any(|prefix| name.starts_with(prefix))
-        || [GENERATED, KEYWORDS, RESERVED, TYPES, ENUMERANTS, FUNCTIONS].into_iter().any(in_list)
+    static TAKEN: LazyLock<BTreeSet<&str>> = LazyLock::new(|| {
+        [GENERATED, KEYWORDS, RESERVED, TYPES, ENUMERANTS, FUNCTIONS].iter().flat_map(|list| list.split(' ')).collect()
+    });
+    PREFIXES.iter().any(|prefix| name.starts_with(prefix)) || TAKEN.contains(name)
 }
 
 /// Names of generated code and of templates.

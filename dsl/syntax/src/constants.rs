@@ -51,7 +51,7 @@ fn vector(size: u8, name: &str) -> Option<Constant> {
 /// Every path of a constant, for "did you mean".
 pub(crate) fn names() -> Vec<String> {
     let mut all: Vec<String> = FLOATS.iter().map(|row| format!("f32::{}", row.0)).collect();
-    all.extend(FLOAT_CONSTS.iter().map(|row| format!("std::f32::consts::{}", row.0)));
+    all.extend(FLOAT_CONSTS.iter().map(|row| format!("f32::consts::{}", row.0)));
     all.extend(["u32::MIN", "u32::MAX", "i32::MIN", "i32::MAX"].map(String::from));
     for (size, axes) in [(2, "X Y"), (3, "X Y Z"), (4, "X Y Z W")] {
         let words = axes.split(' ').chain(["ZERO", "ONE", "NEG_ONE"]);

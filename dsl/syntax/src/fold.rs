@@ -80,7 +80,8 @@ impl Folding<'_> {
             }
             Kind::Block(block) => self.block(block),
             other => {
-                let values: Vec<Option<Value>> = other.operands().into_iter().map(|operand| self.expr(operand)).collect();
+                let values: Vec<Option<Value>> =
+                    other.operands().into_iter().map(|operand| self.expr(operand)).collect();
                 self.endless(other, &values, expr);
                 other.block().map(|block| self.block(block));
                 None
@@ -111,7 +112,9 @@ impl Folding<'_> {
             Value::Float(parts) => Some(Value::Float(parts.into_iter().map(|part| -part).collect())),
             Value::I32(value) => match value.checked_neg() {
                 Some(value) => Some(Value::I32(value)),
-                None => self.refuse(expr, "this constant overflows an `i32`", "the least `i32` has no positive counterpart"),
+                None => {
+                    self.refuse(expr, "this constant overflows an `i32`", "the least `i32` has no positive counterpart")
+                }
             },
             _ => None,
         }

@@ -22,10 +22,8 @@ pub(crate) fn finish(
 ) -> Draft {
     let environment = environment(&items, report);
     let Items { attributes, uniforms, keep, choices, functions, .. } = items;
-    let checked: Vec<(Role, Option<Function>)> = functions
-        .into_iter()
-        .map(|raw| (raw.role.clone(), check::function(raw, &environment, report)))
-        .collect();
+    let checked: Vec<(Role, Option<Function>)> =
+        functions.into_iter().map(|raw| (raw.role.clone(), check::function(raw, &environment, report))).collect();
     let helpers: Vec<Option<&Function>> = helper_functions(&checked, &environment);
     reads::refuse_recursion(&helpers, report);
     let mut draft = Draft {
@@ -113,7 +111,10 @@ fn signature(name: &str, raw: &RawFunction, report: &mut Report) -> Signature {
     Signature { name: name.to_string(), origin: raw.name_origin.clone(), parameters, result }
 }
 
-fn helper_functions<'a>(checked: &'a [(Role, Option<Function>)], environment: &Environment) -> Vec<Option<&'a Function>> {
+fn helper_functions<'a>(
+    checked: &'a [(Role, Option<Function>)],
+    environment: &Environment,
+) -> Vec<Option<&'a Function>> {
     let find = |signature: &Signature| {
         let role = Role::Helper(signature.name.clone());
         checked.iter().find(|(other, _)| *other == role).and_then(|(_, function)| function.as_ref())

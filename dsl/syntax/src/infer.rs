@@ -82,11 +82,8 @@ impl Inference {
             (Type::Error, other) | (other, Type::Error) | (Type::Never, other) | (other, Type::Never) => Some(other),
             _ if a == b => Some(a),
             (Type::Unknown(index), other) | (other, Type::Unknown(index)) => {
-                let agrees = if self.is_whole(Type::Unknown(index)) {
-                    self.is_whole(other)
-                } else {
-                    self.is_fractional(other)
-                };
+                let agrees =
+                    if self.is_whole(Type::Unknown(index)) { self.is_whole(other) } else { self.is_fractional(other) };
                 if !agrees {
                     return None;
                 }

@@ -18,7 +18,7 @@ pub(crate) struct Method {
     pub gives: Slot,
     pub wgsl: Spelling,
     /// What to know of its meaning; the rows that say nothing mean the same to the bit or to WGSL's accuracy.
-    #[allow(dead_code, reason = "documentation that the tests print")]
+    #[expect(dead_code, reason = "for readers of the table")]
     pub note: &'static str,
 }
 
@@ -208,3 +208,32 @@ const REFUSED: &[(&[Type], &str, &str, &str)] = &[
     (WORDS, "pow", "has no counterpart in a shader", "multiply, or shift: `1u32 << n`"),
     (WORDS, "checked_add", "gives an option, which a shader has no value for", "use `wrapping_add` and compare"),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::METHODS;
+
+    /// The directory of good descriptions shows every row of the table at work.
+    #[test]
+    fn every_method_is_shown() {
+        let shown = concat!(
+            include_str!("../tests/good/methods_f32.fragbuf"),
+            include_str!("../tests/good/methods_whole.fragbuf"),
+            include_str!("../tests/good/methods_vector.fragbuf"),
+        );
+        let missing: Vec<&str> =
+            METHODS.iter().map(|row| row.name).filter(|name| !shown.contains(&format!(".{name}("))).collect();
+        assert!(missing.is_empty(), "no good description calls {missing:?}");
+    }
+
+    /// No two rows are for the same method of the same type.
+    #[test]
+    fn every_method_has_one_row() {
+        for (index, row) in METHODS.iter().enumerate() {
+            for other in METHODS.iter().skip(index + 1) {
+                let same = row.name == other.name && row.on.iter().any(|kind| other.on.contains(kind));
+                assert!(!same, "{} has two rows", row.name);
+            }
+        }
+    }
+}

@@ -67,6 +67,9 @@ fn search(start: usize, helpers: &[Option<&Function>], done: &mut [bool], report
     }
 }
 
+/// How many functions of a ring are named.
+const RING: usize = 6;
+
 fn recursion(ring: &[usize], origin: &fragbuf_model::Origin, helpers: &[Option<&Function>]) -> Diagnostic {
     let functions: Vec<&Function> = ring.iter().filter_map(|index| helpers.get(*index).copied().flatten()).collect();
     let name = |function: &Function| function.name.trim_start_matches("user_").to_string();
@@ -75,11 +78,12 @@ fn recursion(ring: &[usize], origin: &fragbuf_model::Origin, helpers: &[Option<&
     names.push(first.clone());
     let message = match functions.len() {
         1 => format!("{first} calls itself"),
-        _ => format!("{first} calls itself: {}", names.join(" calls ")),
+        2..=RING => format!("{first} calls itself: {}", names.join(" calls ")),
+        count => format!("{first} calls itself through {} others", count - 1),
     };
     let hint = "shaders have no recursion: write a loop, `for _ in 0..N { … }`";
     let mut diagnostic = Diagnostic::new(codes::RECURSION, origin, message, hint);
-    for function in functions.into_iter().skip(1) {
+    for function in functions.into_iter().skip(1).take(RING) {
         diagnostic = diagnostic.label(&function.origin, format!("`{}` is part of the ring", name(function)));
     }
     diagnostic

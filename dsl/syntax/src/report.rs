@@ -3,6 +3,9 @@
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin};
 use proc_macro2::Span;
 
+/// How many mistakes are kept. A text with more is not a description that went wrong, and nobody reads that far.
+const MOST: usize = 200;
+
 /// The mistakes so far, and the door's way from a span to a place.
 pub(crate) struct Report<'a> {
     place: &'a dyn Fn(Span) -> Origin,
@@ -29,7 +32,9 @@ impl<'a> Report<'a> {
     /// Adds a mistake that may have labels.
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
         self.count += 1;
-        self.diagnostics.push(diagnostic);
+        if self.count <= MOST {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// How many mistakes there are: a caller that saw fewer before knows that its part is wrong.
@@ -37,7 +42,7 @@ impl<'a> Report<'a> {
         self.count
     }
 
-    /// All of them, in the order of the user's text, each once.
+    /// Those that were kept, in the order of the user's text, each once.
     pub(crate) fn finish(self) -> Diagnostics {
         match self.diagnostics.gate(()) {
             Ok(()) => Diagnostics::new(),

@@ -77,6 +77,10 @@ fn brackets(text: &str, file: &str) -> Option<Diagnostic> {
             _ => {}
         }
     }
+    if let Some((what, at)) = scan.unclosed {
+        let message = format!("this {what} never ends");
+        return Some(Diagnostic::new(codes::UNREADABLE, &place(at), message, "close it, or leave its first sign out"));
+    }
     let (opener, at) = open.pop()?;
     let message = format!("`{opener}` is never closed");
     Some(Diagnostic::new(codes::UNREADABLE, &place(at), message, format!("add the `{}`", partner(opener))))
@@ -95,12 +99,14 @@ struct Scan<'a> {
     letters: std::iter::Peekable<std::str::Chars<'a>>,
     line: u32,
     column: u32,
+    /// A string or comment that the text ends in, and where it begins.
+    unclosed: Option<(&'static str, (u32, u32))>,
 }
 
 impl<'a> Scan<'a> {
     fn new(text: &'a str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        Scan { letters: text.chars().peekable(), line: 1, column: 1 }
+        Scan { letters: text.chars().peekable(), line: 1, column: 1, unclosed: None }
     }
 
     fn step(&mut self) -> Option<(char, (u32, u32))> {
@@ -120,8 +126,8 @@ impl<'a> Scan<'a> {
             let (letter, at) = self.step()?;
             match (letter, self.letters.peek()) {
                 ('/', Some('/')) => while self.step().is_some_and(|(next, _)| next != '\n') {},
-                ('/', Some('*')) => self.skip_block_comment(),
-                ('"', _) => self.skip_string(),
+                ('/', Some('*')) => self.skip_block_comment(at),
+                ('"', _) => self.skip_string(at),
                 ('\'', _) => self.skip_character(),
                 _ => return Some((letter, at)),
             }
@@ -129,7 +135,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Rust's block comments nest.
-    fn skip_block_comment(&mut self) {
+    fn skip_block_comment(&mut self, at: (u32, u32)) {
         let mut depth = 0_u32;
         let mut before = '/';
         while let Some((letter, _)) = self.step() {
@@ -140,9 +146,10 @@ impl<'a> Scan<'a> {
                 _ => before = letter,
             }
         }
+        self.unclosed = Some(("comment", at));
     }
 
-    fn skip_string(&mut self) {
+    fn skip_string(&mut self, at: (u32, u32)) {
         while let Some((letter, _)) = self.step() {
             match letter {
                 '\\' => drop(self.step()),
@@ -150,6 +157,7 @@ impl<'a> Scan<'a> {
                 _ => {}
             }
         }
+        self.unclosed = Some(("string", at));
     }
 
     /// `'('` is a character, `'a` a label: only the former can hide a bracket.

@@ -118,7 +118,11 @@ pub(crate) enum Kind {
     If(Box<If>),
     Block(Block),
     For(Box<For>),
-    Assign { place: Box<Expr>, operator: Option<Operator>, value: Box<Expr> },
+    Assign {
+        place: Box<Expr>,
+        operator: Option<Operator>,
+        value: Box<Expr>,
+    },
     Return(Box<Expr>),
     Break,
     Continue,

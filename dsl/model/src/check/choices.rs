@@ -170,7 +170,7 @@ fn selected(
 ) -> Option<Selected> {
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
-    let Some(row) = registry.row(&axis.value, &value.value) else {
+    let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
         let known: Vec<&str> = registry
             .rows_of(&axis.value)
             .map(|row| row.key.as_str())

@@ -73,7 +73,9 @@ impl Checker<'_, '_, '_> {
         let declared = variable.origin.clone();
         let message = format!("`{name}` cannot be assigned: it is not declared with `mut`");
         let hint = match variable.kind {
-            Type::Fragments | Type::Uniforms => format!("`{name}` only gives values: copy what you need into a `let mut`"),
+            Type::Fragments | Type::Uniforms => {
+                format!("`{name}` only gives values: copy what you need into a `let mut`")
+            }
             _ => format!("declare it with `let mut {name} = …;`, or copy it into such a variable"),
         };
         let diagnostic = Diagnostic::new(codes::NOT_MUTABLE, whole, message, hint);

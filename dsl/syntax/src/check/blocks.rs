@@ -6,6 +6,7 @@
 use fragbuf_model::{Origin, codes};
 use syn::spanned::Spanned;
 
+use super::mismatch::quoted;
 use super::{Checker, written_type};
 use crate::tree::{Block, Expr, Kind, Statement, VariableId};
 use crate::types::Type;
@@ -118,7 +119,7 @@ impl Checker<'_, '_, '_> {
     fn refuse_no_value(&mut self, value: &Expr, kind: Type) {
         match self.inference.resolve(kind) {
             Type::Uniforms | Type::Fragments => {
-                let message = format!("`{}` cannot get a second name", self.inference.name(kind));
+                let message = format!("{} cannot get a second name", quoted(self.inference.name(kind)));
                 self.refuse(value.origin.clone(), message, "use the closure's parameter itself");
             }
             Type::Unit => {

@@ -30,6 +30,10 @@ impl Checker<'_, '_, '_> {
         let place = self.at(call.func.span());
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         match words.as_slice() {
+            [name] if self.hides_function(name) => {
+                let message = format!("the variable `{name}` hides the function `{name}`");
+                self.refuse(origin, message, "rename one of them")
+            }
             ["vec2"] => self.vector(2, &call.args, origin),
             ["vec3"] => self.vector(3, &call.args, origin),
             ["vec4"] => self.vector(4, &call.args, origin),
@@ -37,6 +41,11 @@ impl Checker<'_, '_, '_> {
             [owner, name] => self.associated(owner, name, &call.args, origin, &place),
             _ => self.unknown_function(&words.join("::"), &call.args, origin, &place),
         }
+    }
+
+    fn hides_function(&self, name: &str) -> bool {
+        let function = self.environment.helpers.iter().any(|helper| helper.name == name);
+        (function || matches!(name, "vec2" | "vec3" | "vec4")) && self.lookup(name).is_some()
     }
 
     fn vector(&mut self, size: u8, arguments: &Arguments, origin: Origin) -> Expr {
@@ -51,10 +60,6 @@ impl Checker<'_, '_, '_> {
             return self.unknown_function(name, arguments, origin, place);
         };
         let Some(helper) = environment.helpers.get(index) else { return Expr::error(origin) };
-        if self.lookup(name).is_some() {
-            let message = format!("the variable `{name}` hides the function `{name}`");
-            return self.refuse(origin, message, "rename one of them");
-        }
         self.uses.push(Use::Helper(index, origin.clone()));
         if arguments.len() != helper.parameters.len() {
             let (message, hint) = count_words(name, helper.parameters.len(), arguments.len());
@@ -109,6 +114,7 @@ impl Checker<'_, '_, '_> {
         let mut existing: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
         existing.extend(["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"]);
         let hint = match near::nearest(name, &existing) {
+            _ if self.lookup(name).is_some() => format!("`{name}` is a variable: write it without `(…)`"),
             Some(near) => format!("did you mean `{near}`?"),
             None if methods::find(Type::F32, name).is_some() => format!("it is a method: write `x.{name}()`"),
             None => format!("declare it in the buffer: `fn {} (x: f32) -> f32 {{ … }}`", last_word(name)),
@@ -176,7 +182,7 @@ impl Checker<'_, '_, '_> {
         }
         let existing: Vec<&str> = methods::names_on(kind).collect();
         let hint = match existing.is_empty() {
-            true => format!("{of} has no methods here; use its fields"),
+            true => format!("{of} has no methods here: use operators or fields"),
             false => near::hint(name, &existing),
         };
         self.report.error(codes::UNKNOWN_METHOD, place, format!("{of} has no method `{name}` here"), hint);
@@ -199,7 +205,9 @@ impl Checker<'_, '_, '_> {
                 let message = format!("the list of fragments has no method `{name}` here");
                 let hint = match near::nearest(name, &["len", "is_empty"]) {
                     Some(near) => format!("did you mean `{near}`?"),
-                    None => "there are `len()` and `is_empty()`; go through it with `for f in fragments { … }`".to_string(),
+                    None => {
+                        "there are `len()` and `is_empty()`; go through it with `for f in fragments { … }`".to_string()
+                    }
                 };
                 self.report.error(codes::UNKNOWN_METHOD, place, message, hint);
                 Expr::error(origin)

@@ -3,6 +3,7 @@
 //! In: a syntax tree, and the type its place expects if that is known. Out: a typed tree. The expected type only steers
 //! messages into the arms of blocks and branches; whether it is met, [`Checker::value`] decides.
 
+use fragbuf_model::codes;
 use syn::spanned::Spanned;
 
 use super::{Checker, DEPTH, unsupported};
@@ -64,9 +65,9 @@ impl Checker<'_, '_, '_> {
         let origin = self.at(leave.span());
         let result = self.result;
         let Some(expr) = &leave.expr else {
-            let message = format!("`return` needs a `{}` here", result.rust());
-            self.report.error(fragbuf_model::codes::MISSING_VALUE, &origin, message, "write `return value;`");
-            return Expr::error(origin);
+            let message = format!("`return` needs a value of type `{}` here", result.rust());
+            self.report.error(codes::MISSING_VALUE, &origin, message, "write `return value;`");
+            return Expr::new(Kind::Error, Type::Never, origin);
         };
         let value = self.value(expr, result);
         Expr::new(Kind::Return(Box::new(value)), Type::Never, origin)

@@ -99,7 +99,12 @@ impl Checker<'_, '_, '_> {
             }
             other => {
                 let message = format!("{} has no elements", quoted(self.inference.name(other)));
-                self.report.error(codes::WRONG_TYPE, &origin, message, "`[i]` belongs to the list of fragments and to vectors");
+                self.report.error(
+                    codes::WRONG_TYPE,
+                    &origin,
+                    message,
+                    "`[i]` belongs to the list of fragments and to vectors",
+                );
                 Expr::error(origin)
             }
         }

@@ -94,7 +94,7 @@ impl Checker<'_, '_, '_> {
         let message = format!("`{}` does not fit an `{}`", whole.value, kind.rust());
         let hint = match kind {
             Type::I32 if whole.value <= u64::from(u32::MAX) && !whole.negative => {
-                format!("write `{}u32`: the greatest `i32` is {}", whole.value, i32::MAX)
+                format!("the greatest `i32` is {}; as a `u32`, write `{}u32`", i32::MAX, whole.value)
             }
             Type::I32 => format!("an `i32` goes from {} to {}", i32::MIN, i32::MAX),
             _ => format!("it goes to {}", u32::MAX),

@@ -26,10 +26,7 @@ impl Checker<'_, '_, '_> {
             Head::Range { range, reversed } => self.over_range(range, &each.pat, reversed),
             Head::Fragments { list, counted, reversed } => self.over_fragments(list, &each.pat, counted, reversed),
             Head::Other => {
-                let found = self.expr(&each.expr, None);
-                if self.inference.resolve(found.ty) != Type::Error {
-                    self.refuse(found.origin, "a loop cannot go through this", FORMS);
-                }
+                self.over_other(&each.expr);
                 None
             }
         };
@@ -43,6 +40,18 @@ impl Checker<'_, '_, '_> {
         match over {
             Some(over) => Expr::new(Kind::For(Box::new(For { over, body })), Type::Unit, origin),
             None => Expr::error(origin),
+        }
+    }
+
+    fn over_other(&mut self, expr: &syn::Expr) {
+        if let syn::Expr::MethodCall(call) = without_parens(expr) {
+            let message = format!("a loop cannot go through what `{}` gives", call.method);
+            self.refuse(self.at(call.method.span()), message, FORMS);
+            return;
+        }
+        let found = self.expr(expr, None);
+        if self.inference.resolve(found.ty) != Type::Error {
+            self.refuse(found.origin, "a loop cannot go through this", FORMS);
         }
     }
 
@@ -84,13 +93,7 @@ impl Checker<'_, '_, '_> {
         }
     }
 
-    fn over_fragments(
-        &mut self,
-        list: &syn::Expr,
-        pattern: &syn::Pat,
-        counted: bool,
-        reversed: bool,
-    ) -> Option<Over> {
+    fn over_fragments(&mut self, list: &syn::Expr, pattern: &syn::Pat, counted: bool, reversed: bool) -> Option<Over> {
         let found = self.expr(list, None);
         let kind = self.inference.resolve(found.ty);
         if kind != Type::Fragments {
@@ -150,7 +153,11 @@ impl Checker<'_, '_, '_> {
     pub(super) fn end_loop(&mut self, end: &syn::ExprBreak) -> Expr {
         let origin = self.at(end.span());
         if end.expr.is_some() {
-            return self.refuse(origin, "`break` with a value is not part of the language", "assign to a `let mut` before");
+            return self.refuse(
+                origin,
+                "`break` with a value is not part of the language",
+                "assign to a `let mut` before",
+            );
         }
         self.jump(end.label.is_some(), "break", Kind::Break, origin)
     }
@@ -196,7 +203,9 @@ fn head(expr: &syn::Expr) -> Head<'_> {
                 ("iter", Head::Fragments { list, counted: false, reversed: false }) if is_path(&call.receiver) => {
                     Head::Fragments { list, counted: false, reversed: false }
                 }
-                ("enumerate", Head::Fragments { list, counted: false, reversed: false }) if !is_path(&call.receiver) => {
+                ("enumerate", Head::Fragments { list, counted: false, reversed: false })
+                    if !is_path(&call.receiver) =>
+                {
                     Head::Fragments { list, counted: true, reversed: false }
                 }
                 ("rev", Head::Fragments { list, counted, reversed: false }) if !is_path(&call.receiver) => {
@@ -223,4 +232,3 @@ fn without_parens(mut expr: &syn::Expr) -> &syn::Expr {
         }
     }
 }
-

@@ -58,9 +58,8 @@ pub(super) fn way_out(inference: &Inference, found: &Expr, needed: Type) -> Stri
     match (is, needed) {
         (_, Type::Unit) => "end it with `;`, or leave it out".to_string(),
         (Type::Bool, Type::F32) => "write `if … { 1.0 } else { 0.0 }`".to_string(),
-        (Type::F32 | Type::U32 | Type::I32 | Type::Usize | Type::Unknown(_), Type::Bool) => {
-            "compare it: `… > 0.0`".to_string()
-        }
+        (_, Type::Bool) if inference.is_fractional(is) => "compare it: `… > 0.0`".to_string(),
+        (_, Type::Bool) if inference.is_whole(is) => "compare it: `… != 0`".to_string(),
         (Type::Vector(_), Type::Bool) => "compare a component: `v.x > 0.0`".to_string(),
         (Type::Bool, _) if inference.is_whole(needed) => format!("convert it: `… as {}`", inference.name(needed)),
         (Type::Vector(4), Type::Vector(3)) => "write `.truncate()` or `.xyz()`".to_string(),
@@ -72,7 +71,9 @@ pub(super) fn way_out(inference: &Inference, found: &Expr, needed: Type) -> Stri
             format!("all components alike: `Vec{size}::splat(…)`")
         }
         (Type::Fragment, _) => "take an attribute, such as `.depth`".to_string(),
-        (Type::Fragments, Type::Fragment) => "take one, `fragments[i]`, or go through all: `for f in fragments`".to_string(),
+        (Type::Fragments, Type::Fragment) => {
+            "take one, `fragments[i]`, or go through all: `for f in fragments`".to_string()
+        }
         _ if is_number(inference, is) && is_number(inference, needed) => {
             let target = if inference.is_fractional(needed) { "f32" } else { integer(inference, needed) };
             format!("convert it: `… as {target}`")

@@ -90,6 +90,7 @@ impl Checker<'_, '_, '_> {
             return self.refuse(origin, message, hint);
         }
         let hint = match near::nearest(&name, &constants::names()) {
+            Some(near) if near.starts_with("f32::consts") => format!("did you mean `std::{near}`?"),
             Some(near) => format!("did you mean `{near}`?"),
             None => "constants are `f32::MAX`, `std::f32::consts::PI`, `Vec3::ZERO` and the like".to_string(),
         };

@@ -11,7 +11,9 @@ pub(super) fn describe(expr: &Expr) -> (&'static str, &'static str) {
     match expr {
         Expr::Array(_) | Expr::Repeat(_) => ("arrays are", "use a vector, `vec4(a, b, c, d)`, or one variable each"),
         Expr::Async(_) | Expr::Await(_) => ("`async` is", "call the function directly"),
-        Expr::Block(_) | Expr::ForLoop(_) => ("labels are", "move the inner loop into a helper `fn` and `return` from it"),
+        Expr::Block(_) | Expr::ForLoop(_) => {
+            ("labels are", "move the inner loop into a helper `fn` and `return` from it")
+        }
         Expr::Closure(_) => ("closures inside closures are", "write a helper `fn` beside the closure"),
         Expr::Const(_) => ("`const` blocks are", "write the expression itself"),
         Expr::Infer(_) => ("`_` as a value is", "write the value"),

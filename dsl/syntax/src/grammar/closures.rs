@@ -242,7 +242,12 @@ fn refuse_closure_modifiers(closure: &syn::ExprClosure, report: &mut Report) {
         closure.lifetimes.as_ref().map(|token| token.span()),
     ];
     for span in spans.into_iter().flatten() {
-        report.error(codes::UNSUPPORTED, &report.at(span), "a closure here is plain", "write `|f| …` without this word");
+        report.error(
+            codes::UNSUPPORTED,
+            &report.at(span),
+            "a closure here is plain",
+            "write `|f| …` without this word",
+        );
     }
 }
 

@@ -95,7 +95,8 @@ impl Items {
             None
         };
         if let Some((_, first)) = &self.keep {
-            let diagnostic = Diagnostic::new(codes::DUPLICATE, &origin, "`keep` is given twice", "leave one of them out");
+            let diagnostic =
+                Diagnostic::new(codes::DUPLICATE, &origin, "`keep` is given twice", "leave one of them out");
             report.push(diagnostic.label(first, "the first is here"));
             return Ok(());
         }
@@ -174,11 +175,19 @@ fn is_first(slot: &mut Option<Origin>, origin: &Origin, block: &str, report: &mu
 }
 
 fn unknown_item(cursor: &Cursor, word: Option<&str>, report: &mut Report) -> Stop {
+    if cursor.at_sign('#') {
+        let hint = "leave it out; what it would switch has no counterpart in a shader";
+        report.error(codes::UNSUPPORTED, &cursor.origin(report), "attributes are not part of the language", hint);
+        return Stop;
+    }
     let message = match word {
         Some("buffer") => "a buffer cannot stand inside another".to_string(),
         _ => format!("{} begins no item of a buffer", cursor.describe()),
     };
     let hint = match word.and_then(|word| near::nearest(word, &WORDS)) {
+        _ if matches!(word, Some("pub" | "unsafe" | "const" | "async" | "extern")) => {
+            "helper functions begin with `fn`: leave this word out".to_string()
+        }
         Some(near) => format!("did you mean `{near}`?"),
         None => "items begin with `fragment`, `uniform`, `keep`, `where`, `resolve`, `fn`, or `axis:`".to_string(),
     };

@@ -59,7 +59,8 @@ fn find_buffer(cursor: &mut Cursor, report: &mut Report) -> Option<()> {
 
 fn buffer_name(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
     let origin = cursor.origin(report);
-    let Some(word) = cursor.any_word() else {
+    let word = if cursor.at_word("from") { None } else { cursor.any_word() };
+    let Some(word) = word else {
         let message = format!("the buffer's name belongs here, not {}", cursor.describe());
         report.error(codes::UNEXPECTED, &origin, message, "write `buffer Name { … }`");
         return Spanned::new("Unnamed".to_string(), origin);

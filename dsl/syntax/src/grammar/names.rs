@@ -17,19 +17,18 @@ pub(crate) fn declared(word: &Ident, what: &str, report: &mut Report) -> Spanned
         let message = format!("the name `{name}` of this {what} has letters beyond ASCII");
         report.error(codes::NAME_RESERVED, &origin, message, "shader languages have only a-z, A-Z, 0-9 and _");
     } else if is_rust_keyword(word) {
-        let message = format!("`{name}` is a word of Rust and cannot name a {what}");
+        let message = format!("`{name}` is a word of Rust: no {what} can have this name");
         report.error(codes::NAME_RESERVED, &origin, message, format!("choose another, such as `{}`", other(&name)));
     } else if what != "buffer" && RESERVED.contains(&name.as_str()) {
-        let message = format!("`{name}` is a name of the language and cannot name a {what}");
+        let message = format!("`{name}` is a name of the language: no {what} can have it too");
         report.error(codes::NAME_RESERVED, &origin, message, format!("choose another, such as `my_{name}`"));
     }
     Spanned::new(name, origin)
 }
 
 /// Names that closures already have a meaning for.
-const RESERVED: [&str; 13] = [
-    "vec2", "vec3", "vec4", "f32", "u32", "i32", "usize", "bool", "Vec2", "Vec3", "Vec4", "Fragment", "Uniforms",
-];
+const RESERVED: [&str; 13] =
+    ["vec2", "vec3", "vec4", "f32", "u32", "i32", "usize", "bool", "Vec2", "Vec3", "Vec4", "Fragment", "Uniforms"];
 
 fn is_rust_keyword(word: &Ident) -> bool {
     syn::parse2::<Ident>(TokenTree::from(word.clone()).into()).is_err()

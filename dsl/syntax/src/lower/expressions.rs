@@ -116,7 +116,9 @@ impl Lowering<'_> {
             _ => return None,
         };
         match (fold::constant(left, self.function)?, fold::constant(expr, self.function)?) {
-            (Value::U32(from), Value::U32(to)) => (to >> count != from).then(|| numbers::whole(u64::from(to), Type::U32)),
+            (Value::U32(from), Value::U32(to)) => {
+                (to >> count != from).then(|| numbers::whole(u64::from(to), Type::U32))
+            }
             (Value::I32(from), Value::I32(to)) if to >> count != from => Some(match to < 0 {
                 true => numbers::negative(u64::from(to.unsigned_abs())),
                 false => numbers::whole(u64::from(to.unsigned_abs()), Type::I32),
@@ -161,7 +163,8 @@ impl Lowering<'_> {
         if !self.saturates(inner, expr) {
             return Text::call(to.wgsl(), &[text]);
         }
-        let text = if is_plain(inner) && !self.is_constant(inner) { text } else { self.bind("value", &text, &inner.origin) };
+        let text =
+            if is_plain(inner) && !self.is_constant(inner) { text } else { self.bind("value", &text, &inner.origin) };
         let template = match to {
             Type::I32 => "select(i32($0), 2147483647i, $0 >= 2147483648.0)",
             _ => "select(u32($0), 4294967295u, $0 >= 4294967296.0)",

@@ -56,7 +56,8 @@ impl Lowering<'_> {
     /// A bound that every round compares with, as text that stays the same throughout the loop.
     fn bound(&mut self, variable: Option<VariableId>, which: &str, expr: &Expr) -> Text {
         let text = self.value(expr);
-        let simple = is_plain(expr) || matches!(expr.kind, Kind::LayerCount) || is_count(expr) || self.is_constant(expr);
+        let simple =
+            is_plain(expr) || matches!(expr.kind, Kind::LayerCount) || is_count(expr) || self.is_constant(expr);
         if simple && self.is_stable(expr) {
             return text;
         }

@@ -108,7 +108,8 @@ fn reads_mutable(expr: &Expr, function: &Function) -> bool {
         let statement = |statement: &Statement| match statement {
             Statement::Let { value, .. } | Statement::Expr(value) => reads_mutable(value, function),
         };
-        block.statements.iter().any(statement) || block.value.as_deref().is_some_and(|value| reads_mutable(value, function))
+        block.statements.iter().any(statement)
+            || block.value.as_deref().is_some_and(|value| reads_mutable(value, function))
     };
     matches!(expr.kind, Kind::Variable(id) if function.is_mutable(id))
         || expr.kind.operands().into_iter().any(|operand| reads_mutable(operand, function))

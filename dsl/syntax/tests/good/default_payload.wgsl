@@ -1,0 +1,3 @@
+fn user_criterion(f: Fragment) -> f32 {
+    return f.depth * f.color.x;
+}

@@ -1,0 +1,100 @@
+//! Descriptions that several tests use, and the way from a description to its generation.
+
+use fragbuf::load::{Description, variant};
+use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, Variant, generate};
+
+/// Every attribute format, two constraints, a criterion, uniforms, options and a closure.
+pub const CUSTOM: &str = "
+buffer Custom from kplus_array {
+    fragment { color: rgba8, depth: f32, id: u32, normal: octahedral, velocity: vec3, uv: vec2, glow: vec4, heat: f32 }
+    uniform { cut: f32, eye: vec3, steps: u32, offset: i32, scale: vec2, tint: vec4 }
+    keep 5 least |f| f.depth - 0.25 * f.color.w + 0.1 * f.heat;
+    where |f, u| f.depth > u.cut;
+    where |f, u| f.id != u.steps;
+    sync: spin_lock { limit: 100 };
+    resolve |fragments, u| {
+        let mut color = vec3(0.0, 0.0, 0.0);
+        let mut transmittance = 1.0;
+        for f in fragments {
+            let alpha = f.color.w * f.normal.dot(u.eye).abs();
+            color += transmittance * alpha * f.color.truncate();
+            transmittance *= 1.0 - alpha;
+            if transmittance < 0.01 { break; }
+        }
+        color.extend(1.0 - transmittance) * u.tint
+    }
+}";
+
+/// Depth and nothing else: no words beside the key.
+pub const DEPTH_ONLY: &str = "
+buffer Thickness from kplus_array {
+    fragment { depth: f32 }
+    resolve |fragments, u| {
+        let mut thickness = 0.0;
+        let mut sign = -1.0;
+        for f in fragments { thickness += sign * f.depth; sign = -sign; }
+        vec4(thickness, thickness, thickness, 1.0)
+    }
+}";
+
+/// Attributes whose names are keywords or generated names somewhere.
+pub const RESERVED: &str = "
+buffer Reserved from ab_ll {
+    fragment { color: vec4, depth: f32, key: u32, sample: f32, position: vec2, buffer: f32, main: u32, mix: f32 }
+    uniform { texture: f32, discard: u32 }
+    where |f, u| f.sample + f.buffer + f.mix > u.texture && f.main + f.key != u.discard;
+}";
+
+/// The cases of snapshots, by name: together they have every value of every axis in them.
+pub fn named() -> Vec<(&'static str, Description, Vec<(&'static str, &'static str)>)> {
+    let technique = |key: &str| Description::Technique(key.to_owned());
+    vec![
+        ("kb", technique("kb"), vec![]),
+        ("kplus_array", technique("kplus_array"), vec![]),
+        ("ab_ll", technique("ab_ll"), vec![]),
+        ("ab_sb", technique("ab_sb"), vec![]),
+        ("custom", text(CUSTOM), vec![]),
+        ("depth_only", text(DEPTH_ONLY), vec![]),
+        ("reserved", text(RESERVED), vec![]),
+        ("statistics", technique("kplus_array"), vec![("counters", "all"), ("cull", "none"), ("k", "1")]),
+        ("unsorted", text(DEPTH_ONLY), vec![("sort", "none"), ("storage", "linked_list"), ("sync", "slot_counter"), ("cull", "none"), ("k", "all")]),
+        ("locked_sorted_array", technique("kb"), vec![("sync", "spin_lock"), ("cull", "early"), ("ties", "unordered"), ("counters", "none")]),
+    ]
+}
+
+pub fn text(text: &str) -> Description {
+    Description::Text { file: "case.fragbuf".to_owned(), text: text.to_owned() }
+}
+
+pub fn checked(description: &Description, set: &[(&str, &str)]) -> Result<Variant, fragbuf::Diagnostics> {
+    let set: Vec<(String, String)> = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    variant(description, &set, &Registry::builtin())
+}
+
+/// Every target, program form.
+pub fn generated(variant: &Variant) -> Generation {
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A seeded generator (SplitMix64): tests that draw numbers draw the same ones every time.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound as u64) as usize
+    }
+
+    pub fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        &list[self.below(list.len())]
+    }
+}

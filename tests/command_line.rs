@@ -1,0 +1,164 @@
+//! The command line as scripts call it: arguments, exit codes, files, and what stands on stdout and stderr.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use fragbuf::TARGETS;
+use serde_json::Value;
+
+fn fragbuf(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut waiting = vec![folder.to_owned()];
+    while let Some(path) = waiting.pop() {
+        for entry in std::fs::read_dir(&path).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => waiting.push(path),
+                false => drop(files.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap())),
+            }
+        }
+    }
+    files
+}
+
+fn generate(what: &[&str], out: &Path) -> Output {
+    fragbuf(&[&["generate"], what, &["--target", "all", "--out", out.to_str().unwrap()]].concat())
+}
+
+#[test]
+fn generating_everything_twice_gives_the_same_bytes() {
+    let (first, second) = (folder("all-1"), folder("all-2"));
+    for out in [&first, &second] {
+        let output = generate(&["--all"], out);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.stdout.is_empty());
+    }
+    let files = tree(&first);
+    assert!(files == tree(&second));
+    assert!(files.len() > 60);
+}
+
+#[test]
+fn the_manifest_names_every_file_and_nothing_else() {
+    let out = folder("manifest");
+    assert!(generate(&["ab_sb"], &out).status.success());
+    let mut files = tree(&out);
+    let manifest: Value = serde_json::from_slice(&files.remove(Path::new("manifest.json")).unwrap()).unwrap();
+    for field in [
+        "schema", "generator", "technique", "files", "steps", "resources", "constants", "features", "tier",
+        "words_per_pixel", "counters",
+    ] {
+        assert!(!manifest[field].is_null(), "{field}");
+    }
+    let listed = manifest["files"].as_array().unwrap();
+    for row in listed {
+        for field in ["path", "target", "pass", "stage", "entry_point"] {
+            assert!(row[field].is_string(), "{row}");
+        }
+    }
+    let mut paths: Vec<PathBuf> = listed.iter().map(|row| row["path"].as_str().unwrap().into()).collect();
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths, files.into_keys().collect::<Vec<_>>());
+    assert_eq!(manifest["words_per_pixel"], "2f+2");
+    assert_eq!(manifest["steps"].as_array().unwrap().iter().filter(|step| step["do"] == "host").count(), 1);
+}
+
+#[test]
+fn list_is_an_array_of_techniques() {
+    let output = fragbuf(&["list", "--json"]);
+    let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    let row = |key: &str| rows.iter().find(|row| row["key"] == key).unwrap();
+    // The catalogue's formulas, K15 Table 1.
+    for (key, words, passes) in [("kb", "2k", 1), ("kplus_array", "2k+2", 1), ("ab_ll", "3f+1", 1), ("ab_sb", "2f+2", 2)] {
+        assert_eq!(row(key)["words_per_pixel"], words, "{key}");
+        assert_eq!(row(key)["geometry_passes"], passes, "{key}");
+        assert!(row(key)["paper"].is_string() && row(key)["axes"]["storage"].is_string());
+        assert_eq!(row(key)["targets"].as_object().unwrap().len(), TARGETS.len());
+    }
+    assert_eq!(row("kb")["targets"]["spirv"], "T5");
+    assert_eq!((&row("kplus_array")["targets"]["wgsl"], &row("kplus_array")["targets"]["glsl"]), (&"T4".into(), &"T3".into()));
+    assert_eq!(row("ab_ll")["targets"]["wgsl"], "T1");
+    let table = fragbuf(&["list"]);
+    assert!(table.status.success() && String::from_utf8_lossy(&table.stdout).contains("kplus_array"));
+}
+
+#[test]
+fn show_prints_every_stage() {
+    for stage in ["plan", "manifest", "wgsl", "wgsl-native", "glsl", "glsl-vulkan", "hlsl", "msl"] {
+        let output = fragbuf(&["show", "kplus_array", "--set", "k=4", "--dump", stage]);
+        assert_eq!(output.status.code(), Some(0), "{stage}");
+        assert!(output.stdout.len() > 500 && output.stderr.is_empty(), "{stage}");
+    }
+    let json = fragbuf(&["show", "kplus_array", "--set", "sync.limit=77", "--json"]);
+    let manifest: Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(manifest["constants"]["SPIN_LIMIT"], 77);
+}
+
+#[test]
+fn a_file_of_fifteen_lines_generates_everywhere() {
+    let path = "examples/most_visible.fragbuf";
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap();
+    assert!(text.lines().count() <= 15);
+    let out = folder("fifteen-lines");
+    let output = generate(&[path], &out);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let files = tree(&out);
+    for target in TARGETS {
+        assert!(files.keys().any(|path| path.starts_with(target.name)), "{}", target.name);
+    }
+}
+
+#[test]
+fn exit_codes_say_whose_fault_it_is() {
+    let out = folder("exit");
+    let out = out.to_str().unwrap();
+    let blocked = folder("blocked");
+    std::fs::write(&blocked, "a file, not a folder").unwrap();
+    let cases: &[(&[&str], i32)] = &[
+        (&["list"], 0),
+        (&["show", "kplus_aray"], 1),
+        (&["show", "kplus_array", "--set", "sort=bubble"], 1),
+        (&["generate", "kplus_array", "--target", "spirv", "--form", "module", "--out", out], 1),
+        (&["generate", "kplus_array", "--target", "wgls", "--out", out], 2),
+        (&["generate", "kplus_array", "--target", "wgsl"], 2),
+        (&["generate", "--target", "wgsl", "--out", out], 2),
+        (&["generate", "kb", "--target", "wgsl", "--prefix", "1a", "--out", out], 2),
+        (&["show", "kb", "--dump", "cobol"], 2),
+        (&["show", "no/such.fragbuf"], 3),
+        (&["generate", "kb", "--target", "wgsl", "--out", blocked.to_str().unwrap()], 3),
+    ];
+    for (arguments, code) in cases {
+        let output = fragbuf(arguments);
+        assert_eq!(output.status.code(), Some(*code), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.stderr.is_empty(), *code == 0, "{arguments:?}");
+        assert!(output.stdout.is_empty() || *code == 0, "{arguments:?}");
+    }
+}
+
+#[test]
+fn bad_files_say_code_place_and_way_out() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("dsl/syntax/tests/bad");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let output = fragbuf(&["show", path.to_str().unwrap()]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{}: {said}", path.display());
+        assert!(said.contains("error[") && said.contains("help: "), "{said}");
+        assert!(said.contains(&format!("{}:", path.display())), "{said}");
+        count += 1;
+    }
+    assert!(count >= 40, "{count}");
+}

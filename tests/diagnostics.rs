@@ -1,0 +1,87 @@
+//! What a user is told: every kind of mistake in a whole description, drawn with its source line. The mistakes of the
+//! grammar and the closures are `dsl/syntax`'s own tests.
+
+use std::collections::BTreeSet;
+
+use fragbuf::report::render;
+use fragbuf_model::codes;
+
+use crate::cases::{checked, text};
+
+/// A description, and what must be said of it: code and place of each mistake, and a part of the way out.
+const CASES: &[(&str, &[(&str, u32, u32, &str)])] = &[
+    ("buffer B from kplus_aray { }", &[("unknown-technique", 1, 15, "did you mean `kplus_array`?")]),
+    ("buffer B {\n    keep 8;\n}", &[("missing-storage", 1, 8, "from kplus_array")]),
+    ("buffer B from ab_ll {\n    strage: max_array;\n}", &[("unknown-axis", 2, 5, "did you mean `storage`?")]),
+    ("buffer B from ab_ll {\n    sort: insertoin;\n}", &[("unknown-value", 2, 11, "did you mean `insertion`?")]),
+    ("buffer B from ab_ll {\n    sort: bitonc;\n}", &[("unknown-value", 2, 11, "insertion")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limt: 9 };\n}", &[("unknown-option", 2, 23, "did you mean `limit`?")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("bad-option", 2, 30, "4096")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("bad-option", 2, 30, "tries")]),
+    ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "drop the braces")]),
+    ("buffer B from kplus_array {\n    keep 0;\n}", &[("capacity", 2, 10, "from 1 to 1024")]),
+    ("buffer B from kplus_array {\n    keep 5000;\n}", &[("capacity", 2, 10, "keep all")]),
+    ("buffer B from kplus_array {\n    keep all;\n}", &[("keep-mismatch", 2, 10, "keep 8")]),
+    ("buffer B from ab_ll {\n    keep 8;\n}", &[("keep-mismatch", 2, 10, "keep all")]),
+    ("buffer B from ab_ll {\n    keep all least |f| f.depth;\n}", &[("keep-mismatch", 2, 20, "where")]),
+    ("buffer B from kplus_array {\n    sync: none;\n}", &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")]),
+    ("buffer B from kplus_array {\n    sync: slot_counter;\n}", &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")]),
+    ("buffer B from ab_ll {\n    cull: early;\n}", &[("unmet", 2, 11, "`cull: none`")]),
+    ("buffer B from ab_ll {\n    sort: none;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
+    ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("unmet", 1, 15, "`color: rgba8`")]),
+    ("buffer B from ab_ll {\n    fragment { color: rgba8, z: f32 }\n}", &[("missing-depth", 2, 16, "`depth: f32`")]),
+    ("buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}", &[("missing-depth", 2, 37, "`depth: f32`")]),
+    ("buffer B from ab_ll {\n    resolve: over;\n    resolve |fragments, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}", &[("duplicate", 3, 5, "leave one of them out")]),
+    ("buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}", &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")]),
+];
+
+#[test]
+fn every_mistake_has_its_code_place_and_way_out() {
+    for (source, expected) in CASES {
+        let faults = checked(&text(source), &[]).err().unwrap_or_else(|| panic!("accepted: {source}"));
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        let wanted: Vec<_> = expected.iter().map(|(code, line, column, _)| (*code, *line, *column)).collect();
+        assert_eq!(found, wanted, "{source}\n{faults}");
+        for (fault, (.., way_out)) in faults.iter().zip(*expected) {
+            assert!(!fault.hint.is_empty() && fault.hint.contains(way_out), "{source}\n{faults}");
+        }
+    }
+}
+
+#[test]
+fn every_code_of_whole_descriptions_is_covered() {
+    let covered: BTreeSet<&str> = CASES.iter().flat_map(|(_, faults)| faults.iter().map(|(code, ..)| *code)).collect();
+    let first = codes::ALL.iter().position(|code| *code == codes::UNKNOWN_TECHNIQUE).unwrap();
+    // `target` needs a target without atomics, `internal` a defect.
+    for code in codes::ALL[first..].iter().filter(|code| ![codes::TARGET, codes::INTERNAL].contains(code)) {
+        assert!(covered.contains(code.name), "no case for {}", code.name);
+    }
+}
+
+#[test]
+fn a_hint_is_a_change_that_works() {
+    let source = "buffer B from kplus_array {\n    sync: none;\n}";
+    let faults = checked(&text(source), &[]).unwrap_err();
+    assert!(faults.iter().all(|fault| fault.hint.contains("`sync: spin_lock`")), "{faults}");
+    assert!(checked(&text(&source.replace("none", "spin_lock")), &[]).is_ok());
+}
+
+#[test]
+fn mistakes_are_drawn_with_their_line() {
+    let source = "buffer B from kplus_array {\n    keep 8 least |f| f.deph;\n    sort: insertoin;\n}";
+    let faults = checked(&text(source), &[]).unwrap_err();
+    let drawn = render(&faults, &[("case.fragbuf".to_owned(), source.to_owned())]);
+    insta::assert_snapshot!("drawn", drawn);
+}
+
+#[test]
+fn set_from_outside_is_checked_like_the_text() {
+    let key = fragbuf::load::Description::Technique("kplus_array".to_owned());
+    for (name, value, code) in [("k", "many", "bad-option"), ("sort", "x", "unknown-value"), ("sync.limit", "0", "bad-option"), ("nope", "1", "unknown-axis"), ("k", "0", "capacity")] {
+        let faults = checked(&key, &[(name, value)]).err().unwrap_or_else(|| panic!("accepted: {name}={value}"));
+        assert_eq!(faults.iter().map(|fault| fault.code.name).collect::<Vec<_>>(), [code], "{name}={value}");
+    }
+    let variant = checked(&key, &[("k", "3"), ("sync.limit", "9"), ("sort", "insertion")]).unwrap();
+    assert_eq!(variant.keep, Some(3));
+}

@@ -1,1 +1,0 @@
-//! No library: the tests are in `main.rs`, the bench in `benches/`.

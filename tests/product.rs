@@ -1,0 +1,130 @@
+//! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. A
+//! covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by definition.
+
+use std::collections::BTreeSet;
+
+use fragbuf::{File, Registry, check};
+use fragbuf_codegen::verify;
+use fragbuf_model::{Alternative, Choice, Draft, Keep, KeepCount, Origin, Spanned};
+
+use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
+use crate::validators::validate;
+
+/// Payloads, constraints and closures that every combination of rows is tried with.
+fn descriptions() -> Vec<Draft> {
+    let parsed = |source: &str| fragbuf::parse(source, "case.fragbuf").draft.unwrap();
+    vec![Draft::from_technique("kb", &Origin::new("case", 1, 1)), parsed(CUSTOM), parsed(DEPTH_ONLY), parsed(RESERVED)]
+}
+
+/// Every choice of one row per axis.
+fn combinations(registry: &Registry) -> Vec<Vec<(String, String)>> {
+    let mut all: Vec<Vec<(String, String)>> = vec![Vec::new()];
+    for axis in registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS) {
+        let values: Vec<String> = registry.rows_of(axis.key).map(|row| row.key.clone()).collect();
+        all = all
+            .into_iter()
+            .flat_map(|choices| {
+                values.iter().map(move |value| [choices.clone(), vec![(axis.key.to_owned(), value.clone())]].concat())
+            })
+            .collect();
+    }
+    all
+}
+
+fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft {
+    let spanned = |text: &str| Spanned::new(text.to_owned(), Origin::new("case", 1, 1));
+    let mut draft = draft.clone();
+    draft.preset = None;
+    let criterion = draft.keep.take().and_then(|keep| keep.criterion).filter(|_| keep != KeepCount::All);
+    draft.keep = Some(Keep { count: Spanned::new(keep, Origin::new("case", 1, 1)), criterion });
+    draft.choices = choices
+        .iter()
+        .map(|(axis, value)| Choice {
+            axis: spanned(axis),
+            alternatives: vec![Alternative { value: spanned(value), options: Vec::new() }],
+        })
+        .collect();
+    draft
+}
+
+#[test]
+fn every_combination_generates_or_is_refused_with_a_way_out() {
+    let registry = Registry::builtin();
+    let combinations = combinations(&registry);
+    let (mut accepted, mut refused) = (0, 0);
+    let mut texts: BTreeSet<Vec<u8>> = BTreeSet::new();
+    let mut covering: Vec<File> = Vec::new();
+    let mut covered: BTreeSet<(usize, Vec<String>)> = BTreeSet::new();
+    for (payload, description) in descriptions().iter().enumerate() {
+        for choices in &combinations {
+            for keep in [KeepCount::AtMost(8), KeepCount::All] {
+                match check(&chosen(description, choices, keep), &registry) {
+                    Err(faults) => {
+                        refused += 1;
+                        assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
+                    }
+                    Ok(variant) => {
+                        accepted += 1;
+                        let generation = generated(&variant);
+                        assert_eq!(generation.refusals.len(), 0);
+                        let files = generation.files;
+                        if covers_more(payload, choices, &mut covered) {
+                            covering.extend(files.iter().cloned());
+                        }
+                        texts.extend(files.into_iter().map(|file| file.bytes));
+                    }
+                }
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > accepted, "{accepted} accepted, {refused} refused");
+    let external = validate(covering.iter());
+    assert!(external > 100);
+    println!(
+        "product: {} combinations, {accepted} accepted, {refused} refused; {} distinct files through naga and the \
+         printers; {external} of a covering set through glslang and spirv-val",
+        accepted + refused,
+        texts.len()
+    );
+}
+
+/// Whether a combination has three values of three axes together (the payload counts as one) that none before had.
+fn covers_more(payload: usize, choices: &[(String, String)], covered: &mut BTreeSet<(usize, Vec<String>)>) -> bool {
+    let values: Vec<&String> = choices.iter().map(|(_, value)| value).collect();
+    let mut more = false;
+    for first in 0..values.len() {
+        for second in first + 1..values.len() {
+            let names = [choices[first].0.clone(), values[first].clone(), choices[second].0.clone(), values[second].clone()];
+            more |= covered.insert((payload, names.to_vec()));
+        }
+    }
+    more
+}
+
+#[test]
+fn every_named_case_passes_every_validator() {
+    let mut files = Vec::new();
+    for (name, description, set) in named() {
+        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        files.extend(generated(&variant).files);
+    }
+    println!("cases: {} files through glslang and spirv-val", validate(files.iter()));
+}
+
+#[test]
+fn every_capacity_generates() {
+    let mut random = Random(7);
+    let ks: Vec<u32> = (0..=10).map(|power| 1 << power).chain((0..5).map(|_| 1 + random.below(1024) as u32)).collect();
+    for k in ks {
+        let source = format!("buffer B from kplus_array {{ keep {k}; }}");
+        let variant = checked(&text(&source), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+        let capacity = generated(&variant).plans[0].plan.bound.value("capacity");
+        assert!(capacity.is_some_and(|capacity| capacity >= u64::from(k) && capacity.is_power_of_two()));
+    }
+}
+
+#[test]
+fn templates_keep_their_contracts() {
+    let faults = verify(&Registry::builtin());
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}

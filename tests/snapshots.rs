@@ -1,0 +1,90 @@
+//! Plans and texts as they are, for one case per technique and the tricky ones. A diff here is what a reviewer reads.
+
+use fragbuf::{Form, Registry, Request, TARGETS, generate, target};
+
+use crate::cases::{checked, generated, named};
+
+#[test]
+fn plans_and_wgsl() {
+    for (name, description, set) in named() {
+        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        let generation = generated(&variant);
+        insta::assert_snapshot!(format!("{name}.plan"), generation.plans[0].plan);
+        for file in generation.files.iter().filter(|file| file.target == "wgsl") {
+            let text = String::from_utf8(file.bytes.clone()).unwrap();
+            insta::assert_snapshot!(format!("{name}.{}.wgsl", file.pass), text);
+        }
+    }
+}
+
+#[test]
+fn glsl() {
+    for (case, passes) in [("kplus_array", ["store", "resolve"]), ("custom", ["store", "resolve"]), ("ab_sb", ["scan_blocks", "store"])] {
+        let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
+        let generation = generated(&checked(&description, &set).unwrap());
+        for file in generation.files.iter().filter(|file| passes.contains(&file.pass.as_str())) {
+            let is_vertex = file.entry_points.iter().any(|(stage, _)| *stage == "vertex");
+            if file.target.starts_with("glsl") && !is_vertex {
+                let text = String::from_utf8(file.bytes.clone()).unwrap();
+                insta::assert_snapshot!(format!("{case}.{}.{}", file.pass, file.target), text);
+            }
+        }
+    }
+}
+
+/// SPIR-V by what an engine depends on: ids would change with every naga.
+#[test]
+fn spirv_summaries() {
+    let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "kplus_array").unwrap();
+    let generation = generated(&checked(&description, &set).unwrap());
+    for file in generation.files.iter().filter(|file| file.target == "spirv") {
+        let name = file.path.replace('/', ".");
+        insta::assert_snapshot!(format!("kplus_array.{name}"), summary(&file.bytes));
+    }
+}
+
+fn summary(bytes: &[u8]) -> String {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("summary.spv");
+    std::fs::write(&path, bytes).unwrap();
+    let output = std::process::Command::new("spirv-dis").arg("--no-color").arg(&path).output();
+    let output = output.unwrap_or_else(|error| panic!("spirv-dis must be installed (see README): {error}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let kept = [
+        "OpCapability", "OpExtension", "OpMemoryModel", "OpEntryPoint", "OpExecutionMode", " Binding ", " DescriptorSet ",
+        " Coherent", " Location ", " BuiltIn ", "OpMemoryBarrier", "OpAtomic",
+    ];
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines = text.lines().filter(|line| kept.iter().any(|word| line.contains(word))).map(str::trim);
+    lines.map(without_ids).collect::<Vec<_>>().join("\n")
+}
+
+/// `%17` says nothing; `%keys` does.
+fn without_ids(line: &str) -> String {
+    let words = line.split_whitespace().map(|word| {
+        let is_number = word.strip_prefix('%').is_some_and(|id| id.bytes().all(|byte| byte.is_ascii_digit()));
+        if is_number { "%_" } else { word }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn module_form_with_a_prefix() {
+    let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "kplus_array").unwrap();
+    let variant = checked(&description, &set).unwrap();
+    let targets = [target("wgsl").unwrap(), target("glsl").unwrap()];
+    let request = Request { targets: &targets, form: Form::Module, prefix: "glass", group: 2 };
+    let generation = generate(&variant, &request, &Registry::builtin()).unwrap();
+    for file in generation.files.iter().filter(|file| file.pass == "store") {
+        let text = String::from_utf8(file.bytes.clone()).unwrap();
+        insta::assert_snapshot!(format!("module.{}", file.path.replace('/', ".")), text);
+    }
+}
+
+/// The manifest of one technique; the schema is a promise.
+#[test]
+fn manifest() {
+    let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "ab_sb").unwrap();
+    let generation = generated(&checked(&description, &set).unwrap());
+    insta::assert_snapshot!("ab_sb.manifest", format!("{:#}", fragbuf::manifest(&generation, 0)));
+    assert_eq!(generation.plans[0].targets.len(), TARGETS.len());
+}

@@ -1,0 +1,144 @@
+//! The house is in order: what architecture and documentation promise about the files themselves.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use fragbuf::Registry;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Files under `folder` with this extension; build folders and snapshots apart.
+fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut waiting = vec![root().join(folder)];
+    while let Some(path) = waiting.pop() {
+        for entry in std::fs::read_dir(&path).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            match path.is_dir() {
+                true if name != "target" && !name.starts_with('.') => waiting.push(path),
+                false if path.extension().is_some_and(|found| found == extension) => found.push(path),
+                _ => {}
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn every_template_has_a_row_and_is_plain_text() {
+    let registry = Registry::builtin();
+    let rows = registry.rows().iter().filter_map(|row| row.template);
+    let known: BTreeSet<&str> = rows.chain(registry.shared().iter().copied()).map(|template| template.path).collect();
+    for path in files("templates", "wgsl") {
+        let name = path.strip_prefix(root().join("templates")).unwrap().to_string_lossy().into_owned();
+        let text = read(&path);
+        assert!(known.contains(name.as_str()), "{name} has no row");
+        assert!(text.is_ascii(), "{name} is not ASCII: shader compilers differ on the rest");
+        assert!(text.starts_with("// ") && text.ends_with('\n'), "{name} has no head");
+        assert!(text.lines().count() <= 200 && text.lines().all(|line| line.chars().count() <= 120), "{name} is too long");
+    }
+}
+
+#[test]
+fn every_row_is_in_a_snapshot() {
+    let mut seen = String::new();
+    for path in files("tests/snapshots", "snap") {
+        if path.to_string_lossy().contains(".plan") {
+            seen.push_str(&read(&path));
+        }
+    }
+    let registry = Registry::builtin();
+    for row in registry.rows().iter().filter(|row| registry.axis(&row.axis).is_some_and(|axis| axis.chosen)) {
+        let choice = format!("{}={}", row.axis, row.key);
+        assert!(seen.contains(&format!("{choice} ")) || seen.contains(&format!("{choice}\n")) || seen.contains(&format!("{choice}[")), "no snapshot has {choice}");
+    }
+}
+
+/// A key compared in code is a special case on a shared mechanism. Words that are also something else are listed.
+#[test]
+fn no_code_compares_a_key() {
+    const ALSO: &[(&str, &str)] = &[
+        ("none", "a word of messages"),
+        ("all", "the command line's word for every target and every technique"),
+        ("closure", "Registry::CLOSURE"),
+        ("early", "a field of a depth test in the manifest"),
+    ];
+    let registry = Registry::builtin();
+    let chosen = |axis: &str| registry.axis(axis).is_some_and(|axis| axis.chosen);
+    let rows = registry.rows().iter().filter(|row| chosen(&row.axis)).map(|row| row.key.clone());
+    let keys: Vec<String> = rows.chain(registry.techniques().iter().map(|technique| technique.key.clone())).collect();
+    for folder in ["src", "dsl", "codegen", "backends"] {
+        for path in files(folder, "rs") {
+            let shown = path.to_string_lossy();
+            if shown.contains("/tests/") || shown.contains("/examples/") {
+                continue;
+            }
+            let text = read(&path);
+            let code = text.split("#[cfg(test)]").next().unwrap_or("");
+            for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
+                for key in keys.iter().filter(|key| ALSO.iter().all(|(word, _)| word != key)) {
+                    assert!(!line.contains(&format!("\"{key}\"")), "{shown} names the row `{key}`: {line}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn files_are_short_and_have_heads() {
+    for folder in ["src", "dsl", "codegen", "backends", "templates"] {
+        for path in files(folder, "rs") {
+            let text = read(&path);
+            let code = text.split("#[cfg(test)]").next().unwrap_or("").lines().count();
+            assert!(code <= 400, "{}: {code} lines", path.display());
+            let tested = path.to_string_lossy().contains("/tests/");
+            assert!(tested || text.starts_with("//!"), "{} has no head", path.display());
+        }
+    }
+}
+
+#[test]
+fn words_that_say_nothing_name_nothing() {
+    const WORDS: [&str; 5] = ["utils", "util", "helpers_misc", "manager", "types_misc"];
+    for folder in ["src", "dsl", "codegen", "backends", "templates", "tests", "examples"] {
+        for path in files(folder, "rs") {
+            let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
+            assert!(!WORDS.contains(&stem.as_str()), "{}", path.display());
+        }
+    }
+}
+
+/// The README's table of techniques is what `list` computes.
+#[test]
+fn the_readme_has_the_computed_table() {
+    let readme = read(&root().join("README.md"));
+    let table = fragbuf_table();
+    assert!(readme.contains(&table), "put this into README.md:\n{table}");
+}
+
+fn fragbuf_table() -> String {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf")).arg("list").output().unwrap();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_dsl_builds_without_naga_and_wgpu() {
+    for package in ["fragbuf-templates", "fragbuf-model", "fragbuf-syntax"] {
+        let output = std::process::Command::new(env!("CARGO"))
+            .args(["tree", "--offline", "--edges", "all", "-p", package])
+            .current_dir(root())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let tree = String::from_utf8(output.stdout).unwrap();
+        assert!(!tree.contains("naga") && !tree.contains("wgpu"), "{package}:\n{tree}");
+    }
+}
