@@ -27,6 +27,8 @@ pub struct Renderer {
     pub(crate) timing: Option<Timing>,
     /// Whether host steps are carried out; else what they set has been reserved.
     pub(crate) exact: bool,
+    /// Whether what is reserved follows the size of the frame.
+    follows_size: bool,
     pub(crate) sized: Sized,
     /// Words of 64 KiB each, for clears to something else than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
@@ -109,6 +111,7 @@ impl Renderer {
             passes,
             timing,
             exact,
+            follows_size: !exact && settings.sizing == Sizing::Auto,
             sized,
             patterns,
             frame_id: 0,
@@ -132,7 +135,11 @@ impl Renderer {
 
     /// Resizes the frame to `width` × `height` pixels. On an error the old size stays.
     pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        let symbols = Symbols { width, height, ..self.sized.symbols.clone() };
+        let mut symbols = Symbols { width, height, ..self.sized.symbols.clone() };
+        if self.follows_size {
+            let room = automatic_room(width, height);
+            symbols.counted.iter_mut().for_each(|(_, value)| *value = room);
+        }
         self.reallocate(symbols).await
     }
 
@@ -160,8 +167,9 @@ impl Renderer {
         for (_, value) in &mut symbols.counted {
             *value = fragments.into();
         }
-        self.exact = false;
-        self.reallocate(symbols).await
+        self.reallocate(symbols).await?;
+        (self.exact, self.follows_size) = (false, false);
+        Ok(())
     }
 
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
@@ -400,13 +408,16 @@ fn counted(plan: &Plan, actions: &[Action], settings: &Settings) -> Result<(Vec<
             hint: "reserve: `Sizing::Reserve { fragments }`".to_owned(),
         });
     }
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
     let room = match settings.sizing {
         _ if exact => 0,
         Sizing::Reserve { fragments } => fragments.into(),
-        Sizing::Auto | Sizing::Exact => pixels * u64::from(Sizing::AUTO_PER_PIXEL),
+        Sizing::Auto | Sizing::Exact => automatic_room(settings.width, settings.height),
     };
     Ok((names.into_iter().map(|name| (name, room)).collect(), exact))
+}
+
+fn automatic_room(width: u32, height: u32) -> u64 {
+    u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL)
 }
 
 fn bytes(words: &[u32]) -> Vec<u8> {

@@ -43,7 +43,8 @@ pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Ve
             }
             "exact_regions" => {
                 let offsets = buffer("offsets");
-                (offsets[pixel]..offsets[pixel + 1]).map(|place| entry("entries", place as usize)).collect()
+                let end = offsets[pixel + 1].min(renderer.symbol("fragments").unwrap() as u32);
+                (offsets[pixel]..end).map(|place| entry("entries", place as usize)).collect()
             }
             other => panic!("this test cannot read `{other}`"),
         }

@@ -10,4 +10,7 @@ mod quads;
 mod stage;
 
 mod capture;
+mod failures;
+mod rasterisation;
+mod sizing;
 mod translations;

@@ -75,14 +75,19 @@ pub fn see(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Seen {
     draw(stage, renderer, quads, &offscreen).unwrap();
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let counters = renderer.counters(&mut encoder).unwrap();
-    let names: Vec<String> = renderer.plan().resources.iter().map(|planned| planned.resource.name.clone()).collect();
-    let reads: Vec<_> = names.iter().map(|name| (name.clone(), renderer.words(name, &mut encoder))).collect();
     queue.submit([encoder.finish()]);
     let counters = counters.wait(device).unwrap();
-    let buffers: BTreeMap<String, Vec<u32>> =
-        reads.into_iter().filter_map(|(name, words)| Some((name, words?.wait(device).unwrap()))).collect();
     let pixels = offscreen.colors(device, queue).unwrap();
-    Seen { pixels, kept: kept::kept(renderer, &buffers), counters }
+    Seen { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer)), counters }
+}
+
+/// All words of all resources that are not empty, by name.
+pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, Vec<u32>> {
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let names: Vec<String> = renderer.plan().resources.iter().map(|planned| planned.resource.name.clone()).collect();
+    let reads: Vec<_> = names.iter().map(|name| (name.clone(), renderer.words(name, &mut encoder))).collect();
+    stage.queue.submit([encoder.finish()]);
+    reads.into_iter().filter_map(|(name, words)| Some((name, words?.wait(&stage.device).unwrap()))).collect()
 }
 
 /// Draws `quads` in their order over the background.

@@ -42,17 +42,15 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Every adapter of this machine that can write buffers from fragment shaders.
+/// Every adapter of this machine that can write buffers from fragment shaders, best first.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
     able().iter().map(wgpu::Adapter::get_info).collect()
 }
 
 /// The adapter that is meant.
 pub(super) fn choose(choice: &Choice) -> Result<wgpu::Adapter, Error> {
-    let mut adapters = able();
+    let adapters = able();
     let found = adapters.iter().map(|adapter| adapter.get_info().name).collect();
-    // The order of the drivers stays where the kind is the same.
-    adapters.sort_by_key(|adapter| (rank(adapter.get_info().device_type), adapter.get_info().backend == wgpu::Backend::Gl));
     let chosen = adapters.into_iter().find(|adapter| {
         let info = adapter.get_info();
         match choice {
@@ -74,14 +72,24 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
+/// OpenGL is asked only where there is nothing better: its driver writes to the terminal when there is no display.
 fn able() -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let mut adapters = ready(instance.enumerate_adapters(wgpu::Backends::all())).unwrap_or_default();
-    adapters.retain(|adapter| {
-        let flags = adapter.get_downlevel_capabilities().flags;
-        flags.contains(wgpu::DownlevelFlags::FRAGMENT_WRITABLE_STORAGE | wgpu::DownlevelFlags::COMPUTE_SHADERS)
-    });
+    let mut adapters = Vec::new();
+    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
+        if adapters.is_empty() {
+            adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
+            adapters.retain(is_able);
+        }
+    }
+    // The order of the drivers stays where the kind is the same.
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters
+}
+
+fn is_able(adapter: &wgpu::Adapter) -> bool {
+    let flags = adapter.get_downlevel_capabilities().flags;
+    flags.contains(wgpu::DownlevelFlags::FRAGMENT_WRITABLE_STORAGE | wgpu::DownlevelFlags::COMPUTE_SHADERS)
 }
 
 /// The value of a future that native back ends answer at once.
