@@ -13,6 +13,7 @@ use crate::action::Action;
 use crate::host::Decision;
 use crate::pipeline::Pipeline;
 use crate::renderer::PATTERN;
+use crate::scope::scoped;
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
@@ -190,11 +191,16 @@ impl Renderer {
     pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<(), Error> {
         let mut frame = self.begin()?;
         loop {
-            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("fragbuf") });
-            let recorded = frame.record(self, &mut encoder, output, draw)?;
-            self.queue.submit([encoder.finish()]);
-            let Recorded::Cut(cut) = recorded else { return Ok(()) };
             let device = self.device.clone();
+            let segment = || {
+                let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf") };
+                let mut encoder = device.create_command_encoder(&descriptor);
+                let recorded = frame.record(self, &mut encoder, output, draw)?;
+                self.queue.submit([encoder.finish()]);
+                Ok(recorded)
+            };
+            let recorded = crate::block_on(&device, scoped(&device, "the frame's commands", 0, segment))??;
+            let Recorded::Cut(cut) = recorded? else { return Ok(()) };
             frame = crate::block_on(&device, cut.resume(self))??;
         }
     }

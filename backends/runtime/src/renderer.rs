@@ -10,7 +10,7 @@ use crate::action::{Action, actions, index};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::memory::Memory;
 use crate::pipeline::{DUMMY_FORMAT, Maker, Pipeline};
-use crate::scope::scoped;
+use crate::scope::{is_lost, scoped};
 use crate::symbols::{Symbols, counted_symbols};
 use crate::timing::Timing;
 use crate::uniforms::{set, zeros};
@@ -128,6 +128,9 @@ impl Renderer {
     /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:
     /// uniform buffers are written ahead of the next submission.
     pub fn begin(&mut self) -> Result<Frame, Error> {
+        if is_lost(&self.device) {
+            return Err(Error::Lost);
+        }
         self.write_frame()?;
         self.frame_id += 1;
         Ok(Frame::new(self.frame_id))

@@ -59,15 +59,20 @@ impl Offscreen {
 
     /// The bytes of the picture, row after row from the top, without padding. Submits and blocks.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<u8>, Error> {
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
-            self.texture.size(),
-        );
-        let pending = Pending::record(device, &mut encoder, &self.rows, 0, self.rows.size(), |words| words);
-        queue.submit([encoder.finish()]);
+        let copy = || {
+            let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") };
+            let mut encoder = device.create_command_encoder(&descriptor);
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
+            encoder.copy_texture_to_buffer(
+                self.texture.as_image_copy(),
+                wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
+                self.texture.size(),
+            );
+            let pending = Pending::record(device, &mut encoder, &self.rows, 0, self.rows.size(), |words| words);
+            queue.submit([encoder.finish()]);
+            pending
+        };
+        let pending = block_on(device, scoped(device, "the copy of the offscreen target", self.rows.size(), copy))??;
         let bytes: Vec<u8> = pending.wait(device)?.into_iter().flat_map(u32::to_le_bytes).collect();
         let row = (self.texture.width() * self.texel) as usize;
         Ok(bytes.chunks(self.padded as usize).flat_map(|padded| padded.iter().copied().take(row)).collect())
