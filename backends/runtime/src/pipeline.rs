@@ -143,11 +143,7 @@ impl Maker<'_> {
                 blend: blend_state(target.blend),
                 write_mask: wgpu::ColorWrites::ALL,
             },
-            None => wgpu::ColorTargetState {
-                format: DUMMY_FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::empty(),
-            },
+            None => no_target(),
         };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&pass.anchor),
@@ -171,6 +167,11 @@ impl Maker<'_> {
             cache: None,
         })
     }
+}
+
+/// The target of passes that write buffers alone.
+pub(crate) fn no_target() -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format: DUMMY_FORMAT, blend: None, write_mask: wgpu::ColorWrites::empty() }
 }
 
 fn stage_name(stage: Stage) -> &'static str {

@@ -9,7 +9,7 @@ use fragbuf_templates::vocabulary::Pass;
 use crate::action::{Action, actions, index};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::memory::Memory;
-use crate::pipeline::{DUMMY_FORMAT, Maker, Pipeline};
+use crate::pipeline::{DUMMY_FORMAT, Maker, Pipeline, no_target};
 use crate::scope::{is_lost, scoped};
 use crate::symbols::{Symbols, counted_symbols};
 use crate::timing::Timing;
@@ -226,6 +226,11 @@ impl Renderer {
     /// The bind group layout of the pass `anchor`, for a pipeline of the caller's own around its shader functions.
     pub fn bind_group_layout(&self, anchor: &str) -> Option<&wgpu::BindGroupLayout> {
         self.passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
+    }
+
+    /// The colour target that a pipeline of the caller's own must have in a geometry pass: nothing is written to it.
+    pub fn geometry_target() -> wgpu::ColorTargetState {
+        no_target()
     }
 
     /// Records the readback of what the frame counted. `None`: the plan counts nothing.

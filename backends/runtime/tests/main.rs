@@ -10,6 +10,7 @@ mod quads;
 mod stage;
 
 mod capture;
+mod embedding;
 mod failures;
 mod rasterisation;
 mod sizing;
