@@ -25,7 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Once: a technique becomes a plan and its shaders, and these a renderer on the host's device.
     let registry = Registry::builtin();
-    let variant = check(&Draft::from_technique("ab_sb", &Origin::new("embed", 1, 1)), &registry).map_err(|e| e.to_string())?;
+    let variant =
+        check(&Draft::from_technique("ab_sb", &Origin::new("embed", 1, 1)), &registry).map_err(|e| e.to_string())?;
     let request = Request { targets: &[target("wgsl").ok_or("wgsl")?], form: Form::Program, prefix: "", group: 0 };
     let generation = generate(&variant, &request, &registry).map_err(|faults| faults.to_string())?;
     let shaders = Shaders::from_generation(&generation, "wgsl", 0)?;
@@ -62,11 +63,10 @@ fn host_pass(
     load: wgpu::LoadOp<wgpu::Color>,
 ) {
     let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-    let attachment = wgpu::RenderPassColorAttachment { view: screen.view(), depth_slice: None, resolve_target: None, ops };
-    let descriptor = wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(attachment)],
-        ..wgpu::RenderPassDescriptor::default()
-    };
+    let attachment =
+        wgpu::RenderPassColorAttachment { view: screen.view(), depth_slice: None, resolve_target: None, ops };
+    let descriptor =
+        wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..wgpu::RenderPassDescriptor::default() };
     let mut pass = encoder.begin_render_pass(&descriptor);
     pass.set_pipeline(pipeline);
     pass.draw(0..3, 0..1);
@@ -134,7 +134,8 @@ fn host_sheets(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::Buffer {
 /// The picture as a portable pixmap, sRGB-encoded.
 fn host_save(colors: &[[f32; 4]]) -> std::io::Result<()> {
     let mut file = format!("P6 {SIZE} {SIZE} 255\n").into_bytes();
-    let encoded = |linear: f32| if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let encoded =
+        |linear: f32| if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     file.extend(colors.iter().flat_map(|[r, g, b, _]| [r, g, b]).map(|linear| (255.0 * encoded(*linear) + 0.5) as u8));
     std::fs::write("embed.ppm", file)
 }

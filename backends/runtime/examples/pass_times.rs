@@ -73,7 +73,8 @@ fn sheets(device: &wgpu::Device, queue: &wgpu::Queue, layers: u32) -> wgpu::Buff
         // The golden ratio scatters the depths evenly.
         let depth = (0.618_034 * f64::from(layer)).fract() as f32;
         for [x, y] in [[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]] {
-            bytes.extend([x, y, depth, depth, 0.5, 1.0 - depth, 0.3].iter().flat_map(|value: &f32| value.to_le_bytes()));
+            bytes
+                .extend([x, y, depth, depth, 0.5, 1.0 - depth, 0.3].iter().flat_map(|value: &f32| value.to_le_bytes()));
         }
     }
     let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;

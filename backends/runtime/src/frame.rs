@@ -11,8 +11,8 @@ use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::action::Action;
 use crate::host::Decision;
+use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
-use crate::renderer::PATTERN;
 use crate::scope::scoped;
 use crate::{Error, Pending, Renderer};
 
@@ -96,7 +96,8 @@ impl Frame {
         };
         self.at += segment.len() + 1;
         let device = &renderer.device;
-        let reads = places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
+        let reads =
+            places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
         Ok(Recorded::Cut(Cut { reads: reads.collect(), decision: decision.clone(), frame: self }))
     }
 
@@ -109,7 +110,9 @@ impl Frame {
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
-        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else { return };
+        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else {
+            return;
+        };
         let times = renderer.timing.as_ref().map(|timing| timing.of(index));
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
@@ -132,7 +135,8 @@ impl Frame {
         });
         let attachment = if prepared.pass.state.targets.is_empty() {
             // WebGPU refuses a pass without attachments.
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
+            let ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
             color(&renderer.sized.dummy, ops)
         } else {
             let load = if self.written { wgpu::LoadOp::Load } else { output.load };

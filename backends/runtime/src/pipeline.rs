@@ -41,8 +41,11 @@ impl Maker<'_> {
         }
         let mut groups: Vec<Option<&wgpu::BindGroupLayout>> = vec![None; self.shaders.group as usize];
         groups.push(Some(layout));
-        let descriptor =
-            wgpu::PipelineLayoutDescriptor { label: Some(&pass.anchor), bind_group_layouts: &groups, immediate_size: 0 };
+        let descriptor = wgpu::PipelineLayoutDescriptor {
+            label: Some(&pass.anchor),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        };
         let layout = scoped(self.device, &what, 0, || self.device.create_pipeline_layout(&descriptor)).await?;
         if let Kind::Compute { .. } = pass.kind {
             let entry = self.entry(pass, Stage::Compute).await?;
@@ -83,15 +86,11 @@ impl Maker<'_> {
                 }
                 // SAFETY: indices in generated code stay below the sizes that the same plan's formulas give the buffers,
                 // and its loops end; the caller asked for it where the description's author wrote code of their own.
-                unsafe {
-                    self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
-                }
+                unsafe { self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
             }
             Code::SpirV(words) => {
-                let point = wgpu::PassthroughShaderEntryPoint {
-                    name: entry.name.as_str().into(),
-                    workgroup_size: (0, 0, 0),
-                };
+                let point =
+                    wgpu::PassthroughShaderEntryPoint { name: entry.name.as_str().into(), workgroup_size: (0, 0, 0) };
                 let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
                     label,
                     entry_points: std::slice::from_ref(&point).into(),

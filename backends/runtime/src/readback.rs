@@ -8,6 +8,7 @@ use std::task::{Context, Poll, Waker};
 
 use crate::Error;
 use crate::scope::is_lost;
+use crate::words::from_bytes;
 
 /// Something that will have been read back.
 pub struct Pending<T> {
@@ -70,7 +71,7 @@ impl<T> Pending<T> {
 
     fn words(&self) -> Result<Vec<u32>, Error> {
         let view = self.buffer.get_mapped_range(..).map_err(|_| Error::Lost)?;
-        let words = view.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let words = from_bytes(&view);
         drop(view);
         self.buffer.unmap();
         Ok(words)

@@ -22,18 +22,13 @@ pub(crate) async fn scoped<T>(
     if is_lost(device) {
         return Err(Error::Lost);
     }
-    for error in errors.into_iter().flatten() {
-        return Err(match error {
-            wgpu::Error::OutOfMemory { .. } => Error::OutOfMemory { what: what.to_owned(), bytes },
-            wgpu::Error::Validation { description, .. } => {
-                Error::Validation { what: what.to_owned(), message: description }
-            }
-            wgpu::Error::Internal { description, .. } => {
-                Error::Internal { what: what.to_owned(), message: description }
-            }
-        });
+    let what = what.to_owned();
+    match errors.into_iter().flatten().next() {
+        None => Ok(made),
+        Some(wgpu::Error::OutOfMemory { .. }) => Err(Error::OutOfMemory { what, bytes }),
+        Some(wgpu::Error::Validation { description, .. }) => Err(Error::Validation { what, message: description }),
+        Some(wgpu::Error::Internal { description, .. }) => Err(Error::Internal { what, message: description }),
     }
-    Ok(made)
 }
 
 /// Whether a native device has been lost. (A browser's goes on as if nothing had happened; readbacks fail there.)

@@ -32,7 +32,12 @@ fn sheets() -> Vec<Quad> {
     (0..6u8).map(|index| Quad::whole(f32::from(index * 5 % 6) / 8.0, [40 * index, 255 - 9 * index, 7, 100])).collect()
 }
 
-fn pipeline(device: &wgpu::Device, renderer: &Renderer, text: &str, own: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
+fn pipeline(
+    device: &wgpu::Device,
+    renderer: &Renderer,
+    text: &str,
+    own: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(format!("{text}\n{MATERIAL}").into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("material"), source });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -74,7 +79,8 @@ fn a_material_of_the_callers_own_stores_fragments() {
     let mut renderer = renderer(&stage, &shaders, &settings()).unwrap();
     let text = generation.files.iter().find(|file| file.pass == "store").unwrap();
 
-    let words = sheets().iter().flat_map(|quad| [quad.rgba(), [quad.depth, 0.0, 0.0, 0.0]]).flatten().collect::<Vec<f32>>();
+    let words =
+        sheets().iter().flat_map(|quad| [quad.rgba(), [quad.depth, 0.0, 0.0, 0.0]]).flatten().collect::<Vec<f32>>();
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let size = bytes.len() as u64;

@@ -18,7 +18,8 @@ fn message<T>(result: Result<T, Error>) -> String {
 #[test]
 fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     let stage = device();
-    let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
+    let mut renderer =
+        renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
     let before = (renderer.allocated_bytes(), renderer.symbol("width"));
     let limit = stage.device.limits().max_storage_buffer_binding_size.min(stage.device.limits().max_buffer_size);
     let side = stage.device.limits().max_texture_dimension_2d;
@@ -70,7 +71,8 @@ fn missing_features_are_named() {
 fn steps_that_do_not_run_are_named() {
     let stage = device();
     let host = Host { function: "meditate".to_owned(), reads: Vec::new(), sets: Vec::new() };
-    let steps = [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
+    let steps =
+        [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
     for (step, named) in steps {
         let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
         shaders.plan.steps.push(step);
@@ -135,11 +137,16 @@ fn a_lost_device_is_a_value() {
     assert_eq!(renderer.render(&output, &mut |_, _| {}), Err(Error::Lost));
     assert_eq!(renderer.begin().err(), Some(Error::Lost));
     assert_eq!(block_on(&stage.device, renderer.resize(7, 7)).unwrap(), Err(Error::Lost));
-    assert_eq!(self::renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).err(), Some(Error::Lost));
+    assert_eq!(
+        self::renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).err(),
+        Some(Error::Lost)
+    );
     assert_eq!(offscreen.read(&stage.device, &stage.queue), Err(Error::Lost));
     // A frame that began before: whatever it records, what it waits for never comes.
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let Ok(Recorded::Cut(cut)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else { panic!("a cut") };
+    let Ok(Recorded::Cut(cut)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else {
+        panic!("a cut")
+    };
     assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).unwrap().err(), Some(Error::Lost));
     assert!(stage.is_lost());
 }

@@ -41,7 +41,7 @@ fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
     let output = command.output().expect("`glslangValidator` is needed: install the package glslang-tools");
     assert!(output.status.success(), "{}\n{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(text));
     let bytes = std::fs::read(&binary).unwrap();
-    bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect()
 }
 
 /// Every language shows and keeps what portable WGSL does.

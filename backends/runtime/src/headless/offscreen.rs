@@ -4,6 +4,7 @@
 //! colour, alpha and product apart (lavapipe does, and is off by up to 1.1/255).
 
 use crate::scope::scoped;
+use crate::words::from_bytes;
 use crate::{Error, Pending, block_on};
 
 /// The format to blend in: every WebGPU device can, and its steps are an eighth of an 8-bit target's or finer.
@@ -62,7 +63,8 @@ impl Offscreen {
         let copy = || {
             let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") };
             let mut encoder = device.create_command_encoder(&descriptor);
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
             encoder.copy_texture_to_buffer(
                 self.texture.as_image_copy(),
                 wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
@@ -87,10 +89,10 @@ impl Offscreen {
             }
             wgpu::TextureFormat::Rgba16Float => {
                 let bytes = self.read(device, queue)?;
-                bytes.as_chunks().0.iter().map(|half| half_to_float(u16::from_le_bytes(*half))).collect()
+                bytes.chunks_exact(2).map(|half| half_to_float(u16::from_le_bytes([half[0], half[1]]))).collect()
             }
             wgpu::TextureFormat::Rgba32Float => {
-                self.read(device, queue)?.as_chunks().0.iter().map(|float| f32::from_le_bytes(*float)).collect()
+                from_bytes(&self.read(device, queue)?).into_iter().map(f32::from_bits).collect()
             }
             other => {
                 return Err(Error::BadValue {
@@ -99,7 +101,7 @@ impl Offscreen {
                 });
             }
         };
-        Ok(channels.as_chunks().0.to_vec())
+        Ok(channels.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect())
     }
 }
 
