@@ -64,7 +64,7 @@ pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
     (0..count).map(quad).collect()
 }
 
-fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
+pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
     let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, k);
     for (pixel, (seen, expected)) in seen.kept.iter().zip(&expected).enumerate() {
         assert_eq!(

@@ -20,4 +20,5 @@ mod embedding;
 mod failures;
 mod rasterisation;
 mod sizing;
+mod sloped;
 mod translations;
