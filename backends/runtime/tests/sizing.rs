@@ -6,7 +6,7 @@ use fragbuf_runtime::{Error, Output, Recorded, Renderer, Settings, Sizing, block
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, kept_words, total};
 use crate::quads::{Quad, SIZE, vertices};
-use crate::stage::{FORMAT, device, draw, renderer, see, settings, shaders, technique};
+use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
@@ -165,7 +165,7 @@ fn several_frames_in_flight_see_their_own_scenes() {
     let scenes: Vec<Vec<Quad>> = (0..3).map(|seed| scattered(5, seed)).collect();
     for (quads, target) in scenes.iter().zip(&targets) {
         assert!(!vertices(quads, renderer.vertex_inputs()).is_empty());
-        draw(&stage, &mut renderer, quads, target).unwrap();
+        draw_over(&stage, &mut renderer, quads, target).unwrap();
     }
     for (quads, target) in scenes.iter().zip(&targets) {
         let alone = see(&stage, &mut renderer, quads).pixels;
