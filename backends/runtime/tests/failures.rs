@@ -31,6 +31,11 @@ fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     assert_eq!((renderer.allocated_bytes(), renderer.symbol("width")), before);
     let quads = [Quad::whole(0.5, [1, 2, 3, 4])];
     assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
+    // The way out: as many rows as fit, and not one more.
+    let shaders = shaders(&technique("kplus_array", &[("k", "64")]), "wgsl");
+    let whole = Settings { width: side, height: side, ..settings() };
+    let rows = Renderer::fitting_height(&stage.device, &shaders, &whole).unwrap();
+    assert_eq!(u64::from(rows), (limit / (4 * 64 * u64::from(side))).min(u64::from(side)));
     let error = block_on(&stage.device, renderer.resize(side + 1, 1)).unwrap().unwrap_err();
     assert!(error.to_string().contains("max_texture_dimension_2d"), "{error}");
 }

@@ -75,8 +75,8 @@ fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
 fn what_is_kept_culled_and_displaced_is_all_there_was() {
     let stage = device();
     let quads = scattered(8, 9);
-    for key in ["kplus_array", "kb"] {
-        let mut renderer = open(&stage, key, &[("k", "2"), ("counters", "all")], Sizing::Auto).unwrap();
+    for (key, k) in [("kplus_array", "1"), ("kplus_array", "2"), ("kb", "1"), ("kb", "2"), ("kb", "5")] {
+        let mut renderer = open(&stage, key, &[("k", k), ("counters", "all")], Sizing::Auto).unwrap();
         let seen = see(&stage, &mut renderer, &quads);
         let count = |name| seen.counters.get(name) as usize;
         let kept: usize = seen.kept.iter().map(Vec::len).sum();
