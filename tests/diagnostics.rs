@@ -37,6 +37,7 @@ const CASES: &[(&str, &[Expected])] = &[
     ),
     ("buffer B from ab_ll {\n    cull: early;\n}", &[("unmet", 2, 11, "`cull: none`")]),
     ("buffer B from ab_ll {\n    sort: none;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
+    ("buffer B from kb {\n    keep 8 least |f| f.depth - f.color.w;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
     ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("unmet", 1, 15, "`color: rgba8`")]),
     ("buffer B from ab_ll {\n    fragment { color: rgba8, z: f32 }\n}", &[("missing-depth", 2, 16, "`depth: f32`")]),
     (

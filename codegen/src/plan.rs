@@ -8,7 +8,7 @@ mod roles;
 
 pub(crate) use roles::{axis_of, instance_row};
 
-use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
     Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
@@ -96,7 +96,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
     requires.sort();
     requires.dedup();
-    requires.retain(|fact| !offers.contains(fact) && !variant.payload_facts().contains(fact));
+    requires.retain(|fact| is_target_fact(*fact));
     Ok(Plan {
         variant: variant.clone(),
         selection: selection.clone(),

@@ -120,14 +120,9 @@ fn sorted_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BoundAnyInstant,
-            Fact::CanReplace,
-            Fact::Indexed,
-            Fact::Sorted,
-            Fact::SurvivesRaces,
-        ],
+        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed, Fact::SurvivesRaces],
+        // Entries are in the order of their keys.
+        implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync", "none"), ("sort", "none")],
         hazards: vec![

@@ -12,8 +12,6 @@ use fragbuf_templates::vocabulary::{Fact, KeepDefault};
 use crate::variant::Description;
 use crate::{Diagnostic, Diagnostics, Draft, KeepCount, Variant, codes};
 
-pub(crate) use payload::facts as payload_facts;
-
 /// The greatest number of fragments that a k-buffer keeps; a resolve pass holds them all in registers or local memory.
 pub const MOST_KEPT: u32 = 1024;
 
@@ -27,6 +25,8 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     let mut offered = payload::facts(&attributes);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {
+        let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
+        offered.extend(criterion.is_none().then_some(Fact::DepthKey));
         offered.push(if keep.is_some() { Fact::KeepsBest } else { Fact::KeepsAll });
         facts::check(draft, &choices, &offered, registry, &mut diagnostics);
     }

@@ -19,4 +19,4 @@ pub use draft::{
 };
 pub use names::mangled;
 pub use origin::{Origin, Spanned};
-pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant};
+pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant, is_target_fact};

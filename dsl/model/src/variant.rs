@@ -93,11 +93,6 @@ impl Variant {
         }
         Ok(Selection { rows })
     }
-
-    /// Facts that the payload offers.
-    pub fn payload_facts(&self) -> Vec<Fact> {
-        crate::check::payload_facts(&self.attributes)
-    }
 }
 
 impl Deref for Variant {
@@ -140,7 +135,7 @@ const TARGET_FACTS: &[Fact] = &[
 ];
 
 /// Whether `fact` is a target's to offer.
-pub(crate) fn is_target_fact(fact: Fact) -> bool {
+pub fn is_target_fact(fact: Fact) -> bool {
     TARGET_FACTS.contains(&fact)
 }
 

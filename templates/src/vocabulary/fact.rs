@@ -35,7 +35,8 @@ facts! {
     Passes "a build step for every kept fragment";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
-    // What a payload offers.
+    // What a description offers.
+    DepthKey "that depth decides which fragment is worst: no criterion";
     Color "an attribute `color` of format rgba8 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
     // What a target offers.

@@ -38,6 +38,8 @@ pub struct Row {
     pub calls: Vec<&'static str>,
     /// What it gives to the other rows.
     pub offers: Vec<Fact>,
+    /// (given, offered): what it offers only where the description gives something.
+    pub implies: Vec<(Fact, Fact)>,
     /// What it needs from them.
     pub requires: Vec<Fact>,
     /// What it changes in the steps of others.
@@ -125,6 +127,7 @@ impl Row {
             steps: Vec::new(),
             calls: Vec::new(),
             offers: Vec::new(),
+            implies: Vec::new(),
             requires: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),

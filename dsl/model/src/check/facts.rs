@@ -45,8 +45,12 @@ fn picks(choices: &[Chosen]) -> Vec<Pick<'_>> {
 
 /// What `row` requires and neither the others of the pick nor the description offer. Targets are asked later.
 fn missing(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> Vec<Fact> {
-    let offered = |fact: &Fact| given.contains(fact) || pick.iter().any(|other| other.offers.contains(fact));
+    let offered = |fact: &Fact| given.contains(fact) || pick.iter().any(|other| offers(other, *fact, given));
     row.requires.iter().copied().filter(|fact| !is_target_fact(*fact) && !offered(fact)).collect()
+}
+
+fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {
+    row.offers.contains(&fact) || row.implies.iter().any(|(if_given, then)| *then == fact && given.contains(if_given))
 }
 
 /// A storage that keeps the k best needs a k, one that keeps all must have none.

@@ -33,7 +33,7 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
 }
 
 /// What a payload offers.
-pub(crate) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
+pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     let mut facts = Vec::new();
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
     if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Vec4)) {

@@ -1,0 +1,268 @@
+//! One frame: recorded into the caller's encoder, cut wherever the host must read before it goes on.
+//!
+//! ```text
+//! begin ─► record ─► Finished
+//!            └─────► Cut: submit what was recorded ─► resume ─► record …
+//! ```
+//!
+//! A frame is handed on from call to call, so that a segment cannot be recorded twice or out of order.
+
+use fragbuf_templates::vocabulary::{Kind, Pass};
+
+use crate::action::Action;
+use crate::host::Decision;
+use crate::pattern::PATTERN;
+use crate::pipeline::Pipeline;
+use crate::scope::scoped;
+use crate::{Error, Pending, Renderer};
+
+/// A frame, somewhere between its first and its last step.
+#[derive(Debug)]
+pub struct Frame {
+    id: u64,
+    /// The next action.
+    at: usize,
+    /// Whether the output has been written, and must not be cleared again.
+    written: bool,
+}
+
+/// What [`Frame::record`] came to.
+#[must_use = "a cut frame goes on with `Cut::resume`"]
+pub enum Recorded {
+    /// The frame is whole once this has been submitted.
+    Finished,
+    /// Submit what was recorded, then resume.
+    Cut(Cut),
+}
+
+/// A frame that waits for the host.
+pub struct Cut {
+    frame: Frame,
+    decision: Decision,
+    reads: Vec<Pending<Vec<u32>>>,
+}
+
+/// Where frames are resolved into.
+#[derive(Clone, Copy, Debug)]
+pub struct Output<'a> {
+    /// One sample per pixel, of the renderer's format and at least its size; the frame is its top left. Colours written to
+    /// it are premultiplied.
+    pub view: &'a wgpu::TextureView,
+    /// `Load`: over what is there; `Clear`: over this background.
+    pub load: wgpu::LoadOp<wgpu::Color>,
+}
+
+/// The caller's draw function: called once for each geometry pass, with the pipeline and the bind group set.
+pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Pass) + 'a;
+
+impl Frame {
+    pub(crate) fn new(id: u64) -> Self {
+        Frame { id, at: 0, written: false }
+    }
+
+    /// Records everything up to the next decision of the host, or to the end.
+    pub fn record(
+        mut self,
+        renderer: &Renderer,
+        encoder: &mut wgpu::CommandEncoder,
+        output: &Output<'_>,
+        draw: &mut Draw<'_>,
+    ) -> Result<Recorded, Error> {
+        if self.id != renderer.frame_id {
+            return Err(Error::StaleFrame);
+        }
+        let rest = renderer.actions.get(self.at..).unwrap_or_default();
+        let end = rest.iter().position(|action| renderer.exact && matches!(action, Action::Host(_)));
+        let segment = rest.get(..end.unwrap_or(rest.len())).unwrap_or_default();
+        // Whatever can fail does so before anything is recorded.
+        let groups = segment.iter().map(|action| groups(renderer, action)).collect::<Result<Vec<_>, _>>()?;
+        let decision = end.and_then(|end| rest.get(end));
+        let places = match decision {
+            Some(Action::Host(decision)) => places(renderer, decision)?,
+            _ => Vec::new(),
+        };
+        for (action, groups) in segment.iter().zip(groups) {
+            match action {
+                Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
+                Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
+                Action::Pass(index) => self.pass(renderer, encoder, *index, groups, output, draw),
+                Action::Host(_) => {}
+            }
+        }
+        let Some(Action::Host(decision)) = decision else {
+            if let Some(timing) = &renderer.timing {
+                timing.resolve(encoder);
+            }
+            return Ok(Recorded::Finished);
+        };
+        self.at += segment.len() + 1;
+        let device = &renderer.device;
+        let reads =
+            places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
+        Ok(Recorded::Cut(Cut { reads: reads.collect(), decision: decision.clone(), frame: self }))
+    }
+
+    fn pass(
+        &mut self,
+        renderer: &Renderer,
+        encoder: &mut wgpu::CommandEncoder,
+        index: usize,
+        groups: [u32; 3],
+        output: &Output<'_>,
+        draw: &mut Draw<'_>,
+    ) {
+        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else {
+            return;
+        };
+        let times = renderer.timing.as_ref().map(|timing| timing.of(index));
+        let label = Some(prepared.pass.anchor.as_str());
+        if let Pipeline::Compute(pipeline) = &prepared.pipeline {
+            let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
+                query_set,
+                beginning_of_pass_write_index: Some(begin),
+                end_of_pass_write_index: Some(end),
+            });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(renderer.group, group, &[]);
+            let [x, y, z] = groups;
+            pass.dispatch_workgroups(x, y, z);
+            return;
+        }
+        let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::RenderPassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(begin),
+            end_of_pass_write_index: Some(end),
+        });
+        let attachment = if prepared.pass.state.targets.is_empty() {
+            // WebGPU refuses a pass without attachments.
+            let ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
+            color(&renderer.sized.dummy, ops)
+        } else {
+            let load = if self.written { wgpu::LoadOp::Load } else { output.load };
+            self.written = true;
+            color(output.view, wgpu::Operations { load, store: wgpu::StoreOp::Store })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label,
+            color_attachments: &[Some(attachment)],
+            timestamp_writes,
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        if let Pipeline::Render(pipeline) = &prepared.pipeline {
+            pass.set_pipeline(pipeline);
+        }
+        pass.set_bind_group(renderer.group, group, &[]);
+        // Beyond the frame there is no memory to read: a greater output is left as it is, a smaller one refused.
+        pass.set_scissor_rect(0, 0, renderer.sized.symbols.width, renderer.sized.symbols.height);
+        match prepared.pass.kind {
+            Kind::Geometry => draw(&mut pass, &prepared.pass),
+            _ => pass.draw(0..3, 0..1),
+        }
+    }
+}
+
+impl Cut {
+    /// Whether everything has arrived: resuming will not wait for the device.
+    pub fn is_ready(&self) -> bool {
+        self.reads.iter().all(Pending::is_ready)
+    }
+
+    /// Waits for what the host reads, decides, and makes room. On an error the frame is over, and the renderer as it was.
+    pub async fn resume(self, renderer: &mut Renderer) -> Result<Frame, Error> {
+        let mut words = Vec::with_capacity(self.reads.len());
+        for read in self.reads {
+            words.extend(read.await?);
+        }
+        if self.frame.id != renderer.frame_id {
+            return Err(Error::StaleFrame);
+        }
+        let mut symbols = renderer.sized.symbols.clone();
+        self.decision.apply(&words, &mut symbols);
+        // Room for a little more than is needed is kept; room for more than twice as much is given back.
+        for (name, needed) in &mut symbols.counted {
+            let room = renderer.sized.symbols.counted(name).unwrap_or(0);
+            if *needed <= room && room <= 2 * *needed {
+                *needed = room;
+            }
+        }
+        renderer.reallocate(symbols).await?;
+        renderer.write_frame()?;
+        Ok(Frame { id: renderer.frame_id, ..self.frame })
+    }
+}
+
+impl Renderer {
+    /// A whole frame, submitted; blocks where the host must read. Not for browsers: there, record segments and await.
+    pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<(), Error> {
+        let mut frame = self.begin()?;
+        loop {
+            let device = self.device.clone();
+            let segment = || {
+                let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf") };
+                let mut encoder = device.create_command_encoder(&descriptor);
+                let recorded = frame.record(self, &mut encoder, output, draw)?;
+                self.queue.submit([encoder.finish()]);
+                Ok(recorded)
+            };
+            let recorded = crate::block_on(&device, scoped(&device, "the frame's commands", 0, segment))??;
+            let Recorded::Cut(cut) = recorded? else { return Ok(()) };
+            frame = crate::block_on(&device, cut.resume(self))??;
+        }
+    }
+}
+
+/// Workgroups of a compute pass; nothing for any other action.
+fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {
+    let Action::Pass(index) = action else { return Ok([0; 3]) };
+    let Some(prepared) = renderer.passes.get(*index) else { return Ok([0; 3]) };
+    let Kind::Compute { groups } = &prepared.pass.kind else { return Ok([0; 3]) };
+    let what = format!("pass `{}`", prepared.pass.anchor);
+    let limit = renderer.device.limits().max_compute_workgroups_per_dimension;
+    let mut counts = [0; 3];
+    for (count, formula) in counts.iter_mut().zip(groups) {
+        let needed = renderer.sized.symbols.evaluate(&renderer.plan, formula, &what)?;
+        *count = u32::try_from(needed).ok().filter(|count| *count <= limit).ok_or_else(|| Error::TooLarge {
+            what: format!("{what}, in workgroups,"),
+            needed,
+            limit: limit.into(),
+            limit_name: "max_compute_workgroups_per_dimension",
+            hint: "take a smaller frame",
+        })?;
+    }
+    Ok(counts)
+}
+
+/// Buffer and byte of each word that the host reads.
+fn places<'a>(renderer: &'a Renderer, decision: &Decision) -> Result<Vec<(&'a wgpu::Buffer, u64)>, Error> {
+    let places = decision.reads.iter().filter_map(|(resource, place)| {
+        let buffer = renderer.sized.memory.filled(*resource)?;
+        let name = || renderer.plan.resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
+        let word = renderer.sized.symbols.evaluate(&renderer.plan, place, &format!("the index into `{}`", name()));
+        Some(word.map(|word| (buffer, 4 * word)))
+    });
+    places.collect()
+}
+
+fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usize, value: u32) {
+    let Some(buffer) = renderer.sized.memory.filled(resource) else { return };
+    let Some((_, pattern)) = renderer.patterns.iter().find(|(known, _)| *known == value) else {
+        encoder.clear_buffer(buffer, 0, None);
+        return;
+    };
+    for offset in (0..buffer.size()).step_by(PATTERN as usize) {
+        encoder.copy_buffer_to_buffer(pattern, 0, buffer, offset, PATTERN.min(buffer.size() - offset));
+    }
+}
+
+fn copy(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: usize, to: usize) {
+    let memory = &renderer.sized.memory;
+    if let (Some(from), Some(to)) = (memory.filled(from), memory.filled(to)) {
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size().min(to.size()));
+    }
+}
+
+fn color(view: &wgpu::TextureView, ops: wgpu::Operations<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}

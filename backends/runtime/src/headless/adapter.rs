@@ -1,0 +1,103 @@
+//! Adapters: which there are, and which one is meant.
+
+use std::fmt;
+use std::future::Future;
+use std::pin::pin;
+use std::str::FromStr;
+use std::task::{Context, Poll, Waker};
+
+use crate::Error;
+
+/// Which adapter to take.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// The fastest that can run fragment buffers.
+    Auto,
+    /// The one that runs on the CPU.
+    Cpu,
+    /// The first whose name has this in it, in upper or lower case.
+    Named(String),
+}
+
+impl FromStr for Choice {
+    type Err = std::convert::Infallible;
+
+    /// `auto`, `cpu`, or a part of a name.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "auto" => Choice::Auto,
+            "cpu" => Choice::Cpu,
+            name => Choice::Named(name.to_owned()),
+        })
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Choice::Auto => f.write_str("auto"),
+            Choice::Cpu => f.write_str("cpu"),
+            Choice::Named(name) => write!(f, "named `{name}`"),
+        }
+    }
+}
+
+/// Every adapter of this machine that can write buffers from fragment shaders, best first.
+pub fn adapters() -> Vec<wgpu::AdapterInfo> {
+    able().iter().map(wgpu::Adapter::get_info).collect()
+}
+
+/// The adapter that is meant.
+pub(super) fn choose(choice: &Choice) -> Result<wgpu::Adapter, Error> {
+    let adapters = able();
+    let found = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    let chosen = adapters.into_iter().find(|adapter| {
+        let info = adapter.get_info();
+        match choice {
+            Choice::Auto => true,
+            Choice::Cpu => info.device_type == wgpu::DeviceType::Cpu,
+            Choice::Named(part) => info.name.to_lowercase().contains(&part.to_lowercase()),
+        }
+    });
+    chosen.ok_or_else(|| Error::NoAdapter { wanted: choice.to_string(), found })
+}
+
+fn rank(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// OpenGL is asked only where there is nothing better: its adapters are the same devices by a narrower door.
+fn able() -> Vec<wgpu::Adapter> {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
+    let allowed = descriptor().backends;
+    let mut adapters = Vec::new();
+    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].map(|some| some & allowed) {
+        if adapters.is_empty() && !backends.is_empty() {
+            let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor() });
+            adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
+            adapters.retain(is_able);
+        }
+    }
+    // The order of the drivers stays where the kind is the same.
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    adapters
+}
+
+fn is_able(adapter: &wgpu::Adapter) -> bool {
+    let flags = adapter.get_downlevel_capabilities().flags;
+    flags.contains(wgpu::DownlevelFlags::FRAGMENT_WRITABLE_STORAGE | wgpu::DownlevelFlags::COMPUTE_SHADERS)
+}
+
+/// The value of a future that native back ends answer at once.
+pub(super) fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
+    }
+}

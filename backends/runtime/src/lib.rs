@@ -1,0 +1,51 @@
+//! Runs plans on wgpu. The caller owns device, queue, encoder and draws; the plan says what is done with them.
+//!
+//! ```text
+//! Program ─► Shaders ─┐
+//! Settings ───────────┴─► Renderer ──begin──► Frame ──record──► commands in the caller's encoder
+//!                                               ▲                 │ cut: the host must read
+//!                                               └──resume── Cut ◄─┘
+//! ```
+//!
+//! `examples/embed.rs` is a host that owns its device and the order of its passes. Whole frames, where blocking is
+//! possible, are [`Renderer::render`]; frames beyond a limit are made in slices ([`Renderer::fitting_height`]).
+//!
+//! Nothing here knows a technique by name, and nothing blocks, apart from [`Renderer::render`], [`block_on`] and
+//! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
+
+mod action;
+mod blocking;
+mod blocks;
+mod counters;
+mod error;
+mod frame;
+pub mod headless;
+mod host;
+mod layout;
+mod memory;
+mod pattern;
+mod pipeline;
+mod readback;
+mod renderer;
+mod room;
+mod scope;
+mod settings;
+mod shaders;
+mod sized;
+mod symbols;
+mod timing;
+mod uniforms;
+mod vertices;
+mod words;
+
+pub use blocking::block_on;
+pub use counters::{Counter, Counters};
+pub use error::Error;
+pub use frame::{Cut, Draw, Frame, Output, Recorded};
+pub use readback::Pending;
+pub use renderer::Renderer;
+pub use settings::{Checks, Settings, Sizing, VertexBuffer};
+pub use shaders::{Code, Module, Shaders};
+pub use timing::PassTime;
+pub use uniforms::Value;
+pub use vertices::{VertexInput, VertexInputs};

@@ -1,0 +1,124 @@
+//! The description's own uniforms, by name: values in, the words of the uniform buffer out.
+//!
+//! WGSL's layout rules for uniform blocks, over the six types that a description can have.
+
+use fragbuf_model::{Uniform, UniformType};
+
+use crate::Error;
+
+/// A value for one of the description's uniforms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// `f32`
+    F32(f32),
+    /// `u32`
+    U32(u32),
+    /// `i32`
+    I32(i32),
+    /// `vec2`
+    Vec2([f32; 2]),
+    /// `vec3`
+    Vec3([f32; 3]),
+    /// `vec4`
+    Vec4([f32; 4]),
+}
+
+impl Value {
+    fn kind(self) -> UniformType {
+        match self {
+            Value::F32(_) => UniformType::F32,
+            Value::U32(_) => UniformType::U32,
+            Value::I32(_) => UniformType::I32,
+            Value::Vec2(_) => UniformType::Vec2,
+            Value::Vec3(_) => UniformType::Vec3,
+            Value::Vec4(_) => UniformType::Vec4,
+        }
+    }
+
+    fn words(self) -> Vec<u32> {
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect();
+        match self {
+            Value::F32(value) => bits(&[value]),
+            Value::U32(value) => vec![value],
+            Value::I32(value) => vec![value.cast_unsigned()],
+            Value::Vec2(values) => bits(&values),
+            Value::Vec3(values) => bits(&values),
+            Value::Vec4(values) => bits(&values),
+        }
+    }
+}
+
+/// Words and alignment in words.
+fn layout(kind: UniformType) -> (usize, usize) {
+    match kind {
+        UniformType::F32 | UniformType::U32 | UniformType::I32 => (1, 1),
+        UniformType::Vec2 => (2, 2),
+        UniformType::Vec3 => (3, 4),
+        UniformType::Vec4 => (4, 4),
+    }
+}
+
+/// The words of the block, all zero.
+pub(crate) fn zeros(uniforms: &[Uniform]) -> Vec<u32> {
+    let end = offsets(uniforms).zip(uniforms).map(|(offset, uniform)| offset + layout(uniform.kind.value).0).last();
+    vec![0; end.unwrap_or(0).next_multiple_of(4)]
+}
+
+/// Puts one value into the words of the block.
+pub(crate) fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
+    let found = offsets(uniforms).zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
+    let Some((offset, uniform)) = found else {
+        let names: Vec<&str> = uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
+        let wanted = format!("one of the description's uniforms ({})", names.join(", "));
+        return Err(Error::BadValue { name: format!("uniform `{name}`"), wanted });
+    };
+    let kind = uniform.kind.value;
+    if kind != value.kind() {
+        return Err(Error::BadValue { name: format!("uniform `{name}`"), wanted: kind.keyword().to_owned() });
+    }
+    for (word, value) in words.iter_mut().skip(offset).zip(value.words()) {
+        *word = value;
+    }
+    Ok(())
+}
+
+fn offsets(uniforms: &[Uniform]) -> impl Iterator<Item = usize> {
+    uniforms.iter().scan(0usize, |end, uniform| {
+        let (words, align) = layout(uniform.kind.value);
+        let offset = end.next_multiple_of(align);
+        *end = offset + words;
+        Some(offset)
+    })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use fragbuf_model::{Origin, Spanned};
+
+    use super::*;
+
+    fn uniform(name: &str, kind: UniformType) -> Uniform {
+        let origin = Origin::new("test", 1, 1);
+        Uniform { name: Spanned::new(name.to_owned(), origin.clone()), kind: Spanned::new(kind, origin) }
+    }
+
+    #[test]
+    fn a_vector_starts_at_its_alignment() {
+        let block = [uniform("a", UniformType::F32), uniform("b", UniformType::Vec3), uniform("c", UniformType::U32)];
+        let mut words = zeros(&block);
+        assert_eq!(words.len(), 8);
+        set(&mut words, &block, "b", Value::Vec3([1.0, 2.0, 3.0])).unwrap();
+        set(&mut words, &block, "c", Value::U32(7)).unwrap();
+        assert_eq!(words[4..], [1.0f32.to_bits(), 2.0f32.to_bits(), 3.0f32.to_bits(), 7]);
+    }
+
+    #[test]
+    fn a_wrong_type_and_an_unknown_name_say_what_is_wanted() {
+        let block = [uniform("a", UniformType::F32)];
+        let mut words = zeros(&block);
+        let wrong = set(&mut words, &block, "a", Value::U32(1)).unwrap_err();
+        assert_eq!(wrong.to_string(), "uniform `a` must be f32");
+        assert!(set(&mut words, &block, "b", Value::U32(1)).unwrap_err().to_string().contains("(a)"));
+    }
+}

@@ -1,0 +1,232 @@
+//! Every technique against the oracle: the kept sets are equal, word by word, and the colours within 1/255, in every order
+//! of drawing.
+//!
+//! A software driver runs the fragments of a pixel one after the other. So `kb`, whose races are kept by design, is exact
+//! here too; nothing in this file says anything about races.
+
+use fragbuf_model::Variant;
+use fragbuf_runtime::{Renderer, Settings, Sizing, Value, block_on};
+
+use crate::oracle::{self, PLAIN, Rules, Words};
+use crate::order::{Numbers, orders};
+use crate::quads::{Quad, SIZE};
+use crate::stage::{self, BACKGROUND, Seen, described, renderer, see, settings, shaders, technique};
+
+const RED: [u8; 4] = [255, 0, 0, 128];
+const GREEN: [u8; 4] = [0, 255, 0, 64];
+const BLUE: [u8; 4] = [0, 0, 255, 200];
+const WHITE: [u8; 4] = [255, 255, 255, 255];
+const GREY: [u8; 4] = [128, 128, 128, 10];
+
+/// The corner cases, by name. At most eight layers lie over a pixel.
+fn cases() -> Vec<(&'static str, Vec<Quad>)> {
+    let near_to_far =
+        |count: u32| (0..count).map(|index| Quad::whole((index + 1) as f32 / 16.0, [index as u8 * 30, 200, 9, 90]));
+    vec![
+        ("nothing", Vec::new()),
+        ("one layer over some pixels", vec![Quad::whole(0.5, RED).at(3, 5, 9, 6)]),
+        ("full", near_to_far(4).collect()),
+        ("more than fit", near_to_far(8).collect()),
+        (
+            "equal depths",
+            vec![Quad::whole(0.5, RED), Quad::whole(0.5, GREEN), Quad::whole(0.5, BLUE), Quad::whole(0.5, GREY)],
+        ),
+        (
+            "equal fragments",
+            vec![Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.25, RED)],
+        ),
+        (
+            "coplanar, partly over each other",
+            vec![
+                Quad::whole(0.5, RED).at(0, 0, 10, 10),
+                Quad::whole(0.5, GREEN).at(5, 0, 16, 10),
+                Quad::whole(0.5, BLUE).at(0, 5, 16, 16),
+                Quad::whole(0.5, WHITE).at(7, 7, 8, 8),
+            ],
+        ),
+        (
+            "nearest and farthest",
+            vec![Quad::whole(0.0, RED), Quad::whole(1.0, BLUE), Quad::whole(1.0, GREEN), Quad::whole(0.5, GREY)],
+        ),
+        ("scattered", scattered(8, 7)),
+        ("scattered again", scattered(8, 42)),
+    ]
+}
+
+pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
+    let mut numbers = Numbers::seeded(seed);
+    let quad = |id| {
+        let (x0, y0) = (numbers.below(SIZE), numbers.below(SIZE));
+        let (x1, y1) = (x0 + 1 + numbers.below(SIZE - x0), y0 + 1 + numbers.below(SIZE - y0));
+        let color = std::array::from_fn(|_| numbers.below(256) as u8);
+        Quad { x0, y0, x1, y1, depth: numbers.below(8) as f32 / 8.0, color, id }
+    };
+    (0..count).map(quad).collect()
+}
+
+pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
+    let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, k);
+    for (pixel, (seen, expected)) in seen.kept.iter().zip(&expected).enumerate() {
+        assert_eq!(
+            seen,
+            expected,
+            "{name}: kept by pixel {}, {} of {quads:?}",
+            pixel as u32 % SIZE,
+            pixel as u32 / SIZE
+        );
+    }
+    for (pixel, (seen, expected)) in seen.pixels.iter().zip(oracle::picture(rules, quads, k, BACKGROUND)).enumerate() {
+        for (seen, expected) in seen.iter().zip(expected) {
+            let difference = 255.0 * (f64::from(*seen) - expected).abs();
+            let (x, y) = (pixel as u32 % SIZE, pixel as u32 / SIZE);
+            assert!(difference <= 1.0, "{name}: colour of pixel {x}, {y} is off by {difference}/255 for {quads:?}");
+        }
+    }
+}
+
+/// Every case in every order, by the shaders of the target `wgsl`.
+fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
+    let stage = stage::device();
+    let mut renderer = renderer(&stage, &shaders(variant, "wgsl"), settings).unwrap();
+    prepare(&mut renderer);
+    for (name, quads) in cases() {
+        let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
+        for quads in orders(&quads) {
+            let seen = see(&stage, &mut renderer, &quads);
+            compare(name, &seen, rules, &quads, renderer.k());
+            let lost = ["pool_exhausted", "spin_exhausted", "layers_exceeded"];
+            assert!(lost.iter().all(|counter| seen.counters.get(counter) == 0), "{name}: {:?}", seen.counters);
+        }
+    }
+}
+
+#[test]
+fn the_array_with_the_worst_at_slot_0() {
+    check(&technique("kplus_array", &[("k", "4")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_array_keeps_one() {
+    check(&technique("kplus_array", &[("k", "1")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_sorted_array() {
+    check(&technique("kb", &[("k", "4")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_sorted_array_keeps_one() {
+    check(&technique("kb", &[("k", "1")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_linked_list() {
+    check(&technique("ab_ll", &[]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn exact_regions_cut_at_the_host_step() {
+    check(&technique("ab_sb", &[]), &Settings { sizing: Sizing::Exact, ..settings() }, &PLAIN, |_| {});
+}
+
+#[test]
+fn exact_regions_reserved() {
+    let reserved = Sizing::Reserve { fragments: 8 * SIZE * SIZE };
+    check(&technique("ab_sb", &[]), &Settings { sizing: reserved, ..settings() }, &PLAIN, |_| {});
+}
+
+#[test]
+fn k_below_the_capacity() {
+    for k in [1, 2, 3, 5, 7, 8] {
+        for key in ["kplus_array", "kb"] {
+            let set_k = |renderer: &mut Renderer| {
+                let device = renderer.device().clone();
+                block_on(&device, renderer.set_k(k)).unwrap().unwrap();
+                assert_eq!((renderer.k(), renderer.capacity()), (Some(k), 8));
+            };
+            check(&technique(key, &[("k", "5")]), &settings(), &PLAIN, set_k);
+        }
+    }
+}
+
+/// A payload, a criterion, a constraint, a uniform and an effect of the description's own.
+const GLASS: &str = "
+    buffer Glass from TECHNIQUE {
+        fragment { color: rgba8, depth: f32, id: u32 }
+        uniform { cut: f32, gain: vec4 }
+        KEEP
+        where |f, u| f.depth > u.cut;
+        resolve |fragments, u| {
+            let mut sum = Vec4::ZERO;
+            let mut weight = 1.0;
+            for f in fragments {
+                if f.id % 2 == 0 {
+                    sum += f.color * (weight * u.gain.x);
+                } else {
+                    sum += f.color * (weight * u.gain.w);
+                }
+                weight *= 0.5;
+            }
+            sum
+        }
+    }";
+
+/// Depth − alpha / 4: an opaque fragment may be kept though a nearer one is not.
+pub const GLASS_KEEPS: &str = "keep 3 least |f| f.depth - 0.25 * f.color.w;";
+
+const GAIN: [f32; 4] = [0.25, 9.0, 9.0, 0.125];
+const CUT: f32 = 0.125;
+
+pub fn glass(technique: &str, keep: &str) -> Variant {
+    described(&GLASS.replace("TECHNIQUE", technique).replace("KEEP", keep))
+}
+
+fn glass_resolve(kept: &[Quad]) -> [f64; 4] {
+    let mut sum = [0.0; 4];
+    let mut weight = 1.0;
+    for quad in kept {
+        let gain = f64::from(if quad.id % 2 == 0 { GAIN[0] } else { GAIN[3] });
+        for (sum, channel) in sum.iter_mut().zip(quad.color) {
+            *sum += f64::from(channel) / 255.0 * weight * gain;
+        }
+        weight *= 0.5;
+    }
+    sum
+}
+
+pub fn set_uniforms(renderer: &mut Renderer) {
+    renderer.set_uniform("cut", Value::F32(CUT)).unwrap();
+    renderer.set_uniform("gain", Value::Vec4(GAIN)).unwrap();
+}
+
+#[test]
+fn a_description_with_a_criterion_of_its_own() {
+    fn criterion(quad: &Quad) -> u32 {
+        let bits = (quad.depth - 0.25 * quad.rgba()[3]).to_bits();
+        if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+    }
+    let rules = Rules {
+        admits: |quad| quad.depth > CUT,
+        words: |quad| vec![criterion(quad), u32::from_le_bytes(quad.color), quad.depth.to_bits(), quad.id],
+        nearer: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id, criterion(quad)],
+        resolve: glass_resolve,
+    };
+    let keep = GLASS_KEEPS;
+    check(&glass("kplus_array", keep), &settings(), &rules, set_uniforms);
+    // The sorted array is in the order of the criterion, which is not the order of depth.
+    check(&glass("kb", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
+}
+
+#[test]
+fn a_description_that_keeps_all() {
+    let rules = Rules {
+        admits: |quad| quad.depth > CUT,
+        words: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id],
+        nearer: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id],
+        resolve: glass_resolve,
+    };
+    for key in ["ab_ll", "ab_sb"] {
+        check(&glass(key, ""), &settings(), &rules, set_uniforms);
+    }
+}

@@ -1,0 +1,181 @@
+//! What goes wrong is a value that says what, how much and what to do; the renderer stays as it was.
+
+use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
+use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Settings, Sizing, Value, block_on};
+use fragbuf_templates::vocabulary::{Host, Step};
+
+use crate::quads::{Quad, SIZE};
+use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
+
+fn fresh() -> Headless {
+    Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap()
+}
+
+fn message<T>(result: Result<T, Error>) -> String {
+    result.err().expect("this fails").to_string()
+}
+
+#[test]
+fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
+    let stage = device();
+    let mut renderer =
+        renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
+    let before = (renderer.allocated_bytes(), renderer.symbol("width"));
+    let limit = stage.device.limits().max_storage_buffer_binding_size.min(stage.device.limits().max_buffer_size);
+    let side = stage.device.limits().max_texture_dimension_2d;
+    let bytes = 4 * 64 * u64::from(side) * u64::from(side);
+    let error = block_on(&stage.device, renderer.resize(side, side)).unwrap().unwrap_err();
+    let Error::TooLarge { what, needed, limit: told, .. } = &error else { panic!("{error}") };
+    assert_eq!((what.as_str(), *needed, *told), ("`keys`", bytes, limit));
+    assert!(error.to_string().contains("smaller frame"), "{error}");
+    assert_eq!((renderer.allocated_bytes(), renderer.symbol("width")), before);
+    let quads = [Quad::whole(0.5, [1, 2, 3, 4])];
+    assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
+    // The way out: as many rows as fit, and not one more.
+    let shaders = shaders(&technique("kplus_array", &[("k", "64")]), "wgsl");
+    let whole = Settings { width: side, height: side, ..settings() };
+    let rows = Renderer::fitting_height(&stage.device, &shaders, &whole).unwrap();
+    assert_eq!(u64::from(rows), (limit / (4 * 64 * u64::from(side))).min(u64::from(side)));
+    let error = block_on(&stage.device, renderer.resize(side + 1, 1)).unwrap().unwrap_err();
+    assert!(error.to_string().contains("max_texture_dimension_2d"), "{error}");
+}
+
+#[test]
+fn a_pool_beyond_the_limit_is_refused_before_anything_is_made() {
+    let stage = device();
+    let settings = Settings { sizing: Sizing::Reserve { fragments: u32::MAX }, ..settings() };
+    let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
+    assert!(error.contains("`links`") && error.contains("reserve less"), "{error}");
+}
+
+#[test]
+fn sizing_that_nobody_can_know_says_to_reserve() {
+    let stage = device();
+    let settings = Settings { sizing: Sizing::Exact, ..settings() };
+    let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
+    assert!(error.contains("`fragments`") && error.contains("Sizing::Reserve"), "{error}");
+}
+
+#[test]
+fn missing_features_are_named() {
+    let stage = device();
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    let adapters = wgpu::Instance::new(descriptor).enumerate_adapters(wgpu::Backends::PRIMARY);
+    let adapters = block_on(&stage.device, adapters).unwrap();
+    let request = adapters[0].request_device(&wgpu::DeviceDescriptor::default());
+    let (plain, queue) = block_on(&stage.device, request).unwrap().unwrap();
+    for (target, feature) in [("spirv", "PASSTHROUGH_SHADERS"), ("wgsl-native", "MEMORY_DECORATION_COHERENT")] {
+        let shaders = shaders(&technique("kplus_array", &[]), target);
+        let error = message(block_on(&plain, Renderer::new(&plain, &queue, &shaders, &settings())).unwrap());
+        assert!(error.contains(feature), "{error}");
+    }
+}
+
+#[test]
+fn steps_that_do_not_run_are_named() {
+    let stage = device();
+    let host = Host { function: "meditate".to_owned(), reads: Vec::new(), sets: Vec::new() };
+    let steps =
+        [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
+    for (step, named) in steps {
+        let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
+        shaders.plan.steps.push(step);
+        let error = message(renderer(&stage, &shaders, &settings()));
+        assert!(error.contains(named), "{error}");
+    }
+}
+
+#[test]
+fn code_and_settings_that_do_not_fit_are_values() {
+    let stage = device();
+    let good = shaders(&technique("kplus_array", &[]), "wgsl");
+    let mut broken = good.clone();
+    broken.modules[1].code = Code::Wgsl("fn store() { this is no WGSL }".to_owned());
+    assert!(message(renderer(&stage, &broken, &settings())).contains("shader of pass `store`"));
+    let mut without = good.clone();
+    without.modules.retain(|module| module.pass != "resolve");
+    let error = message(renderer(&stage, &without, &settings()));
+    assert_eq!(error, "the shaders have no vertex entry point for pass `resolve`");
+    let unblendable = Settings { target: wgpu::TextureFormat::Rgba32Uint, ..settings() };
+    assert!(message(renderer(&stage, &good, &unblendable)).contains("pipeline of pass `resolve`"));
+    let empty = Settings { width: 0, ..settings() };
+    assert_eq!(message(renderer(&stage, &good, &empty)), "the frame's width must be at least 1");
+}
+
+#[test]
+fn an_output_of_another_size_is_never_read_beyond_the_frame() {
+    let stage = device();
+    let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[]), "wgsl"), &settings()).unwrap();
+    let quads = [Quad::whole(0.5, [255, 255, 255, 255])];
+    let greater = Offscreen::new(&stage.device, FORMAT, SIZE + 5, SIZE + 3).unwrap();
+    // Clip space is stretched over the attachment of the geometry pass alone.
+    draw_over(&stage, &mut renderer, &quads, &greater).unwrap();
+    for (index, [r, ..]) in greater.colors(&stage.device, &stage.queue).unwrap().into_iter().enumerate() {
+        let (x, y) = (index as u32 % (SIZE + 5), index as u32 / (SIZE + 5));
+        assert_eq!(r == 1.0, x < SIZE && y < SIZE, "pixel {x}, {y}");
+    }
+    let smaller = Offscreen::new(&stage.device, FORMAT, SIZE - 1, SIZE).unwrap();
+    assert!(message(draw_over(&stage, &mut renderer, &quads, &smaller)).contains("wgpu refuses the frame's commands"));
+    assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1), "the next frame is a good one");
+}
+
+#[test]
+fn values_out_of_range_are_refused() {
+    let stage = device();
+    let mut array = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "5")]), "wgsl"), &settings()).unwrap();
+    for k in [0, 9] {
+        assert!(message(block_on(&stage.device, array.set_k(k)).unwrap()).contains("from 1 to the capacity, 8"));
+    }
+    assert!(message(array.set_uniform("cut", Value::F32(1.0))).contains("uniform `cut`"));
+    let mut list = renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings()).unwrap();
+    assert!(message(block_on(&stage.device, list.set_k(3)).unwrap()).contains("keeps every fragment"));
+}
+
+#[test]
+fn frames_that_are_over_and_segments_that_were_not_submitted_are_told() {
+    let stage = device();
+    let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).unwrap();
+    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Load };
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let stale = renderer.begin().unwrap();
+    let frame = renderer.begin().unwrap();
+    assert_eq!(stale.record(&renderer, &mut encoder, &output, &mut |_, _| {}).err(), Some(Error::StaleFrame));
+    let recorded = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}).unwrap();
+    let Recorded::Cut(cut) = recorded else { panic!("the plan has a host step") };
+    assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).err(), Some(Error::NotSubmitted));
+    assert!(see(&stage, &mut renderer, &[]).kept.iter().all(Vec::is_empty), "the next frame is a good one");
+}
+
+#[test]
+fn a_lost_device_is_a_value() {
+    let stage = fresh();
+    let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).unwrap();
+    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Load };
+    let frame = renderer.begin().unwrap();
+    stage.device.destroy();
+    assert_eq!(renderer.render(&output, &mut |_, _| {}), Err(Error::Lost));
+    assert_eq!(renderer.begin().err(), Some(Error::Lost));
+    assert_eq!(block_on(&stage.device, renderer.resize(7, 7)).unwrap(), Err(Error::Lost));
+    assert_eq!(
+        self::renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).err(),
+        Some(Error::Lost)
+    );
+    assert_eq!(offscreen.read(&stage.device, &stage.queue), Err(Error::Lost));
+    // A frame that began before: whatever it records, what it waits for never comes.
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let Ok(Recorded::Cut(cut)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else {
+        panic!("a cut")
+    };
+    assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).unwrap().err(), Some(Error::Lost));
+    assert!(stage.is_lost());
+}
+
+#[test]
+fn an_adapter_that_is_not_there_names_those_that_are() {
+    let error = message(Headless::open(&"no such adapter".parse::<Choice>().unwrap(), wgpu::Features::empty()));
+    let names: Vec<String> = fragbuf_runtime::headless::adapters().into_iter().map(|info| info.name).collect();
+    assert!(error.contains("no such adapter") && error.contains(&names[0]), "{error}");
+}

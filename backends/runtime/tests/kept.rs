@@ -1,0 +1,60 @@
+//! What the storages keep, read from their buffers as their templates' heads describe them.
+
+use std::collections::BTreeMap;
+
+use fragbuf_runtime::Renderer;
+
+use crate::oracle::Words;
+use crate::quads::SIZE;
+
+const PIXELS: usize = (SIZE * SIZE) as usize;
+const EMPTY: u32 = u32::MAX;
+
+/// The kept fragments of every pixel, each pixel's in ascending order of their words. `buffers`: all words by resource.
+pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Vec<Words>> {
+    let plan = renderer.plan();
+    let storage = plan.selection.row("storage").unwrap().row.key.clone();
+    let (words, beside) = (plan.layout.entry_words() as usize, plan.layout.beside_words() as usize);
+    let k = renderer.k().unwrap_or(0) as usize;
+    let buffer = |name: &str| buffers.get(name).map_or(&[][..], Vec::as_slice);
+    let slot = |slot: usize, pixel: usize| {
+        let at = slot * PIXELS + pixel;
+        let rest = &buffer("entries")[at * beside..][..beside];
+        [&[buffer("keys")[at]], rest].concat()
+    };
+    let entry = |name: &str, at: usize| buffer(name)[at * words..][..words].to_vec();
+    let of_pixel = |pixel: usize| -> Vec<Words> {
+        match storage.as_str() {
+            "max_array" => {
+                let filled = buffer("filled")[pixel] as usize;
+                assert!(filled <= k, "pixel {pixel} holds {filled} of {k}");
+                assert!(filled == k || buffer("keys")[pixel] == EMPTY, "slot 0 of pixel {pixel} is taken too early");
+                (k - filled..k).map(|index| slot(index, pixel)).collect()
+            }
+            "sorted_array" => {
+                let kept: Vec<Words> =
+                    (0..k).map(|index| slot(index, pixel)).filter(|words| words[0] != EMPTY).collect();
+                assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
+                kept
+            }
+            "linked_list" => {
+                let link = |word: u32| word.checked_sub(1);
+                let nodes =
+                    std::iter::successors(link(buffer("heads")[pixel]), |node| link(buffer("links")[*node as usize]));
+                nodes.map(|node| entry("nodes", node as usize)).collect()
+            }
+            "exact_regions" => {
+                let offsets = buffer("offsets");
+                let end = offsets[pixel + 1].min(renderer.symbol("fragments").unwrap() as u32);
+                (offsets[pixel]..end).map(|place| entry("entries", place as usize)).collect()
+            }
+            other => panic!("this test cannot read `{other}`"),
+        }
+    };
+    let pixels = (0..PIXELS).map(|pixel| {
+        let mut kept = of_pixel(pixel);
+        kept.sort();
+        kept
+    });
+    pixels.collect()
+}

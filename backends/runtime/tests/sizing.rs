@@ -1,0 +1,174 @@
+//! Room: how much is made, when a frame is cut for it, and what happens when it runs out.
+
+use fragbuf_runtime::headless::{Headless, Offscreen};
+use fragbuf_runtime::{Error, Output, Recorded, Renderer, Settings, Sizing, block_on};
+
+use crate::capture::scattered;
+use crate::oracle::{PLAIN, kept_words, total};
+use crate::quads::{Quad, SIZE, vertices};
+use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
+
+const PIXELS: u64 = (SIZE * SIZE) as u64;
+/// Words of the counters.
+const COUNTERS: u64 = 6;
+
+fn open(stage: &Headless, key: &str, set: &[(&str, &str)], sizing: Sizing) -> Result<Renderer, Error> {
+    renderer(stage, &shaders(&technique(key, set), "wgsl"), &Settings { sizing, ..settings() })
+}
+
+#[test]
+fn allocated_bytes_are_what_the_papers_say() {
+    let stage = device();
+    let quads = scattered(8, 3);
+    let fragments = total(&PLAIN, &quads) as u64;
+    let reserve = Sizing::Reserve { fragments: 1000 };
+    // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1 and 2f + 2 words per pixel.
+    let expected = [
+        ("kplus_array", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
+        ("kb", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
+        ("ab_ll", "all", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
+        ("ab_ll", "all", Sizing::Auto, PIXELS + 1 + 3 * 8 * PIXELS + COUNTERS),
+        ("ab_sb", "all", reserve, PIXELS + (PIXELS + 1) + 1 + 2 * 1000 + COUNTERS),
+        ("ab_sb", "all", Sizing::Exact, PIXELS + (PIXELS + 1) + 1 + 2 * fragments + COUNTERS),
+    ];
+    for (key, k, sizing, words) in expected {
+        let mut renderer = open(&stage, key, &[("k", k)], sizing).unwrap();
+        see(&stage, &mut renderer, &quads);
+        assert_eq!(renderer.allocated_bytes(), 4 * words, "{key} {sizing:?}");
+        let by_formula = renderer
+            .plan()
+            .resources
+            .iter()
+            .map(|planned| 4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap());
+        assert_eq!(renderer.allocated_bytes(), by_formula.sum::<u64>(), "{key} {sizing:?}");
+        for planned in &renderer.plan().resources {
+            let bytes = renderer.buffer(&planned.resource.name).map_or(0, wgpu::Buffer::size);
+            assert_eq!(bytes, 4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap());
+        }
+    }
+}
+
+#[test]
+fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
+    let stage = device();
+    let quads = scattered(8, 5);
+    let fragments = total(&PLAIN, &quads);
+    for room in [0, 1, fragments / 2, fragments - 1, fragments, fragments + 1] {
+        for key in ["ab_ll", "ab_sb"] {
+            let sizing = Sizing::Reserve { fragments: room as u32 };
+            let mut renderer = open(&stage, key, &[("counters", "all")], sizing).unwrap();
+            let seen = see(&stage, &mut renderer, &quads);
+            let lost = fragments.saturating_sub(room);
+            assert_eq!(seen.counters.get("pool_exhausted") as usize, lost, "{key} with room for {room} of {fragments}");
+            assert_eq!(seen.counters.get("generated") as usize, fragments);
+            assert_eq!(seen.counters.lost() as usize, lost);
+            let all = kept_words(&PLAIN, &quads, None);
+            assert_eq!(seen.kept.iter().map(Vec::len).sum::<usize>(), fragments - lost);
+            for (kept, all) in seen.kept.iter().zip(all) {
+                assert!(kept.iter().all(|words| all.contains(words)), "{key} keeps what was never drawn");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_kept_culled_and_displaced_is_all_there_was() {
+    let stage = device();
+    let quads = scattered(8, 9);
+    for (key, k) in [("kplus_array", "1"), ("kplus_array", "2"), ("kb", "1"), ("kb", "2"), ("kb", "5")] {
+        let mut renderer = open(&stage, key, &[("k", k), ("counters", "all")], Sizing::Auto).unwrap();
+        let seen = see(&stage, &mut renderer, &quads);
+        let count = |name| seen.counters.get(name) as usize;
+        let kept: usize = seen.kept.iter().map(Vec::len).sum();
+        assert_eq!(count("generated"), total(&PLAIN, &quads), "{key}");
+        assert_eq!(count("generated"), kept + count("culled") + count("displaced"), "{key}");
+    }
+}
+
+#[test]
+fn exact_room_follows_the_scene() {
+    let stage = device();
+    let mut renderer = open(&stage, "ab_sb", &[], Sizing::Exact).unwrap();
+    let layers = |count: u32| (0..count).map(|id| Quad::whole(0.5, [9, 9, 9, 9]).named(id)).collect::<Vec<_>>();
+    // Grows to what is needed, keeps up to twice as much, and gives back more.
+    for (count, room) in [(4, 4), (5, 5), (3, 5), (2, 2), (0, 0), (1, 1)] {
+        see(&stage, &mut renderer, &layers(count));
+        assert_eq!(renderer.symbol("fragments"), Some(room * PIXELS), "{count} layers");
+    }
+}
+
+#[test]
+fn a_frame_is_cut_only_where_the_host_must_read() {
+    let stage = device();
+    let cuts = [
+        ("ab_sb", Sizing::Auto, 1),
+        ("ab_sb", Sizing::Reserve { fragments: 99 }, 0),
+        ("ab_ll", Sizing::Auto, 0),
+        ("kplus_array", Sizing::Exact, 0),
+    ];
+    for (key, sizing, expected) in cuts {
+        let mut renderer = open(&stage, key, &[], sizing).unwrap();
+        let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Load };
+        let mut frame = renderer.begin().unwrap();
+        let mut cuts = 0;
+        loop {
+            let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let recorded = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}).unwrap();
+            stage.queue.submit([encoder.finish()]);
+            let Recorded::Cut(cut) = recorded else { break };
+            cuts += 1;
+            // An event loop would come back later; this one has nothing else to do.
+            while !cut.is_ready() {
+                stage.device.poll(wgpu::PollType::Poll).unwrap();
+            }
+            frame = block_on(&stage.device, cut.resume(&mut renderer)).unwrap().unwrap();
+        }
+        assert_eq!(cuts, expected, "{key} {sizing:?}");
+    }
+}
+
+#[test]
+fn a_new_size_keeps_working() {
+    let stage = device();
+    for key in ["kplus_array", "ab_ll", "ab_sb"] {
+        let small = Settings { width: 3, height: 2, ..settings() };
+        let mut renderer = renderer(&stage, &shaders(&technique(key, &[]), "wgsl"), &small).unwrap();
+        block_on(&stage.device, renderer.resize(SIZE, SIZE)).unwrap().unwrap();
+        let quads = scattered(6, 1);
+        assert_eq!(see(&stage, &mut renderer, &quads).kept, kept_words(&PLAIN, &quads, renderer.k()), "{key}");
+    }
+}
+
+#[test]
+fn passes_are_timed() {
+    let stage = device();
+    assert!(stage.device.features().contains(wgpu::Features::TIMESTAMP_QUERY), "the CPU's adapter has timestamps");
+    let settings = Settings { timestamps: true, ..settings() };
+    let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings).unwrap();
+    see(&stage, &mut renderer, &scattered(8, 1));
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let times = renderer.pass_times(&mut encoder).unwrap();
+    stage.queue.submit([encoder.finish()]);
+    let times = times.wait(&stage.device).unwrap();
+    let passes: Vec<&str> = times.iter().map(|time| time.pass.as_str()).collect();
+    assert_eq!(passes, ["count", "scan_blocks", "scan_sums", "scan_add", "store", "resolve"]);
+    assert!(times.iter().all(|time| (0.0..1000.0).contains(&time.milliseconds)), "{times:?}");
+    assert!(times.iter().any(|time| time.milliseconds > 0.0), "{times:?}");
+}
+
+#[test]
+fn several_frames_in_flight_see_their_own_scenes() {
+    let stage = device();
+    let mut renderer = open(&stage, "kplus_array", &[], Sizing::Auto).unwrap();
+    let targets: Vec<Offscreen> = (0..3).map(|_| Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap()).collect();
+    let scenes: Vec<Vec<Quad>> = (0..3).map(|seed| scattered(5, seed)).collect();
+    for (quads, target) in scenes.iter().zip(&targets) {
+        assert!(!vertices(quads, renderer.vertex_inputs()).is_empty());
+        draw_over(&stage, &mut renderer, quads, target).unwrap();
+    }
+    for (quads, target) in scenes.iter().zip(&targets) {
+        let alone = see(&stage, &mut renderer, quads).pixels;
+        assert_eq!(target.colors(&stage.device, &stage.queue).unwrap(), alone);
+    }
+}
