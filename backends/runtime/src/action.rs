@@ -78,5 +78,8 @@ pub(crate) fn index(plan: &Plan, resource: &str) -> Result<usize, Error> {
 }
 
 pub(crate) fn unsupported(what: String) -> Error {
-    Error::Unsupported { what, hint: "follow the manifest with an engine of your own, or take another technique".to_owned() }
+    Error::Unsupported {
+        what,
+        hint: "follow the manifest with an engine of your own, or take another technique".to_owned(),
+    }
 }

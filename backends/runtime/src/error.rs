@@ -106,9 +106,14 @@ impl fmt::Display for Error {
             Error::NotSubmitted => f.write_str("nothing to wait for: submit what was recorded first"),
             Error::StaleFrame => f.write_str("this frame is over: another frame, a new size or a new k took its place"),
             Error::BadValue { name, wanted } => write!(f, "{name} must be {wanted}"),
-            Error::MissingCode { pass, stage } => write!(f, "the shaders have no {stage} entry point for pass `{pass}`"),
+            Error::MissingCode { pass, stage } => {
+                write!(f, "the shaders have no {stage} entry point for pass `{pass}`")
+            }
             Error::NoAdapter { wanted, found } if found.is_empty() => {
-                write!(f, "no adapter at all (wanted: {wanted}): install a driver; mesa-vulkan-drivers has one for the CPU")
+                write!(
+                    f,
+                    "no adapter at all (wanted: {wanted}): install a driver; mesa-vulkan-drivers has one for the CPU"
+                )
             }
             Error::NoAdapter { wanted, found } => {
                 write!(f, "no adapter is {wanted}; there are: {}", found.join(", "))

@@ -11,8 +11,9 @@ use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::action::Action;
 use crate::host::Decision;
+use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
-use crate::renderer::PATTERN;
+use crate::scope::scoped;
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
@@ -95,7 +96,8 @@ impl Frame {
         };
         self.at += segment.len() + 1;
         let device = &renderer.device;
-        let reads = places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
+        let reads =
+            places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
         Ok(Recorded::Cut(Cut { reads: reads.collect(), decision: decision.clone(), frame: self }))
     }
 
@@ -108,7 +110,9 @@ impl Frame {
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
-        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else { return };
+        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else {
+            return;
+        };
         let times = renderer.timing.as_ref().map(|timing| timing.of(index));
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
@@ -131,7 +135,8 @@ impl Frame {
         });
         let attachment = if prepared.pass.state.targets.is_empty() {
             // WebGPU refuses a pass without attachments.
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
+            let ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
             color(&renderer.sized.dummy, ops)
         } else {
             let load = if self.written { wgpu::LoadOp::Load } else { output.load };
@@ -190,11 +195,16 @@ impl Renderer {
     pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<(), Error> {
         let mut frame = self.begin()?;
         loop {
-            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("fragbuf") });
-            let recorded = frame.record(self, &mut encoder, output, draw)?;
-            self.queue.submit([encoder.finish()]);
-            let Recorded::Cut(cut) = recorded else { return Ok(()) };
             let device = self.device.clone();
+            let segment = || {
+                let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf") };
+                let mut encoder = device.create_command_encoder(&descriptor);
+                let recorded = frame.record(self, &mut encoder, output, draw)?;
+                self.queue.submit([encoder.finish()]);
+                Ok(recorded)
+            };
+            let recorded = crate::block_on(&device, scoped(&device, "the frame's commands", 0, segment))??;
+            let Recorded::Cut(cut) = recorded? else { return Ok(()) };
             frame = crate::block_on(&device, cut.resume(self))??;
         }
     }

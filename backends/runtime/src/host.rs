@@ -5,9 +5,9 @@
 use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::{Formula, Host};
 
+use crate::Error;
 use crate::action::{index, unsupported};
 use crate::symbols::Symbols;
-use crate::Error;
 
 /// One host function: from the words read, in the order of `reads`, to the values set, in the order of `sets`.
 type Function = fn(&[u32]) -> Vec<u64>;

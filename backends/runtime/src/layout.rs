@@ -22,7 +22,10 @@ pub(crate) enum Slot {
     Uniforms,
     Camera,
     /// The resource of this number.
-    Resource { index: usize, read_only: bool },
+    Resource {
+        index: usize,
+        read_only: bool,
+    },
 }
 
 /// The slots of a pass, by binding.
@@ -59,7 +62,8 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device, pass: &Pass, slots: &[Slo
         Kind::Compute { .. } => wgpu::ShaderStages::COMPUTE,
         Kind::Geometry | Kind::Fullscreen => wgpu::ShaderStages::FRAGMENT,
     };
-    let entries: Vec<wgpu::BindGroupLayoutEntry> = (0..).zip(slots).map(|(binding, slot)| entry(binding, *slot, main)).collect();
+    let entries: Vec<wgpu::BindGroupLayoutEntry> =
+        (0..).zip(slots).map(|(binding, slot)| entry(binding, *slot, main)).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(&pass.anchor), entries: &entries })
 }
 

@@ -12,6 +12,7 @@
 
 mod action;
 mod blocking;
+mod blocks;
 mod counters;
 mod error;
 mod frame;
@@ -19,16 +20,20 @@ pub mod headless;
 mod host;
 mod layout;
 mod memory;
+mod pattern;
 mod pipeline;
 mod readback;
 mod renderer;
+mod room;
 mod scope;
 mod settings;
 mod shaders;
+mod sized;
 mod symbols;
 mod timing;
 mod uniforms;
 mod vertices;
+mod words;
 
 pub use blocking::block_on;
 pub use counters::{Counter, Counters};

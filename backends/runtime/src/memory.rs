@@ -2,9 +2,9 @@
 
 use fragbuf_codegen::Plan;
 
+use crate::Error;
 use crate::scope::scoped;
 use crate::symbols::Symbols;
-use crate::Error;
 
 /// The buffers of a plan's resources at one size.
 pub(crate) struct Memory {

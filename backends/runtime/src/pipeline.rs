@@ -41,8 +41,11 @@ impl Maker<'_> {
         }
         let mut groups: Vec<Option<&wgpu::BindGroupLayout>> = vec![None; self.shaders.group as usize];
         groups.push(Some(layout));
-        let descriptor =
-            wgpu::PipelineLayoutDescriptor { label: Some(&pass.anchor), bind_group_layouts: &groups, immediate_size: 0 };
+        let descriptor = wgpu::PipelineLayoutDescriptor {
+            label: Some(&pass.anchor),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        };
         let layout = scoped(self.device, &what, 0, || self.device.create_pipeline_layout(&descriptor)).await?;
         if let Kind::Compute { .. } = pass.kind {
             let entry = self.entry(pass, Stage::Compute).await?;
@@ -83,15 +86,11 @@ impl Maker<'_> {
                 }
                 // SAFETY: indices in generated code stay below the sizes that the same plan's formulas give the buffers,
                 // and its loops end; the caller asked for it where the description's author wrote code of their own.
-                unsafe {
-                    self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
-                }
+                unsafe { self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
             }
             Code::SpirV(words) => {
-                let point = wgpu::PassthroughShaderEntryPoint {
-                    name: entry.name.as_str().into(),
-                    workgroup_size: (0, 0, 0),
-                };
+                let point =
+                    wgpu::PassthroughShaderEntryPoint { name: entry.name.as_str().into(), workgroup_size: (0, 0, 0) };
                 let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
                     label,
                     entry_points: std::slice::from_ref(&point).into(),
@@ -143,11 +142,7 @@ impl Maker<'_> {
                 blend: blend_state(target.blend),
                 write_mask: wgpu::ColorWrites::ALL,
             },
-            None => wgpu::ColorTargetState {
-                format: DUMMY_FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::empty(),
-            },
+            None => no_target(),
         };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&pass.anchor),
@@ -171,6 +166,11 @@ impl Maker<'_> {
             cache: None,
         })
     }
+}
+
+/// The target of passes that write buffers alone.
+pub(crate) fn no_target() -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format: DUMMY_FORMAT, blend: None, write_mask: wgpu::ColorWrites::empty() }
 }
 
 fn stage_name(stage: Stage) -> &'static str {

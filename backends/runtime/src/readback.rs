@@ -7,6 +7,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
 
 use crate::Error;
+use crate::scope::is_lost;
+use crate::words::from_bytes;
 
 /// Something that will have been read back.
 pub struct Pending<T> {
@@ -39,8 +41,13 @@ impl<T> Pending<T> {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        encoder.copy_buffer_to_buffer(source, offset, &buffer, 0, bytes);
         let state = Arc::new(Mutex::new(State::default()));
+        if is_lost(device) {
+            // Nothing is recorded: submitting it would fail, and for a reason that is not the reason.
+            lock(&state).mapped = Some(Err(wgpu::BufferAsyncError));
+            return Pending { buffer, state, decode: None };
+        }
+        encoder.copy_buffer_to_buffer(source, offset, &buffer, 0, bytes);
         let shared = Arc::clone(&state);
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |mapped| {
             let mut state = lock(&shared);
@@ -64,7 +71,7 @@ impl<T> Pending<T> {
 
     fn words(&self) -> Result<Vec<u32>, Error> {
         let view = self.buffer.get_mapped_range(..).map_err(|_| Error::Lost)?;
-        let words = view.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let words = from_bytes(&view);
         drop(view);
         self.buffer.unmap();
         Ok(words)

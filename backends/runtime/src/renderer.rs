@@ -7,13 +7,17 @@ use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::Pass;
 
 use crate::action::{Action, actions, index};
+use crate::blocks::{Blocks, IDENTITY};
 use crate::layout::{Slot, bind_group_layout, check, slots};
-use crate::memory::Memory;
-use crate::pipeline::{DUMMY_FORMAT, Maker, Pipeline};
-use crate::scope::scoped;
-use crate::symbols::{Symbols, counted_symbols};
+use crate::pattern::patterns;
+use crate::pipeline::{Maker, Pipeline, no_target};
+use crate::room::{automatic_room, counted};
+use crate::scope::{is_lost, scoped};
+use crate::sized::Sized;
+use crate::symbols::Symbols;
 use crate::timing::Timing;
 use crate::uniforms::{set, zeros};
+use crate::words::to_bytes;
 use crate::{Counters, Error, Frame, PassTime, Pending, Settings, Shaders, Sizing, Value, VertexInputs, counters};
 
 /// Runs one plan on one device.
@@ -45,23 +49,6 @@ pub(crate) struct Prepared {
     pub(crate) slots: Vec<Slot>,
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) pipeline: Pipeline,
-}
-
-/// Everything that depends on the size of the frame, replaced as one.
-pub(crate) struct Sized {
-    pub(crate) symbols: Symbols,
-    pub(crate) memory: Memory,
-    pub(crate) groups: Vec<wgpu::BindGroup>,
-    /// The attachment of passes without a target.
-    pub(crate) dummy: wgpu::TextureView,
-}
-
-/// The uniform buffers.
-struct Blocks {
-    frame: wgpu::Buffer,
-    own: wgpu::Buffer,
-    camera: wgpu::Buffer,
-    filler: wgpu::Buffer,
 }
 
 impl Renderer {
@@ -128,6 +115,9 @@ impl Renderer {
     /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:
     /// uniform buffers are written ahead of the next submission.
     pub fn begin(&mut self) -> Result<Frame, Error> {
+        if is_lost(&self.device) {
+            return Err(Error::Lost);
+        }
         self.write_frame()?;
         self.frame_id += 1;
         Ok(Frame::new(self.frame_id))
@@ -148,10 +138,16 @@ impl Renderer {
     pub async fn set_k(&mut self, k: u32) -> Result<(), Error> {
         let name = || "k".to_owned();
         let Some(room) = self.sized.symbols.k else {
-            return Err(Error::BadValue { name: name(), wanted: "left alone: this plan keeps every fragment".to_owned() });
+            return Err(Error::BadValue {
+                name: name(),
+                wanted: "left alone: this plan keeps every fragment".to_owned(),
+            });
         };
         if k == 0 || k > self.capacity() {
-            return Err(Error::BadValue { name: name(), wanted: format!("from 1 to the capacity, {}", self.capacity()) });
+            return Err(Error::BadValue {
+                name: name(),
+                wanted: format!("from 1 to the capacity, {}", self.capacity()),
+            });
         }
         if k > room {
             self.reallocate(Symbols { k: Some(k), ..self.sized.symbols.clone() }).await?;
@@ -174,7 +170,7 @@ impl Renderer {
 
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&self, view_projection: &[f32; 16]) {
-        self.queue.write_buffer(&self.blocks.camera, 0, &bytes(&view_projection.map(f32::to_bits)));
+        self.queue.write_buffer(&self.blocks.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
     }
 
     /// One of the description's own uniforms, from the next submission on.
@@ -225,6 +221,11 @@ impl Renderer {
         self.passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
     }
 
+    /// The colour target that a pipeline of the caller's own must have in a geometry pass: nothing is written to it.
+    pub fn geometry_target() -> wgpu::ColorTargetState {
+        no_target()
+    }
+
     /// Records the readback of what the frame counted. `None`: the plan counts nothing.
     pub fn counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Counters>> {
         let buffer = self.buffer(counters::RESOURCE)?;
@@ -261,165 +262,13 @@ impl Renderer {
     /// Writes the frame's uniform buffer, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
         let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
-        self.queue.write_buffer(&self.blocks.frame, 0, &bytes(&live.frame_words(&self.plan)?));
+        self.queue.write_buffer(&self.blocks.frame, 0, &to_bytes(&live.frame_words(&self.plan)?));
         Ok(())
     }
 
     fn write_uniforms(&self) {
         if !self.uniforms.is_empty() {
-            self.queue.write_buffer(&self.blocks.own, 0, &bytes(&self.uniforms));
+            self.queue.write_buffer(&self.blocks.own, 0, &to_bytes(&self.uniforms));
         }
     }
-}
-
-impl Sized {
-    async fn new(
-        device: &wgpu::Device,
-        plan: &Plan,
-        passes: &[Prepared],
-        blocks: &Blocks,
-        symbols: Symbols,
-        old: Option<&Sized>,
-    ) -> Result<Self, Error> {
-        check_size(device, &symbols)?;
-        let memory = Memory::allocate(device, plan, &symbols, old.map(|old| &old.memory)).await?;
-        let groups = || passes.iter().map(|prepared| bind_group(device, prepared, blocks, &memory)).collect();
-        let groups = scoped(device, "the bind groups", 0, groups).await?;
-        let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
-        let dummy = match same {
-            Some(old) => old.dummy.clone(),
-            None => scoped(device, "the attachment of geometry passes", symbols.pixels(), || dummy(device, &symbols)).await?,
-        };
-        Ok(Sized { symbols, memory, groups, dummy })
-    }
-}
-
-/// What passes without a target are attached to. Nothing is ever written to it, and tilers give it no memory.
-fn dummy(device: &wgpu::Device, symbols: &Symbols) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("fragbuf no target"),
-        size: wgpu::Extent3d { width: symbols.width, height: symbols.height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DUMMY_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TRANSIENT_ATTACHMENT,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-fn check_size(device: &wgpu::Device, symbols: &Symbols) -> Result<(), Error> {
-    let limit = device.limits().max_texture_dimension_2d;
-    for (what, size) in [("the frame's width", symbols.width), ("the frame's height", symbols.height)] {
-        if size == 0 {
-            return Err(Error::BadValue { name: what.to_owned(), wanted: "at least 1".to_owned() });
-        }
-        if size > limit {
-            return Err(Error::TooLarge {
-                what: what.to_owned(),
-                needed: size.into(),
-                limit: limit.into(),
-                limit_name: "max_texture_dimension_2d",
-                hint: "render the picture in tiles",
-            });
-        }
-    }
-    Ok(())
-}
-
-fn bind_group(device: &wgpu::Device, prepared: &Prepared, blocks: &Blocks, memory: &Memory) -> wgpu::BindGroup {
-    let buffer = |slot: &Slot| match *slot {
-        Slot::Filler => &blocks.filler,
-        Slot::Frame => &blocks.frame,
-        Slot::Uniforms => &blocks.own,
-        Slot::Camera => &blocks.camera,
-        Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),
-    };
-    let slots = (0..).zip(&prepared.slots);
-    let entries: Vec<wgpu::BindGroupEntry<'_>> =
-        slots.map(|(binding, slot)| wgpu::BindGroupEntry { binding, resource: buffer(slot).as_entire_binding() }).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(&prepared.pass.anchor),
-        layout: &prepared.layout,
-        entries: &entries,
-    })
-}
-
-impl Blocks {
-    fn new(device: &wgpu::Device, plan: &Plan, uniforms: &[u32]) -> Self {
-        let block = |label: &str, words: usize| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: 4 * words.max(1).next_multiple_of(4) as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        Blocks {
-            frame: block("fragbuf frame", plan.frame.len()),
-            own: block("fragbuf uniforms", uniforms.len()),
-            camera: block("fragbuf camera", IDENTITY.len()),
-            filler: block("fragbuf nothing", 0),
-        }
-    }
-}
-
-const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-
-/// Bytes that one copy of a pattern clears.
-pub(crate) const PATTERN: u64 = 1 << 16;
-
-/// A buffer full of each word that some step clears to, zero apart.
-fn patterns(device: &wgpu::Device, actions: &[Action]) -> Vec<(u32, wgpu::Buffer)> {
-    let mut patterns: Vec<(u32, wgpu::Buffer)> = Vec::new();
-    for action in actions {
-        let Action::Clear { value, .. } = *action else { continue };
-        if value == 0 || patterns.iter().any(|(known, _)| *known == value) {
-            continue;
-        }
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("fragbuf clear"),
-            size: PATTERN,
-            usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: true,
-        });
-        if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
-            view.copy_from_slice(&bytes(&vec![value; PATTERN as usize / 4]));
-        }
-        buffer.unmap();
-        patterns.push((value, buffer));
-    }
-    patterns
-}
-
-/// What is counted, as it stands before the first frame, and whether host steps will count it.
-fn counted(plan: &Plan, actions: &[Action], settings: &Settings) -> Result<(Vec<(String, u64)>, bool), Error> {
-    let names = counted_symbols(plan);
-    let decided = |name: &String| actions.iter().any(|action| matches!(action, Action::Host(host) if host.sets(name)));
-    let exact = match settings.sizing {
-        Sizing::Auto => names.iter().all(decided),
-        Sizing::Exact => true,
-        Sizing::Reserve { .. } => false,
-    };
-    if let Some(name) = names.iter().find(|name| exact && !decided(name)) {
-        return Err(Error::Unsupported {
-            what: format!("exact sizing of `{name}`, which no step of this plan counts"),
-            hint: "reserve: `Sizing::Reserve { fragments }`".to_owned(),
-        });
-    }
-    let room = match settings.sizing {
-        _ if exact => 0,
-        Sizing::Reserve { fragments } => fragments.into(),
-        Sizing::Auto | Sizing::Exact => automatic_room(settings.width, settings.height),
-    };
-    Ok((names.into_iter().map(|name| (name, room)).collect(), exact))
-}
-
-fn automatic_room(width: u32, height: u32) -> u64 {
-    u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL)
-}
-
-fn bytes(words: &[u32]) -> Vec<u8> {
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }

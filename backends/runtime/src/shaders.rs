@@ -8,6 +8,7 @@ use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
 use fragbuf_templates::vocabulary::{Access, Fact};
 
 use crate::Error;
+use crate::words::from_bytes;
 
 /// The code of one plan.
 #[derive(Clone, Debug)]
@@ -69,9 +70,10 @@ impl Shaders {
         let profile = target(target_name).ok_or_else(not_generated)?.profile;
         let mut modules = Vec::new();
         for file in generation.files.iter().filter(|file| file.target == target_name) {
-            let entry_points = file.entry_points.iter().filter_map(|(stage, name)| {
-                stage_of(stage).map(|stage| EntryPoint { name: name.clone(), stage })
-            });
+            let entry_points = file
+                .entry_points
+                .iter()
+                .filter_map(|(stage, name)| stage_of(stage).map(|stage| EntryPoint { name: name.clone(), stage }));
             let entry_points: Vec<EntryPoint> = entry_points.collect();
             if !entry_points.is_empty() {
                 modules.push(Module { pass: file.pass.clone(), entry_points, code: code(&file.path, &file.bytes)? });
@@ -123,10 +125,7 @@ fn code(path: &str, bytes: &[u8]) -> Result<Code, Error> {
     let text = std::str::from_utf8(bytes);
     match (path.rsplit('.').next(), text) {
         (Some("wgsl"), Ok(text)) => Ok(Code::Wgsl(text.to_owned())),
-        (Some("spv"), _) => {
-            let words = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
-            Ok(Code::SpirV(words.collect()))
-        }
+        (Some("spv"), _) => Ok(Code::SpirV(from_bytes(bytes))),
         _ => Err(Error::Unsupported {
             what: format!("`{path}`"),
             hint: "wgpu takes WGSL and SPIR-V; compile GLSL to SPIR-V first and fill in `Shaders::modules`".to_owned(),

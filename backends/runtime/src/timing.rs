@@ -58,9 +58,10 @@ impl Timing {
     pub(crate) fn read(&self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) -> Pending<Vec<PassTime>> {
         let (passes, nanoseconds) = (self.passes.clone(), self.nanoseconds);
         Pending::record(device, encoder, &self.resolved, 0, self.resolved.size(), move |words| {
-            let ticks: Vec<u64> = words.as_chunks::<2>().0.iter().map(|[low, high]| u64::from(*high) << 32 | u64::from(*low)).collect();
-            let times = passes.into_iter().zip(ticks.as_chunks::<2>().0);
-            let milliseconds = |[begin, end]: &[u64; 2]| end.saturating_sub(*begin) as f64 * nanoseconds / 1.0e6;
+            let ticks: Vec<u64> =
+                words.chunks_exact(2).map(|half| u64::from(half[1]) << 32 | u64::from(half[0])).collect();
+            let milliseconds = |ticks: &[u64]| ticks[1].saturating_sub(ticks[0]) as f64 * nanoseconds / 1.0e6;
+            let times = passes.into_iter().zip(ticks.chunks_exact(2));
             times.map(|(pass, ticks)| PassTime { pass, milliseconds: milliseconds(ticks) }).collect()
         })
     }

@@ -31,7 +31,8 @@ impl VertexInputs {
     /// The inputs of a plan's geometry passes.
     pub fn of(plan: &Plan) -> Self {
         let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
-        let attributes = attributes.map(|attribute| (attribute.name.value.as_str(), vertex_format(attribute.format.value)));
+        let attributes =
+            attributes.map(|attribute| (attribute.name.value.as_str(), vertex_format(attribute.format.value)));
         let mut stride = 0;
         let mut inputs = Vec::new();
         for (name, format) in std::iter::once(("position", wgpu::VertexFormat::Float32x3)).chain(attributes) {

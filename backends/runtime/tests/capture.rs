@@ -20,14 +20,21 @@ const GREY: [u8; 4] = [128, 128, 128, 10];
 
 /// The corner cases, by name. At most eight layers lie over a pixel.
 fn cases() -> Vec<(&'static str, Vec<Quad>)> {
-    let near_to_far = |count: u32| (0..count).map(|index| Quad::whole((index + 1) as f32 / 16.0, [index as u8 * 30, 200, 9, 90]));
+    let near_to_far =
+        |count: u32| (0..count).map(|index| Quad::whole((index + 1) as f32 / 16.0, [index as u8 * 30, 200, 9, 90]));
     vec![
         ("nothing", Vec::new()),
         ("one layer over some pixels", vec![Quad::whole(0.5, RED).at(3, 5, 9, 6)]),
         ("full", near_to_far(4).collect()),
         ("more than fit", near_to_far(8).collect()),
-        ("equal depths", vec![Quad::whole(0.5, RED), Quad::whole(0.5, GREEN), Quad::whole(0.5, BLUE), Quad::whole(0.5, GREY)]),
-        ("equal fragments", vec![Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.25, RED)]),
+        (
+            "equal depths",
+            vec![Quad::whole(0.5, RED), Quad::whole(0.5, GREEN), Quad::whole(0.5, BLUE), Quad::whole(0.5, GREY)],
+        ),
+        (
+            "equal fragments",
+            vec![Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.5, RED), Quad::whole(0.25, RED)],
+        ),
         (
             "coplanar, partly over each other",
             vec![
@@ -37,7 +44,10 @@ fn cases() -> Vec<(&'static str, Vec<Quad>)> {
                 Quad::whole(0.5, WHITE).at(7, 7, 8, 8),
             ],
         ),
-        ("nearest and farthest", vec![Quad::whole(0.0, RED), Quad::whole(1.0, BLUE), Quad::whole(1.0, GREEN), Quad::whole(0.5, GREY)]),
+        (
+            "nearest and farthest",
+            vec![Quad::whole(0.0, RED), Quad::whole(1.0, BLUE), Quad::whole(1.0, GREEN), Quad::whole(0.5, GREY)],
+        ),
         ("scattered", scattered(8, 7)),
         ("scattered again", scattered(8, 42)),
     ]
@@ -54,10 +64,16 @@ pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
     (0..count).map(quad).collect()
 }
 
-fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
+pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
     let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, k);
     for (pixel, (seen, expected)) in seen.kept.iter().zip(&expected).enumerate() {
-        assert_eq!(seen, expected, "{name}: kept by pixel {}, {} of {quads:?}", pixel as u32 % SIZE, pixel as u32 / SIZE);
+        assert_eq!(
+            seen,
+            expected,
+            "{name}: kept by pixel {}, {} of {quads:?}",
+            pixel as u32 % SIZE,
+            pixel as u32 / SIZE
+        );
     }
     for (pixel, (seen, expected)) in seen.pixels.iter().zip(oracle::picture(rules, quads, k, BACKGROUND)).enumerate() {
         for (seen, expected) in seen.iter().zip(expected) {

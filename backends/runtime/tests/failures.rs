@@ -5,7 +5,7 @@ use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Settings, Sizing,
 use fragbuf_templates::vocabulary::{Host, Step};
 
 use crate::quads::{Quad, SIZE};
-use crate::stage::{FORMAT, device, draw, renderer, see, settings, shaders, technique};
+use crate::stage::{FORMAT, device, renderer, see, settings, shaders, technique};
 
 fn fresh() -> Headless {
     Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap()
@@ -18,7 +18,8 @@ fn message<T>(result: Result<T, Error>) -> String {
 #[test]
 fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     let stage = device();
-    let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
+    let mut renderer =
+        renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
     let before = (renderer.allocated_bytes(), renderer.symbol("width"));
     let limit = stage.device.limits().max_storage_buffer_binding_size.min(stage.device.limits().max_buffer_size);
     let side = stage.device.limits().max_texture_dimension_2d;
@@ -53,12 +54,12 @@ fn sizing_that_nobody_can_know_says_to_reserve() {
 #[test]
 fn missing_features_are_named() {
     let stage = device();
-    let (plain, queue) = {
-        let adapter = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapters = block_on(&stage.device, adapter.enumerate_adapters(wgpu::Backends::PRIMARY)).unwrap();
-        let request = adapters[0].request_device(&wgpu::DeviceDescriptor::default());
-        block_on(&stage.device, request).unwrap().unwrap()
-    };
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    let adapters = wgpu::Instance::new(descriptor).enumerate_adapters(wgpu::Backends::PRIMARY);
+    let adapters = block_on(&stage.device, adapters).unwrap();
+    let request = adapters[0].request_device(&wgpu::DeviceDescriptor::default());
+    let (plain, queue) = block_on(&stage.device, request).unwrap().unwrap();
     for (target, feature) in [("spirv", "PASSTHROUGH_SHADERS"), ("wgsl-native", "MEMORY_DECORATION_COHERENT")] {
         let shaders = shaders(&technique("kplus_array", &[]), target);
         let error = message(block_on(&plain, Renderer::new(&plain, &queue, &shaders, &settings())).unwrap());
@@ -70,7 +71,8 @@ fn missing_features_are_named() {
 fn steps_that_do_not_run_are_named() {
     let stage = device();
     let host = Host { function: "meditate".to_owned(), reads: Vec::new(), sets: Vec::new() };
-    let steps = [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
+    let steps =
+        [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
     for (step, named) in steps {
         let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
         shaders.plan.steps.push(step);
@@ -129,9 +131,23 @@ fn a_lost_device_is_a_value() {
     let stage = fresh();
     let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Load };
+    let frame = renderer.begin().unwrap();
     stage.device.destroy();
-    let drawn = draw(&stage, &mut renderer, &[Quad::whole(0.5, [1, 2, 3, 4])], &offscreen);
-    assert_eq!(drawn, Err(Error::Lost));
+    assert_eq!(renderer.render(&output, &mut |_, _| {}), Err(Error::Lost));
+    assert_eq!(renderer.begin().err(), Some(Error::Lost));
+    assert_eq!(block_on(&stage.device, renderer.resize(7, 7)).unwrap(), Err(Error::Lost));
+    assert_eq!(
+        self::renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).err(),
+        Some(Error::Lost)
+    );
+    assert_eq!(offscreen.read(&stage.device, &stage.queue), Err(Error::Lost));
+    // A frame that began before: whatever it records, what it waits for never comes.
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let Ok(Recorded::Cut(cut)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else {
+        panic!("a cut")
+    };
+    assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).unwrap().err(), Some(Error::Lost));
     assert!(stage.is_lost());
 }
 

@@ -32,13 +32,15 @@ pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Ve
                 (k - filled..k).map(|index| slot(index, pixel)).collect()
             }
             "sorted_array" => {
-                let kept: Vec<Words> = (0..k).map(|index| slot(index, pixel)).filter(|words| words[0] != EMPTY).collect();
+                let kept: Vec<Words> =
+                    (0..k).map(|index| slot(index, pixel)).filter(|words| words[0] != EMPTY).collect();
                 assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
                 kept
             }
             "linked_list" => {
                 let link = |word: u32| word.checked_sub(1);
-                let nodes = std::iter::successors(link(buffer("heads")[pixel]), |node| link(buffer("links")[*node as usize]));
+                let nodes =
+                    std::iter::successors(link(buffer("heads")[pixel]), |node| link(buffer("links")[*node as usize]));
                 nodes.map(|node| entry("nodes", node as usize)).collect()
             }
             "exact_regions" => {

@@ -1,7 +1,13 @@
 //! Plans, run: what every technique keeps and shows is compared with a plain oracle, on whatever adapter there is (the
 //! CPU's first). A machine without any fails here; nothing is skipped.
 #![allow(missing_docs, reason = "tests are read, not documented")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by panicking"
+)]
 
 mod kept;
 mod oracle;
@@ -10,7 +16,9 @@ mod quads;
 mod stage;
 
 mod capture;
+mod embedding;
 mod failures;
 mod rasterisation;
 mod sizing;
+mod sloped;
 mod translations;

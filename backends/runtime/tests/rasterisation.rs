@@ -58,7 +58,8 @@ fn centres_decide_and_of_edges_the_left_and_the_top_ones() {
 
 #[test]
 fn shapes_that_share_an_edge_share_no_pixel() {
-    let quads = [quad(0.0, 0.0, 7.5, 9.5), quad(7.5, 0.0, 16.0, 9.5), quad(0.0, 9.5, 7.5, 16.0), quad(7.5, 9.5, 16.0, 16.0)];
+    let quads =
+        [quad(0.0, 0.0, 7.5, 9.5), quad(7.5, 0.0, 16.0, 9.5), quad(0.0, 9.5, 7.5, 16.0), quad(7.5, 9.5, 16.0, 16.0)];
     let fan: Vec<[[f32; 3]; 3]> = quads.into_iter().flatten().collect();
     assert!(depths(&fan).iter().all(|depths| depths.len() == 1));
 }

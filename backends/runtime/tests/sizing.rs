@@ -35,9 +35,11 @@ fn allocated_bytes_are_what_the_papers_say() {
         let mut renderer = open(&stage, key, &[("k", k)], sizing).unwrap();
         see(&stage, &mut renderer, &quads);
         assert_eq!(renderer.allocated_bytes(), 4 * words, "{key} {sizing:?}");
-        let by_formula = renderer.plan().resources.iter().map(|planned| {
-            4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap()
-        });
+        let by_formula = renderer
+            .plan()
+            .resources
+            .iter()
+            .map(|planned| 4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap());
         assert_eq!(renderer.allocated_bytes(), by_formula.sum::<u64>(), "{key} {sizing:?}");
         for planned in &renderer.plan().resources {
             let bytes = renderer.buffer(&planned.resource.name).map_or(0, wgpu::Buffer::size);
@@ -98,7 +100,12 @@ fn exact_room_follows_the_scene() {
 #[test]
 fn a_frame_is_cut_only_where_the_host_must_read() {
     let stage = device();
-    let cuts = [("ab_sb", Sizing::Auto, 1), ("ab_sb", Sizing::Reserve { fragments: 99 }, 0), ("ab_ll", Sizing::Auto, 0), ("kplus_array", Sizing::Exact, 0)];
+    let cuts = [
+        ("ab_sb", Sizing::Auto, 1),
+        ("ab_sb", Sizing::Reserve { fragments: 99 }, 0),
+        ("ab_ll", Sizing::Auto, 0),
+        ("kplus_array", Sizing::Exact, 0),
+    ];
     for (key, sizing, expected) in cuts {
         let mut renderer = open(&stage, key, &[], sizing).unwrap();
         let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();

@@ -73,12 +73,16 @@ pub fn see(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Seen {
     let Headless { device, queue, .. } = stage;
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
     draw(stage, renderer, quads, &offscreen).unwrap();
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let counters = renderer.counters(&mut encoder).unwrap();
-    queue.submit([encoder.finish()]);
-    let counters = counters.wait(device).unwrap();
+    let counters = read_counters(stage, renderer);
     let pixels = offscreen.colors(device, queue).unwrap();
     Seen { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer)), counters }
+}
+
+pub fn read_counters(stage: &Headless, renderer: &Renderer) -> Counters {
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let counters = renderer.counters(&mut encoder).unwrap();
+    stage.queue.submit([encoder.finish()]);
+    counters.wait(&stage.device).unwrap()
 }
 
 /// All words of all resources that are not empty, by name.

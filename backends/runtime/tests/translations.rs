@@ -6,7 +6,7 @@ use std::process::Command;
 use fragbuf_backends::{Request, generate, target};
 use fragbuf_codegen::{EntryPoint, Form, Stage};
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Code, Module, Renderer, Shaders};
+use fragbuf_runtime::{Checks, Code, Module, Renderer, Settings, Shaders};
 use fragbuf_templates::Registry;
 
 use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
@@ -41,21 +41,23 @@ fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
     let output = command.output().expect("`glslangValidator` is needed: install the package glslang-tools");
     assert!(output.status.success(), "{}\n{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(text));
     let bytes = std::fs::read(&binary).unwrap();
-    bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect()
 }
 
 /// Every language shows and keeps what portable WGSL does.
 fn check(variant: &Variant, prepare: impl Fn(&mut Renderer)) {
     let stage = device();
     let languages = [
-        ("wgsl", shaders(variant, "wgsl")),
-        ("wgsl-native", shaders(variant, "wgsl-native")),
-        ("spirv", shaders(variant, "spirv")),
-        ("glsl-vulkan", glsl_shaders(variant)),
+        ("wgsl", shaders(variant, "wgsl"), Checks::Off),
+        ("wgsl, checked at run time", shaders(variant, "wgsl"), Checks::On),
+        ("wgsl-native", shaders(variant, "wgsl-native"), Checks::Off),
+        ("spirv", shaders(variant, "spirv"), Checks::Off),
+        ("glsl-vulkan", glsl_shaders(variant), Checks::Off),
     ];
     let mut expected = Vec::new();
-    for (name, shaders) in languages {
-        let mut renderer = renderer(&stage, &shaders, &settings()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    for (name, shaders, checks) in languages {
+        let settings = Settings { checks, ..settings() };
+        let mut renderer = renderer(&stage, &shaders, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         prepare(&mut renderer);
         for seed in 0..4 {
             let seen = see(&stage, &mut renderer, &scattered(8, seed));

@@ -72,12 +72,14 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-/// OpenGL is asked only where there is nothing better: its driver writes to the terminal when there is no display.
+/// OpenGL is asked only where there is nothing better: its adapters are the same devices by a narrower door.
 fn able() -> Vec<wgpu::Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
+    let allowed = descriptor().backends;
     let mut adapters = Vec::new();
-    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
-        if adapters.is_empty() {
+    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].map(|some| some & allowed) {
+        if adapters.is_empty() && !backends.is_empty() {
+            let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor() });
             adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
             adapters.retain(is_able);
         }

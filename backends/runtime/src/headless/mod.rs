@@ -54,6 +54,8 @@ impl Headless {
 
     /// Whether the device has been lost.
     pub fn is_lost(&self) -> bool {
+        // The loss is told to whoever asks the device next; that it is lost is then no news.
+        let _ = self.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Relaxed)
     }
 }

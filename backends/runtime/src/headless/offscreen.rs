@@ -4,6 +4,7 @@
 //! colour, alpha and product apart (lavapipe does, and is off by up to 1.1/255).
 
 use crate::scope::scoped;
+use crate::words::from_bytes;
 use crate::{Error, Pending, block_on};
 
 /// The format to blend in: every WebGPU device can, and its steps are an eighth of an 8-bit target's or finer.
@@ -59,15 +60,21 @@ impl Offscreen {
 
     /// The bytes of the picture, row after row from the top, without padding. Submits and blocks.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<u8>, Error> {
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
-            self.texture.size(),
-        );
-        let pending = Pending::record(device, &mut encoder, &self.rows, 0, self.rows.size(), |words| words);
-        queue.submit([encoder.finish()]);
+        let copy = || {
+            let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") };
+            let mut encoder = device.create_command_encoder(&descriptor);
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded), rows_per_image: None };
+            encoder.copy_texture_to_buffer(
+                self.texture.as_image_copy(),
+                wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
+                self.texture.size(),
+            );
+            let pending = Pending::record(device, &mut encoder, &self.rows, 0, self.rows.size(), |words| words);
+            queue.submit([encoder.finish()]);
+            pending
+        };
+        let pending = block_on(device, scoped(device, "the copy of the offscreen target", self.rows.size(), copy))??;
         let bytes: Vec<u8> = pending.wait(device)?.into_iter().flat_map(u32::to_le_bytes).collect();
         let row = (self.texture.width() * self.texel) as usize;
         Ok(bytes.chunks(self.padded as usize).flat_map(|padded| padded.iter().copied().take(row)).collect())
@@ -82,10 +89,10 @@ impl Offscreen {
             }
             wgpu::TextureFormat::Rgba16Float => {
                 let bytes = self.read(device, queue)?;
-                bytes.as_chunks().0.iter().map(|half| half_to_float(u16::from_le_bytes(*half))).collect()
+                bytes.chunks_exact(2).map(|half| half_to_float(u16::from_le_bytes([half[0], half[1]]))).collect()
             }
             wgpu::TextureFormat::Rgba32Float => {
-                self.read(device, queue)?.as_chunks().0.iter().map(|float| f32::from_le_bytes(*float)).collect()
+                from_bytes(&self.read(device, queue)?).into_iter().map(f32::from_bits).collect()
             }
             other => {
                 return Err(Error::BadValue {
@@ -94,7 +101,7 @@ impl Offscreen {
                 });
             }
         };
-        Ok(channels.as_chunks().0.to_vec())
+        Ok(channels.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect())
     }
 }
 

@@ -1,0 +1,30 @@
+//! Clears to something else than zero, by copies from a buffer full of the word: WebGPU has no other.
+
+use crate::action::Action;
+use crate::words;
+
+/// Bytes that one copy of a pattern clears.
+pub(crate) const PATTERN: u64 = 1 << 16;
+
+/// A buffer full of each word that some step clears to, zero apart.
+pub(crate) fn patterns(device: &wgpu::Device, actions: &[Action]) -> Vec<(u32, wgpu::Buffer)> {
+    let mut patterns: Vec<(u32, wgpu::Buffer)> = Vec::new();
+    for action in actions {
+        let Action::Clear { value, .. } = *action else { continue };
+        if value == 0 || patterns.iter().any(|(known, _)| *known == value) {
+            continue;
+        }
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("fragbuf clear"),
+            size: PATTERN,
+            usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: true,
+        });
+        if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+            view.copy_from_slice(&words::to_bytes(&vec![value; PATTERN as usize / 4]));
+        }
+        buffer.unmap();
+        patterns.push((value, buffer));
+    }
+    patterns
+}
