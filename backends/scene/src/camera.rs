@@ -1,5 +1,6 @@
 //! Cameras: one that frames any scene, and one that takes vertices as they stand.
 
+use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3};
 
 use crate::Scene;
@@ -45,9 +46,9 @@ impl Camera {
         let narrow = if aspect < 1.0 { (HALF_ANGLE.tan() * aspect).atan() } else { HALF_ANGLE };
         let distance = radius / narrow.sin();
         let eye = middle + distance * THREE_QUARTER.normalize();
-        let view = Mat4::look_at_rh(eye, middle, Vec3::Y);
+        let view = view::look_at_mat4(eye, middle, Vec3::Y);
         let (near, far) = ((distance - radius).max(0.01 * radius), distance + radius);
-        let projection = Mat4::perspective_rh(2.0 * HALF_ANGLE, aspect, 0.99 * near, 1.01 * far);
+        let projection = directx::perspective(2.0 * HALF_ANGLE, aspect, 0.99 * near, 1.01 * far);
         Camera { view_projection: (projection * view).to_cols_array(), eye: Eye::At(eye.to_array()) }
     }
 }

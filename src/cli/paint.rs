@@ -1,0 +1,208 @@
+//! One description, one scene, one frame: drawn again with more room until nothing is lost for want of it.
+//!
+//! In: a description, a staged scene. Out: premultiplied linear colours and the figures of the frame. What is lost all the
+//! same (a lock that was not free in time, more layers than any resolve pass takes) is said on stderr, never hidden.
+
+use fragbuf::{Form, Plan, Registry, Request, TARGETS, Target, Variant, generate, tier};
+use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
+use fragbuf_runtime::{Counters, Error, Output, PassTime, Renderer, Settings, Shaders, Sizing, block_on};
+
+use super::attributes::{Geometry, geometry};
+use super::input::Input;
+use super::output::{Failure, warn};
+use super::progress::Progress;
+use super::uniforms;
+use super::view::{Stage, View};
+
+/// The choice that counts every event.
+const EVERYTHING: (&str, &str) = ("counters", "all");
+
+/// A description as it was asked for.
+pub(crate) struct Wish<'a> {
+    pub(crate) description: &'a str,
+    pub(crate) set: &'a [(String, String)],
+    pub(crate) uniforms: &'a [(String, String)],
+    /// Whether everything is counted unless the description says otherwise.
+    pub(crate) count_all: bool,
+}
+
+/// What came of it.
+pub(crate) struct Painted {
+    pub(crate) pixels: Vec<[f32; 4]>,
+    pub(crate) counters: Option<Counters>,
+    pub(crate) times: Option<Vec<PassTime>>,
+    pub(crate) bytes: u64,
+    pub(crate) info: wgpu::AdapterInfo,
+    pub(crate) target: &'static Target,
+    pub(crate) plan: Plan,
+    /// Frames that were drawn until there was room for everything.
+    pub(crate) frames: u32,
+}
+
+/// Draws the scene.
+pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress) -> Result<Painted, Failure> {
+    let registry = Registry::builtin();
+    let input = Input::read(wish.description, &registry)?;
+    let unless_said: &[(&str, &str)] = if wish.count_all { &[EVERYTHING] } else { &[] };
+    let (mut set, mut frames) = (wish.set.to_vec(), 0);
+    let mut said = None;
+    loop {
+        let variant = input.variant_or(&set, unless_said, &registry)?;
+        let said = *said.get_or_insert_with(|| says_layers(&variant));
+        let painted = Painter::new(&input, &variant, view, &registry)?.paint(wish, view, stage, progress, &mut frames)?;
+        match painted.more_layers().filter(|_| !said) {
+            Some((option, layers)) => set.push((option, layers.to_string())),
+            None => {
+                painted.warn(wish.description);
+                return Ok(painted);
+            }
+        }
+    }
+}
+
+/// A device, and the shaders for it.
+struct Painter {
+    headless: Headless,
+    shaders: Shaders,
+    target: &'static Target,
+    variant: Variant,
+}
+
+impl Painter {
+    /// The soundest of the languages that can be run here.
+    fn new(input: &Input, variant: &Variant, view: &View, registry: &Registry) -> Result<Self, Failure> {
+        let targets: Vec<&'static Target> = TARGETS.iter().collect();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let generation = generate(variant, &request, registry).map_err(|faults| input.failure(faults))?;
+        let mut candidates: Vec<(&str, &'static Target, Shaders)> = Vec::new();
+        for planned in &generation.plans {
+            for target in &planned.targets {
+                if let Ok(shaders) = Shaders::from_generation(&generation, target.name, 0) {
+                    candidates.push((tier(planned.plan.soundness, target), target, shaders));
+                }
+            }
+        }
+        candidates.sort_by_key(|(tier, _, _)| *tier);
+        let mut refusal = Failure::Input("no language that runs here can express the description".to_owned());
+        for (_, target, shaders) in candidates {
+            match Headless::open(&view.device, shaders.features()) {
+                Ok(headless) => return Ok(Painter { headless, shaders, target, variant: variant.clone() }),
+                Err(error @ Error::MissingFeatures(_)) => refusal = error.into(),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(refusal)
+    }
+
+    fn paint(self, wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress, frames: &mut u32) -> Result<Painted, Failure> {
+        let Headless { device, queue, info, .. } = &self.headless;
+        let (width, height) = view.size;
+        let settings = Settings { timestamps: view.json, ..Settings::new(BLENDED, width, height) };
+        progress.stage(format!("{}: making pipelines", wish.description));
+        let mut renderer = block_on(device, Renderer::new(device, queue, &self.shaders, &settings))??;
+        for (name, value) in uniforms::values(wish.uniforms, &self.variant)? {
+            renderer.set_uniform(&name, value)?;
+        }
+        renderer.set_camera(&stage.camera.view_projection);
+        let geometry = geometry(&stage.scene, &self.shaders.plan)?;
+        let mesh = Mesh::upload(device, queue, &geometry)?;
+        let offscreen = Offscreen::new(device, BLENDED, width, height)?;
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        let mut room = u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL);
+        loop {
+            *frames += 1;
+            progress.stage(format!("{}: frame {frames}", wish.description));
+            renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let counters = renderer.counters(&mut encoder);
+            let times = renderer.pass_times(&mut encoder);
+            queue.submit([encoder.finish()]);
+            let counters = counters.map(|pending| pending.wait(device)).transpose()?;
+            let times = times.map(|pending| pending.wait(device)).transpose()?;
+            let short = counters.as_ref().map_or(0, |counters| counters.get("pool_exhausted"));
+            if short > 0 {
+                // Every fragment that found no room was counted: with so much more there is room for all.
+                room += u64::from(short);
+                let fragments = u32::try_from(room).map_err(|_| Failure::Device(format!("{room} fragments are too many")))?;
+                block_on(device, renderer.reserve(fragments))??;
+                continue;
+            }
+            let pixels = offscreen.colors(device, queue)?;
+            let bytes = renderer.allocated_bytes();
+            let (info, frames) = (info.clone(), *frames);
+            return Ok(Painted { pixels, counters, times, bytes, info, target: self.target, plan: self.shaders.plan, frames });
+        }
+    }
+}
+
+/// The parameter of how many layers a resolve pass holds. What exceeds it is counted as `layers_exceeded`.
+const LAYERS: &str = "layers";
+
+/// Whether the description, or `--set`, says how many layers a resolve pass holds.
+fn says_layers(variant: &Variant) -> bool {
+    let mut selected = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
+    selected.any(|selected| selected.options.iter().any(|(name, _)| name == LAYERS))
+}
+
+impl Painted {
+    /// The option that makes the resolve pass hold more, and twice what it holds now, where some layers did not fit and
+    /// there is more to be had.
+    fn more_layers(&self) -> Option<(String, u32)> {
+        self.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
+        self.plan.selection.rows.iter().find_map(|selected| {
+            let parameter = selected.row.parameters.iter().find(|parameter| parameter.name == LAYERS)?;
+            let (_, now) = self.plan.constants.iter().find(|(name, _)| *name == parameter.constant)?;
+            let more = (2 * now).min(parameter.range.1);
+            (more > *now).then(|| (format!("{}.{LAYERS}", selected.row.axis), more))
+        })
+    }
+
+    /// Whether every event was counted, and not losses alone.
+    pub(crate) fn counts_everything(&self) -> bool {
+        let (axis, key) = EVERYTHING;
+        self.plan.selection.rows.iter().any(|selected| selected.row.axis == axis && selected.row.key == key)
+    }
+
+    fn warn(&self, description: &str) {
+        for counter in self.counters.iter().flat_map(|counters| &counters.0) {
+            // What better fragments displaced is what the description asked for.
+            if counter.loss && counter.count > 0 && counter.name != "displaced" {
+                warn(&format!("{description}: {} fragments lost: {}", counter.count, counter.name));
+            }
+        }
+    }
+}
+
+/// The scene on the device.
+struct Mesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+impl Mesh {
+    fn upload(device: &wgpu::Device, queue: &wgpu::Queue, geometry: &Geometry) -> Result<Self, Failure> {
+        let buffer = |label: &str, bytes: &[u8], usage: wgpu::BufferUsages| {
+            let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
+            if size > limit {
+                return Err(Failure::Device(format!("the scene's {label} need {size} bytes, and the device allows {limit}")));
+            }
+            let usage = usage | wgpu::BufferUsages::COPY_DST;
+            let buffer =
+                device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
+            queue.write_buffer(&buffer, 0, bytes);
+            Ok(buffer)
+        };
+        Ok(Mesh {
+            vertices: buffer("vertices", &geometry.vertices, wgpu::BufferUsages::VERTEX)?,
+            indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
+            count: geometry.index_count,
+        })
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
+    }
+}
