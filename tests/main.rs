@@ -15,6 +15,7 @@ mod fuzz;
 mod instances;
 mod oracle;
 mod product;
+mod render;
 mod snapshots;
 mod tidy;
 mod validators;

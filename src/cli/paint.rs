@@ -45,11 +45,12 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     let input = Input::read(wish.description, &registry)?;
     let unless_said: &[(&str, &str)] = if wish.count_all { &[EVERYTHING] } else { &[] };
     let (mut set, mut frames) = (wish.set.to_vec(), 0);
-    let mut said = None;
+    let (mut said, mut room) = (None, None);
     loop {
         let variant = input.variant_or(&set, unless_said, &registry)?;
         let said = *said.get_or_insert_with(|| says_layers(&variant));
-        let painted = Painter::new(&input, &variant, view, &registry)?.paint(wish, view, stage, progress, &mut frames)?;
+        let painter = Painter::new(&input, &variant, view, &registry)?;
+        let painted = painter.paint(wish, view, stage, progress, (&mut frames, &mut room))?;
         match painted.more_layers().filter(|_| !said) {
             Some((option, layers)) => set.push((option, layers.to_string())),
             None => {
@@ -94,10 +95,19 @@ impl Painter {
         Err(refusal)
     }
 
-    fn paint(self, wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress, frames: &mut u32) -> Result<Painted, Failure> {
+    /// Draws until nothing is lost for want of room; `room` is what was found to be needed, in fragments.
+    fn paint(
+        self,
+        wish: &Wish<'_>,
+        view: &View,
+        stage: &Stage,
+        progress: &Progress,
+        (frames, room): (&mut u32, &mut Option<u32>),
+    ) -> Result<Painted, Failure> {
         let Headless { device, queue, info, .. } = &self.headless;
         let (width, height) = view.size;
-        let settings = Settings { timestamps: view.json, ..Settings::new(BLENDED, width, height) };
+        let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve { fragments });
+        let settings = Settings { sizing, timestamps: view.json, ..Settings::new(BLENDED, width, height) };
         progress.stage(format!("{}: making pipelines", wish.description));
         let mut renderer = block_on(device, Renderer::new(device, queue, &self.shaders, &settings))??;
         for (name, value) in uniforms::values(wish.uniforms, &self.variant)? {
@@ -108,7 +118,7 @@ impl Painter {
         let mesh = Mesh::upload(device, queue, &geometry)?;
         let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        let mut room = u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL);
+        let automatic = u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL);
         loop {
             *frames += 1;
             progress.stage(format!("{}: frame {frames}", wish.description));
@@ -122,8 +132,9 @@ impl Painter {
             let short = counters.as_ref().map_or(0, |counters| counters.get("pool_exhausted"));
             if short > 0 {
                 // Every fragment that found no room was counted: with so much more there is room for all.
-                room += u64::from(short);
-                let fragments = u32::try_from(room).map_err(|_| Failure::Device(format!("{room} fragments are too many")))?;
+                let needed = room.map_or(automatic, u64::from) + u64::from(short);
+                let fragments = u32::try_from(needed).map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?;
+                *room = Some(fragments);
                 block_on(device, renderer.reserve(fragments))??;
                 continue;
             }

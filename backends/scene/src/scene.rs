@@ -35,9 +35,7 @@ impl Scene {
 
     /// The least and the greatest coordinates of what triangles use; `None`: there are no triangles.
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        let used = self.objects.iter().flat_map(|object| {
-            object.triangles.iter().flatten().filter_map(|index| object.positions.get(*index as usize).copied())
-        });
+        let used = self.objects.iter().flat_map(Object::corners);
         used.map(|position| (position, position)).reduce(|(least, greatest), (position, _)| {
             let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3]| {
                 std::array::from_fn(|axis| choose(from[axis], position[axis]))
@@ -48,6 +46,11 @@ impl Scene {
 }
 
 impl Object {
+    /// The positions of the triangles' corners, as often as they are used.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [f32; 3]> {
+        self.triangles.iter().flatten().filter_map(|index| self.positions.get(*index as usize).copied())
+    }
+
     /// Adds a vertex; its index. A normal of zero is computed later from the triangles around the vertex.
     pub(crate) fn vertex(&mut self, position: [f32; 3], normal: [f32; 3], color: [f32; 4]) -> u32 {
         self.positions.push(position);
