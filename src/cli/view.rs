@@ -28,7 +28,7 @@ pub(crate) struct View {
     #[arg(long, value_name = "r,g,b,a", default_value = "1,1,1,1", value_parser = color)]
     pub(crate) background: [f32; 4],
     /// Colour of what the model gives none: linear, straight alpha
-    #[arg(long, value_name = "r,g,b,a", default_value = "0.8,0.8,0.8,0.5", value_parser = color)]
+    #[arg(long, value_name = "r,g,b,a", default_value = "0.15,0.45,0.35,0.4", value_parser = color)]
     color: [f32; 4],
     /// Linear values in the PNG, and not sRGB
     #[arg(long)]

@@ -29,7 +29,7 @@ const HALF_ANGLE: f32 = 20.0 * std::f32::consts::PI / 180.0;
 /// From the scene's middle to the eye of [`Camera::framing`]: from the right, above and in front.
 const THREE_QUARTER: Vec3 = Vec3::new(0.55, 0.45, 1.0);
 
-/// What is left free around the scene.
+/// The frame over what the scene fills of it.
 const MARGIN: f32 = 1.04;
 
 impl Camera {
@@ -43,8 +43,8 @@ impl Camera {
         let (least, greatest) = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
         let (least, greatest) = (Vec3::from_array(least), Vec3::from_array(greatest));
         let middle = least.midpoint(greatest);
-        let turned = view::look_to_mat4(middle, -THREE_QUARTER, Vec3::Y);
-        let (tangent_y, tangent_x) = (HALF_ANGLE.tan(), HALF_ANGLE.tan() * aspect);
+        let turned = view::look_to_mat4(middle, -THREE_QUARTER.normalize(), Vec3::Y);
+        let (tangent_y, tangent_x) = (HALF_ANGLE.tan() / MARGIN, HALF_ANGLE.tan() * aspect / MARGIN);
         // How far from the middle the eye must be for a point to be in view, and how near and far points lie.
         let (mut distance, mut depths) = (0.0_f32, (0.0_f32, 0.0_f32));
         for position in scene.objects.iter().flat_map(Object::corners) {
@@ -53,7 +53,7 @@ impl Camera {
             depths = (depths.0.min(point.z), depths.1.max(point.z));
         }
         let thickness = (depths.1 - depths.0).max(1.0e-6);
-        let distance = (MARGIN * distance).max(depths.1 + 0.01 * thickness);
+        let distance = distance.max(depths.1 + 0.01 * thickness);
         let eye = middle + distance * THREE_QUARTER.normalize();
         let (near, far) = (distance - depths.1 - 0.005 * thickness, distance - depths.0 + 0.005 * thickness);
         let projection = directx::perspective(2.0 * HALF_ANGLE, aspect, near, far);

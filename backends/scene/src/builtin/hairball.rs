@@ -21,7 +21,7 @@ const PIECES: u32 = 100;
 const SIDES: u32 = 3;
 /// How far one piece goes.
 const STEP: f32 = 0.04;
-const RADIUS: f32 = 0.0055;
+const RADIUS: f32 = 0.008;
 
 fn make(values: &[u32]) -> Vec<Object> {
     let mut random = Random::seeded(value(values, 1));
