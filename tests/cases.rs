@@ -45,8 +45,11 @@ buffer Reserved from ab_ll {
     where |f, u| f.sample + f.buffer + f.mix > u.texture && f.main + f.key != u.discard;
 }";
 
+/// Name, description, and changes to it.
+pub type Case = (&'static str, Description, Vec<(&'static str, &'static str)>);
+
 /// The cases of snapshots, by name: together they have every value of every axis in them.
-pub fn named() -> Vec<(&'static str, Description, Vec<(&'static str, &'static str)>)> {
+pub fn named() -> Vec<Case> {
     let technique = |key: &str| Description::Technique(key.to_owned());
     vec![
         ("kb", technique("kb"), vec![]),
@@ -57,8 +60,22 @@ pub fn named() -> Vec<(&'static str, Description, Vec<(&'static str, &'static st
         ("depth_only", text(DEPTH_ONLY), vec![]),
         ("reserved", text(RESERVED), vec![]),
         ("statistics", technique("kplus_array"), vec![("counters", "all"), ("cull", "none"), ("k", "1")]),
-        ("unsorted", text(DEPTH_ONLY), vec![("sort", "none"), ("storage", "linked_list"), ("sync", "slot_counter"), ("cull", "none"), ("k", "all")]),
-        ("locked_sorted_array", technique("kb"), vec![("sync", "spin_lock"), ("cull", "early"), ("ties", "unordered"), ("counters", "none")]),
+        (
+            "unsorted",
+            text(DEPTH_ONLY),
+            vec![
+                ("sort", "none"),
+                ("storage", "linked_list"),
+                ("sync", "slot_counter"),
+                ("cull", "none"),
+                ("k", "all"),
+            ],
+        ),
+        (
+            "locked_sorted_array",
+            technique("kb"),
+            vec![("sync", "spin_lock"), ("cull", "early"), ("ties", "unordered"), ("counters", "none")],
+        ),
     ]
 }
 
@@ -67,7 +84,8 @@ pub fn text(text: &str) -> Description {
 }
 
 pub fn checked(description: &Description, set: &[(&str, &str)]) -> Result<Variant, fragbuf::Diagnostics> {
-    let set: Vec<(String, String)> = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    let set: Vec<(String, String)> =
+        set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
     variant(description, &set, &Registry::builtin())
 }
 

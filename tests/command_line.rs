@@ -8,7 +8,11 @@ use fragbuf::TARGETS;
 use serde_json::Value;
 
 fn fragbuf(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_fragbuf"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -25,7 +29,9 @@ fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             match path.is_dir() {
                 true => waiting.push(path),
-                false => drop(files.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap())),
+                false => {
+                    drop(files.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap()))
+                }
             }
         }
     }
@@ -56,8 +62,17 @@ fn the_manifest_names_every_file_and_nothing_else() {
     let mut files = tree(&out);
     let manifest: Value = serde_json::from_slice(&files.remove(Path::new("manifest.json")).unwrap()).unwrap();
     for field in [
-        "schema", "generator", "technique", "files", "steps", "resources", "constants", "features", "tier",
-        "words_per_pixel", "counters",
+        "schema",
+        "generator",
+        "technique",
+        "files",
+        "steps",
+        "resources",
+        "constants",
+        "features",
+        "tier",
+        "words_per_pixel",
+        "counters",
     ] {
         assert!(!manifest[field].is_null(), "{field}");
     }
@@ -81,14 +96,19 @@ fn list_is_an_array_of_techniques() {
     let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
     let row = |key: &str| rows.iter().find(|row| row["key"] == key).unwrap();
     // The catalogue's formulas, K15 Table 1.
-    for (key, words, passes) in [("kb", "2k", 1), ("kplus_array", "2k+2", 1), ("ab_ll", "3f+1", 1), ("ab_sb", "2f+2", 2)] {
+    for (key, words, passes) in
+        [("kb", "2k", 1), ("kplus_array", "2k+2", 1), ("ab_ll", "3f+1", 1), ("ab_sb", "2f+2", 2)]
+    {
         assert_eq!(row(key)["words_per_pixel"], words, "{key}");
         assert_eq!(row(key)["geometry_passes"], passes, "{key}");
         assert!(row(key)["paper"].is_string() && row(key)["axes"]["storage"].is_string());
         assert_eq!(row(key)["targets"].as_object().unwrap().len(), TARGETS.len());
     }
     assert_eq!(row("kb")["targets"]["spirv"], "T5");
-    assert_eq!((&row("kplus_array")["targets"]["wgsl"], &row("kplus_array")["targets"]["glsl"]), (&"T4".into(), &"T3".into()));
+    assert_eq!(
+        (&row("kplus_array")["targets"]["wgsl"], &row("kplus_array")["targets"]["glsl"]),
+        (&"T4".into(), &"T3".into())
+    );
     assert_eq!(row("ab_ll")["targets"]["wgsl"], "T1");
     let table = fragbuf(&["list"]);
     assert!(table.status.success() && String::from_utf8_lossy(&table.stdout).contains("kplus_array"));

@@ -8,14 +8,20 @@ use fragbuf_model::codes;
 
 use crate::cases::{checked, text};
 
+/// Code, line, column, and a part of the way out.
+type Expected = (&'static str, u32, u32, &'static str);
+
 /// A description, and what must be said of it: code and place of each mistake, and a part of the way out.
-const CASES: &[(&str, &[(&str, u32, u32, &str)])] = &[
+const CASES: &[(&str, &[Expected])] = &[
     ("buffer B from kplus_aray { }", &[("unknown-technique", 1, 15, "did you mean `kplus_array`?")]),
     ("buffer B {\n    keep 8;\n}", &[("missing-storage", 1, 8, "from kplus_array")]),
     ("buffer B from ab_ll {\n    strage: max_array;\n}", &[("unknown-axis", 2, 5, "did you mean `storage`?")]),
     ("buffer B from ab_ll {\n    sort: insertoin;\n}", &[("unknown-value", 2, 11, "did you mean `insertion`?")]),
     ("buffer B from ab_ll {\n    sort: bitonc;\n}", &[("unknown-value", 2, 11, "insertion")]),
-    ("buffer B from kplus_array {\n    sync: spin_lock { limt: 9 };\n}", &[("unknown-option", 2, 23, "did you mean `limit`?")]),
+    (
+        "buffer B from kplus_array {\n    sync: spin_lock { limt: 9 };\n}",
+        &[("unknown-option", 2, 23, "did you mean `limit`?")],
+    ),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("bad-option", 2, 30, "4096")]),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("bad-option", 2, 30, "tries")]),
     ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "drop the braces")]),
@@ -25,14 +31,26 @@ const CASES: &[(&str, &[(&str, u32, u32, &str)])] = &[
     ("buffer B from ab_ll {\n    keep 8;\n}", &[("keep-mismatch", 2, 10, "keep all")]),
     ("buffer B from ab_ll {\n    keep all least |f| f.depth;\n}", &[("keep-mismatch", 2, 20, "where")]),
     ("buffer B from kplus_array {\n    sync: none;\n}", &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")]),
-    ("buffer B from kplus_array {\n    sync: slot_counter;\n}", &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")]),
+    (
+        "buffer B from kplus_array {\n    sync: slot_counter;\n}",
+        &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")],
+    ),
     ("buffer B from ab_ll {\n    cull: early;\n}", &[("unmet", 2, 11, "`cull: none`")]),
     ("buffer B from ab_ll {\n    sort: none;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
     ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("unmet", 1, 15, "`color: rgba8`")]),
     ("buffer B from ab_ll {\n    fragment { color: rgba8, z: f32 }\n}", &[("missing-depth", 2, 16, "`depth: f32`")]),
-    ("buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}", &[("missing-depth", 2, 37, "`depth: f32`")]),
-    ("buffer B from ab_ll {\n    resolve: over;\n    resolve |fragments, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}", &[("duplicate", 3, 5, "leave one of them out")]),
-    ("buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}", &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")]),
+    (
+        "buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}",
+        &[("missing-depth", 2, 37, "`depth: f32`")],
+    ),
+    (
+        "buffer B from ab_ll {\n    resolve: over;\n    resolve |fragments, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
+        &[("duplicate", 3, 5, "leave one of them out")],
+    ),
+    (
+        "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
+        &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],
+    ),
 ];
 
 #[test]
@@ -78,7 +96,13 @@ fn mistakes_are_drawn_with_their_line() {
 #[test]
 fn set_from_outside_is_checked_like_the_text() {
     let key = fragbuf::load::Description::Technique("kplus_array".to_owned());
-    for (name, value, code) in [("k", "many", "bad-option"), ("sort", "x", "unknown-value"), ("sync.limit", "0", "bad-option"), ("nope", "1", "unknown-axis"), ("k", "0", "capacity")] {
+    for (name, value, code) in [
+        ("k", "many", "bad-option"),
+        ("sort", "x", "unknown-value"),
+        ("sync.limit", "0", "bad-option"),
+        ("nope", "1", "unknown-axis"),
+        ("k", "0", "capacity"),
+    ] {
         let faults = checked(&key, &[(name, value)]).err().unwrap_or_else(|| panic!("accepted: {name}={value}"));
         assert_eq!(faults.iter().map(|fault| fault.code.name).collect::<Vec<_>>(), [code], "{name}={value}");
     }

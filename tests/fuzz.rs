@@ -59,7 +59,11 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
     let values: Vec<String> = registry.rows_of(&axis.value).map(|row| row.key.clone()).collect();
     let alternatives = (0..1 + random.below(2))
         .map(|_| {
-            let value = if values.is_empty() || random.below(12) == 0 { word(random) } else { spanned(random.pick(&values).clone()) };
+            let value = if values.is_empty() || random.below(12) == 0 {
+                word(random)
+            } else {
+                spanned(random.pick(&values).clone())
+            };
             let number = OptionValue::Number(random.below(10_000) as u32);
             let options = (0..random.below(2)).map(|_| (word(random), spanned(number.clone()))).collect();
             Alternative { value, options }

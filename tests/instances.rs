@@ -120,7 +120,9 @@ fn glsl_modules_are_called_from_a_shader_of_ones_own() {
     let registry = Registry::builtin();
     let near = generation(&registry, "kplus_array", Form::Module, "near", 1);
     let all = generation(&registry, "ab_ll", Form::Module, "all", 2);
-    for (target, version) in [("glsl", "#version 450"), ("glsl-vulkan", "#version 450\n#extension GL_KHR_memory_scope_semantics : require")] {
+    for (target, version) in
+        [("glsl", "#version 450"), ("glsl-vulkan", "#version 450\n#extension GL_KHR_memory_scope_semantics : require")]
+    {
         let text = |generation: &Generation| {
             let file = generation.files.iter().find(|file| file.target == target && file.pass == "store").unwrap();
             String::from_utf8(file.bytes.clone()).unwrap()

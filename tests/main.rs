@@ -13,6 +13,7 @@ mod command_line;
 mod diagnostics;
 mod fuzz;
 mod instances;
+mod names;
 mod oracle;
 mod product;
 mod render;

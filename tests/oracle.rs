@@ -89,7 +89,8 @@ fn one_by_one_gives_the_same_as_all_at_once() {
     for round in 0..500 {
         let all = fragments(&mut random, round % 12);
         let k = Some(1 + random.below(6) as u32);
-        let streamed = all.iter().fold(Vec::new(), |held: Vec<Entry>, new| kept(&[held, vec![new.clone()]].concat(), k));
+        let streamed =
+            all.iter().fold(Vec::new(), |held: Vec<Entry>, new| kept(&[held, vec![new.clone()]].concat(), k));
         assert_eq!(streamed, kept(&all, k));
     }
 }
@@ -123,8 +124,9 @@ fn over_ignores_order_of_arrival_and_what_is_invisible() {
     let mut random = Random(5);
     for _ in 0..200 {
         let count = random.below(8);
-        let mut layers: Vec<(f32, [f32; 4])> =
-            (0..count).map(|index| (index as f32 * 0.1, [0.0; 4].map(|_: f32| random.below(256) as f32 / 255.0))).collect();
+        let mut layers: Vec<(f32, [f32; 4])> = (0..count)
+            .map(|index| (index as f32 * 0.1, [0.0; 4].map(|_: f32| random.below(256) as f32 / 255.0)))
+            .collect();
         let color = over(&layers);
         assert!(color.iter().all(|channel| (0.0..=1.0).contains(channel)));
         assert!(color[..3].iter().all(|channel| *channel <= color[3] + 1e-6), "premultiplied");

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use fragbuf::{File, Registry, check};
 use fragbuf_codegen::verify;
-use fragbuf_model::{Alternative, Choice, Draft, Keep, KeepCount, Origin, Spanned};
+use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
 use crate::validators::validate;
@@ -94,7 +94,8 @@ fn covers_more(payload: usize, choices: &[(String, String)], covered: &mut BTree
     let mut more = false;
     for first in 0..values.len() {
         for second in first + 1..values.len() {
-            let names = [choices[first].0.clone(), values[first].clone(), choices[second].0.clone(), values[second].clone()];
+            let names =
+                [choices[first].0.clone(), values[first].clone(), choices[second].0.clone(), values[second].clone()];
             more |= covered.insert((payload, names.to_vec()));
         }
     }
@@ -121,6 +122,51 @@ fn every_capacity_generates() {
         let capacity = generated(&variant).plans[0].plan.bound.value("capacity");
         assert!(capacity.is_some_and(|capacity| capacity >= u64::from(k) && capacity.is_power_of_two()));
     }
+}
+
+fn attribute(name: &str, format: Format) -> Attribute {
+    let origin = Origin::new("case", 1, 1);
+    Attribute { name: Spanned::new(name.to_owned(), origin.clone()), format: Spanned::new(format, origin) }
+}
+
+/// Every construct and method of the closure language, as `dsl/syntax` lowers it, through naga and the printers.
+#[test]
+fn every_construct_of_the_language_generates() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("dsl/syntax/tests/good");
+    let mut files = Vec::new();
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "fragbuf") {
+            let source = std::fs::read_to_string(&path).unwrap();
+            let parsed = fragbuf::parse(&source, "good.fragbuf");
+            assert!(parsed.diagnostics.is_empty(), "{}: {}", path.display(), parsed.diagnostics);
+            let mut draft = parsed.draft.unwrap();
+            // These descriptions are about closures: whatever else they say, a storage that exists runs them.
+            draft.choices.clear();
+            if let Some(keep) = draft.keep.as_mut().filter(|keep| keep.criterion.is_some()) {
+                keep.count.value = KeepCount::AtMost(8);
+            }
+            let all = draft.keep.as_ref().is_some_and(|keep| keep.count.value == KeepCount::All);
+            let preset = if all { "ab_ll" } else { "kplus_array" };
+            draft.preset = Some(Spanned::new(preset.to_owned(), draft.name.origin.clone()));
+            let has = |name: &str| draft.attributes.iter().any(|attribute| attribute.name.value == name);
+            let (no_color, no_depth) = (!has("color"), !has("depth"));
+            if !draft.attributes.is_empty() && draft.resolve.is_none() && no_color {
+                draft.attributes.push(attribute("color", Format::Rgba8));
+            }
+            if !draft.attributes.is_empty() && no_depth {
+                draft.attributes.push(attribute("depth", Format::F32));
+            }
+            match check(&draft, &Registry::builtin()) {
+                Ok(variant) => files.extend(generated(&variant).files),
+                Err(faults) => panic!("{}: {faults}", path.display()),
+            }
+            count += 1;
+        }
+    }
+    assert!(count >= 25, "{count}");
+    println!("language: {count} descriptions, {} files through glslang and spirv-val", validate(files.iter()));
 }
 
 #[test]

@@ -19,7 +19,9 @@ fn plans_and_wgsl() {
 
 #[test]
 fn glsl() {
-    for (case, passes) in [("kplus_array", ["store", "resolve"]), ("custom", ["store", "resolve"]), ("ab_sb", ["scan_blocks", "store"])] {
+    for (case, passes) in
+        [("kplus_array", ["store", "resolve"]), ("custom", ["store", "resolve"]), ("ab_sb", ["scan_blocks", "store"])]
+    {
         let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
         let generation = generated(&checked(&description, &set).unwrap());
         for file in generation.files.iter().filter(|file| passes.contains(&file.pass.as_str())) {
@@ -50,8 +52,18 @@ fn summary(bytes: &[u8]) -> String {
     let output = output.unwrap_or_else(|error| panic!("spirv-dis must be installed (see README): {error}"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let kept = [
-        "OpCapability", "OpExtension", "OpMemoryModel", "OpEntryPoint", "OpExecutionMode", " Binding ", " DescriptorSet ",
-        " Coherent", " Location ", " BuiltIn ", "OpMemoryBarrier", "OpAtomic",
+        "OpCapability",
+        "OpExtension",
+        "OpMemoryModel",
+        "OpEntryPoint",
+        "OpExecutionMode",
+        " Binding ",
+        " DescriptorSet ",
+        " Coherent",
+        " Location ",
+        " BuiltIn ",
+        "OpMemoryBarrier",
+        "OpAtomic",
     ];
     let text = String::from_utf8(output.stdout).unwrap();
     let lines = text.lines().filter(|line| kept.iter().any(|word| line.contains(word))).map(str::trim);

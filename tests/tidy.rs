@@ -43,7 +43,10 @@ fn every_template_has_a_row_and_is_plain_text() {
         assert!(known.contains(name.as_str()), "{name} has no row");
         assert!(text.is_ascii(), "{name} is not ASCII: shader compilers differ on the rest");
         assert!(text.starts_with("// ") && text.ends_with('\n'), "{name} has no head");
-        assert!(text.lines().count() <= 200 && text.lines().all(|line| line.chars().count() <= 120), "{name} is too long");
+        assert!(
+            text.lines().count() <= 200 && text.lines().all(|line| line.chars().count() <= 120),
+            "{name} is too long"
+        );
     }
 }
 
@@ -58,7 +61,12 @@ fn every_row_is_in_a_snapshot() {
     let registry = Registry::builtin();
     for row in registry.rows().iter().filter(|row| registry.axis(&row.axis).is_some_and(|axis| axis.chosen)) {
         let choice = format!("{}={}", row.axis, row.key);
-        assert!(seen.contains(&format!("{choice} ")) || seen.contains(&format!("{choice}\n")) || seen.contains(&format!("{choice}[")), "no snapshot has {choice}");
+        assert!(
+            seen.contains(&format!("{choice} "))
+                || seen.contains(&format!("{choice}\n"))
+                || seen.contains(&format!("{choice}[")),
+            "no snapshot has {choice}"
+        );
     }
 }
 
@@ -98,9 +106,9 @@ fn files_are_short_and_have_heads() {
         for path in files(folder, "rs") {
             let text = read(&path);
             let code = text.split("#[cfg(test)]").next().unwrap_or("").lines().count();
-            assert!(code <= 400, "{}: {code} lines", path.display());
-            let tested = path.to_string_lossy().contains("/tests/");
-            assert!(tested || text.starts_with("//!"), "{} has no head", path.display());
+            let is_test = path.to_string_lossy().contains("/tests/");
+            assert!(is_test || code <= 400, "{}: {code} lines", path.display());
+            assert!(is_test || text.starts_with("//!"), "{} has no head", path.display());
         }
     }
 }
@@ -124,9 +132,37 @@ fn the_readme_has_the_computed_table() {
     assert!(readme.contains(&table), "put this into README.md:\n{table}");
 }
 
+/// Every block of code in the README is what a person would get.
+#[test]
+fn the_readme_shows_what_is_generated() {
+    let readme = read(&root().join("README.md"));
+    let description = read(&root().join("examples/most_visible.fragbuf"));
+    assert_eq!(block(&readme, "rust"), description);
+    for target in ["wgsl", "glsl"] {
+        let shown = fragbuf(&["show", "examples/most_visible.fragbuf", "--dump", target], root());
+        assert!(shown.contains(&block(&readme, target)), "{target}");
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let glass = "buffer Glass from kplus_array {\n    storage: max_array;\n    sync: none;\n}\n";
+    std::fs::write(folder.join("glass.fragbuf"), glass).unwrap();
+    assert!(fragbuf(&["show", "glass.fragbuf"], folder).starts_with(&block(&readme, "text")));
+}
+
+/// The first block of a language.
+fn block(text: &str, language: &str) -> String {
+    let start = text.split(&format!("```{language}\n")).nth(1).unwrap();
+    start.split("```").next().unwrap().to_owned()
+}
+
+/// What the command line says, on either stream.
+fn fragbuf(arguments: &[&str], folder: &Path) -> String {
+    let output =
+        std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(folder).output().unwrap();
+    String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
+}
+
 fn fragbuf_table() -> String {
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf")).arg("list").output().unwrap();
-    String::from_utf8(output.stdout).unwrap()
+    fragbuf(&["list"], root())
 }
 
 #[test]

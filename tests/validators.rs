@@ -36,7 +36,9 @@ fn tool(file: &File) -> Option<(&'static str, Vec<&'static str>)> {
     let is_module = file.entry_points.iter().any(|(stage, _)| *stage == "module");
     match file.target {
         "glsl" if !is_module => Some(("glslangValidator", vec!["--target-env", "opengl"])),
-        "glsl-vulkan" if !is_module => Some(("glslangValidator", vec!["-V", "--target-env", "vulkan1.1", "-o", "out.spv"])),
+        "glsl-vulkan" if !is_module => {
+            Some(("glslangValidator", vec!["-V", "--target-env", "vulkan1.1", "-o", "out.spv"]))
+        }
         "spirv" => Some(("spirv-val", vec!["--target-env", "vulkan1.1"])),
         _ => None,
     }

@@ -39,7 +39,7 @@ pub(crate) fn capabilities(profile: Profile) -> Capabilities {
 }
 
 /// Checks one pass; `description` is the place to name when no line of the user's is at fault.
-pub fn check(pass: &PassText, profile: Profile, description: &Origin) -> Result<Checked, Diagnostics> {
+pub fn check(pass: PassText, profile: Profile, description: &Origin) -> Result<Checked, Diagnostics> {
     let capabilities = capabilities(profile);
     let mut frontend = naga::front::wgsl::Frontend::new_with_options(naga::front::wgsl::Options {
         parse_doc_comments: true,
@@ -47,13 +47,13 @@ pub fn check(pass: &PassText, profile: Profile, description: &Origin) -> Result<
     });
     let module = frontend.parse(&pass.text).map_err(|error| {
         let line = error.location(&pass.text).map(|location| location.line_number as usize);
-        refused(pass, line, error.message(), description)
+        refused(&pass, line, error.message(), description)
     })?;
     let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module).map_err(|error| {
         let line = error.location(&pass.text).map(|location| location.line_number as usize);
-        refused(pass, line, &chain(error.as_inner()), description)
+        refused(&pass, line, &chain(error.as_inner()), description)
     })?;
-    Ok(Checked { pass: pass.clone(), module, info })
+    Ok(Checked { pass, module, info })
 }
 
 fn refused(pass: &PassText, line: Option<usize>, message: &str, description: &Origin) -> Diagnostics {

@@ -1,6 +1,6 @@
 //! One variant, several targets: plan, link, check and emit, each step once for all targets that share it.
 
-use fragbuf_codegen::{Form, Linking, Plan, Program, link, plan};
+use fragbuf_codegen::{Form, Linking, Plan, Profile, link, plan};
 use fragbuf_model::{Diagnostic, Diagnostics, Refusal, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Loads};
@@ -44,27 +44,24 @@ pub struct Planned {
 /// Generates a variant. A target that cannot express it is a refusal, not an error.
 pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -> Result<Generation, Diagnostics> {
     let mut generation = Generation { plans: Vec::new(), files: Vec::new(), refusals: Vec::new() };
-    let mut checked: Vec<(usize, Linking, Program, Vec<Checked>)> = Vec::new();
+    let mut texts: Vec<Texts> = Vec::new();
     for &target in request.targets {
         let Some(planned) = plan_for(variant, target, request, registry, &mut generation)? else { continue };
-        let linking = Linking {
-            profile: target.profile,
-            form: request.form,
-            prefix: request.prefix.to_owned(),
-            group: request.group,
-        };
-        let known = checked.iter().position(|(plan, other, ..)| *plan == planned && *other == linking);
+        let plan = &generation.plans[planned].plan;
+        let known = texts.iter().position(|texts| texts.planned == planned && texts.profile == target.profile);
         let index = match known {
             Some(index) => index,
             None => {
-                let program = link(&generation.plans[planned].plan, &linking, registry)?;
-                let passes = check_all(&program)?;
-                checked.push((planned, linking, program, passes));
-                checked.len() - 1
+                texts.push(Texts {
+                    planned,
+                    profile: target.profile,
+                    passes: checked(plan, target, request, registry)?,
+                });
+                texts.len() - 1
             }
         };
-        let (_, _, program, passes) = &checked[index];
-        generation.files.extend(emit(target, program, passes, request)?);
+        let files = emit(target, plan, &texts[index].passes, request)?;
+        generation.files.extend(files);
     }
     Ok(generation)
 }
@@ -102,11 +99,29 @@ fn plan_for(
     Ok(Some(index))
 }
 
-fn check_all(program: &Program) -> Result<Vec<Checked>, Diagnostics> {
+/// The checked texts of one plan in one profile: all targets of that profile are made from them.
+struct Texts {
+    planned: usize,
+    profile: Profile,
+    passes: Vec<Checked>,
+}
+
+fn checked(
+    plan: &Plan,
+    target: &Target,
+    request: &Request<'_>,
+    registry: &Registry,
+) -> Result<Vec<Checked>, Diagnostics> {
+    let linking = Linking {
+        profile: target.profile,
+        form: request.form,
+        prefix: request.prefix.to_owned(),
+        group: request.group,
+    };
     let mut diagnostics = Diagnostics::new();
-    let mut checked = Vec::with_capacity(program.passes.len());
-    for pass in &program.passes {
-        match check(pass, program.linking.profile, &program.plan.variant.name.origin) {
+    let mut checked = Vec::new();
+    for pass in link(plan, &linking, registry)?.passes {
+        match check(pass, linking.profile, &plan.variant.name.origin) {
             Ok(pass) => checked.push(pass),
             Err(faults) => diagnostics.extend(faults),
         }
@@ -116,12 +131,12 @@ fn check_all(program: &Program) -> Result<Vec<Checked>, Diagnostics> {
 
 fn emit(
     target: &'static Target,
-    program: &Program,
+    plan: &Plan,
     passes: &[Checked],
     request: &Request<'_>,
 ) -> Result<Vec<File>, Diagnostics> {
     let prefix = if request.prefix.is_empty() { String::new() } else { format!("{}_", request.prefix) };
-    let planned = program.plan.passes();
+    let planned = plan.passes();
     let mut diagnostics = Diagnostics::new();
     let mut files: Vec<File> = Vec::new();
     for (checked, pass) in passes.iter().zip(planned) {
@@ -136,7 +151,7 @@ fn emit(
             Ok(more) => files.extend(more),
             Err(problem) => diagnostics.push(Diagnostic::new(
                 codes::INTERNAL,
-                &program.plan.variant.name.origin,
+                &plan.variant.name.origin,
                 format!("pass `{}` cannot be written as {}: {problem}", pass.anchor, target.name),
                 "report it with the description; another target may do meanwhile",
             )),
@@ -150,7 +165,9 @@ fn emit(
 fn share(files: &mut [File]) {
     for index in 1..files.len() {
         let (before, rest) = files.split_at_mut(index);
-        if let Some(first) = before.iter().find(|file| file.bytes == rest[0].bytes && suffix(&file.path) == suffix(&rest[0].path)) {
+        if let Some(first) =
+            before.iter().find(|file| file.bytes == rest[0].bytes && suffix(&file.path) == suffix(&rest[0].path))
+        {
             rest[0].path.clone_from(&first.path);
         }
     }

@@ -17,8 +17,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let mut text = header(emission);
     let pipeline = hlsl::PipelineOptions::default();
     let mut writer = hlsl::Writer::new(&mut text, &options, &pipeline);
-    let reflection =
-        writer.write(&module, emission.checked.info(), None).map_err(|error| error.to_string())?;
+    let reflection = writer.write(&module, emission.checked.info(), None).map_err(|error| error.to_string())?;
     for name in reflection.entry_point_names {
         name.map_err(|error| error.to_string())?;
     }

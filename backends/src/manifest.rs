@@ -10,8 +10,8 @@ use fragbuf_templates::vocabulary::{
 };
 use serde_json::{Map, Value, json};
 
-use crate::glsl::slot;
 use crate::generate::{Generation, Planned};
+use crate::glsl::slot;
 use crate::tier;
 
 /// The schema of `manifest.json`.
@@ -76,14 +76,21 @@ fn tiers(plans: &[Planned]) -> Value {
 /// The part of a manifest that one plan decides.
 pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     let mut map = Map::new();
-    let axes: Map<String, Value> =
-        plan.selection.rows.iter().map(|selected| (selected.row.axis.clone(), selected.row.key.clone().into())).collect();
+    let axes: Map<String, Value> = plan
+        .selection
+        .rows
+        .iter()
+        .map(|selected| (selected.row.axis.clone(), selected.row.key.clone().into()))
+        .collect();
     map.insert("axes".into(), axes.into());
     map.insert("keep".into(), plan.variant.keep.into());
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
     map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(feature(*fact))).collect());
-    map.insert("constants".into(), plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into());
+    map.insert(
+        "constants".into(),
+        plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),
+    );
     map.insert("entry".into(), entry(plan));
     map.insert("uniform_blocks".into(), uniform_blocks(plan, group));
     map.insert("vertex_inputs".into(), vertex_inputs(plan));

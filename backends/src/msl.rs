@@ -45,7 +45,8 @@ fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String
         }
         let read_only = matches!(variable.space, naga::AddressSpace::Uniform)
             || matches!(variable.space, naga::AddressSpace::Storage { access } if !access.contains(naga::StorageAccess::STORE));
-        bindings.insert(binding, msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() });
+        bindings
+            .insert(binding, msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() });
     }
     let entry = msl::EntryPointResources { resources: bindings, immediates_buffer: None, sizes_buffer: Some(SIZES) };
     Ok(module.entry_points.iter().map(|point| (point.name.clone(), entry.clone())).collect())

@@ -15,8 +15,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let options = options();
     let mut files = Vec::with_capacity(pass.entry_points.len());
     for entry in &pass.entry_points {
-        let pipeline =
-            spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
+        let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
         let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();

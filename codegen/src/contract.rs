@@ -23,7 +23,12 @@ pub const CONTRACTS: &[Contract] = &[
     row("storage", "storage_reset", "(pixel: u32)", "brings the pixel to its empty state"),
     row("storage", "storage_count", "(pixel: u32)", "counts a fragment that a later pass will store"),
     row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment or hands one to on_lost"),
-    row("storage", "storage_bound", "(pixel: u32) -> u32", "a key that no fragment of the final k best exceeds, at any instant"),
+    row(
+        "storage",
+        "storage_bound",
+        "(pixel: u32) -> u32",
+        "a key that no fragment of the final k best exceeds, at any instant",
+    ),
     row("storage", "storage_first", "(pixel: u32) -> u32", "the cursor of a first fragment, or END"),
     row("storage", "storage_next", "(pixel: u32, cursor: u32) -> u32", "the cursor after this one, or END"),
     row("storage", "storage_read", "(pixel: u32, cursor: u32) -> Packed", "the fragment at a cursor"),
@@ -36,7 +41,12 @@ pub const CONTRACTS: &[Contract] = &[
     row("counters", "count_loss", "(counter: u32)", "counts a loss"),
     row("sort", "sort_gather", "(entry: Packed)", "takes one fragment of the pixel into `layers`"),
     row("sort", "sort_finish", "()", "puts `layers` in order, nearest first"),
-    row("resolve", "resolve_layers", "() -> vec4<f32>", "a premultiplied colour from `layers`; called if there is at least one"),
+    row(
+        "resolve",
+        "resolve_layers",
+        "() -> vec4<f32>",
+        "a premultiplied colour from `layers`; called if there is at least one",
+    ),
 ];
 
 const fn row(axis: &'static str, name: &'static str, signature: &'static str, promise: &'static str) -> Contract {
@@ -52,7 +62,10 @@ pub fn verify(registry: &Registry) -> Vec<String> {
         for contract in CONTRACTS {
             for (name, head) in &heads {
                 if name == contract.name && (row.axis != contract.axis || head != contract.signature) {
-                    faults.push(format!("{}: `fn {name}{head}` should be `fn {name}{}`", template.path, contract.signature));
+                    faults.push(format!(
+                        "{}: `fn {name}{head}` should be `fn {name}{}`",
+                        template.path, contract.signature
+                    ));
                 }
             }
         }

@@ -11,7 +11,8 @@ pub(crate) use roles::{axis_of, instance_row};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step, Until,
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
+    Until,
 };
 
 use crate::Layout;
@@ -195,9 +196,10 @@ fn geometry_passes(steps: &[Step], bound: &Bound) -> Polynomial {
         Step::Pass(pass) if pass.kind == Kind::Geometry => sum.plus(&Polynomial::number(1), 1),
         Step::Repeat(Repeat { body, until, at_most }) => {
             let rounds = if let Until::Times(times) = until { times } else { at_most };
-            let rounds = rounds
-                .read()
-                .map_or_else(|_| Polynomial::symbol(&rounds.0), |rounds| rounds.polynomial(&|symbol| bound.value(symbol)));
+            let rounds = rounds.read().map_or_else(
+                |_| Polynomial::symbol(&rounds.0),
+                |rounds| rounds.polynomial(&|symbol| bound.value(symbol)),
+            );
             sum.plus(&geometry_passes(body, bound).times(&rounds), 1)
         }
         _ => sum,

@@ -2,7 +2,6 @@
 
 mod instances;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, codes};
@@ -43,11 +42,9 @@ pub enum Form {
     Module,
 }
 
-/// A plan, linked.
+/// A plan, linked: its texts. The plan itself says what to do with them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// What it does.
-    pub plan: Plan,
     /// How it was linked.
     pub linking: Linking,
     /// One per pass, in the order of the steps.
@@ -102,9 +99,19 @@ pub enum Stage {
     Compute,
 }
 
-/// Where each line of a text comes from.
+/// Where each line of a text comes from: runs of lines that follow each other in one source, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineMap(Vec<LineOrigin>);
+pub struct LineMap {
+    lines: usize,
+    runs: Vec<Run>,
+}
+
+/// Lines from `first` on (from 1) up to the next run.
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    first: usize,
+    origin: LineOrigin,
+}
 
 /// Where one line comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,17 +130,29 @@ pub enum LineOrigin {
 }
 
 impl LineMap {
+    /// Lines that come from nowhere.
     pub(crate) fn skip(&mut self, lines: usize) {
-        self.0.extend(std::iter::repeat_n(LineOrigin::None, lines));
+        self.run(lines, LineOrigin::None);
     }
 
-    pub(crate) fn push(&mut self, origin: LineOrigin) {
-        self.0.push(origin);
+    /// Lines of which the first comes from `origin`, and those after it from the lines after that.
+    pub(crate) fn run(&mut self, lines: usize, origin: LineOrigin) {
+        self.runs.push(Run { first: self.lines + 1, origin });
+        self.lines += lines;
     }
 
     /// The origin of a line, counted from 1.
     pub fn origin(&self, line: usize) -> LineOrigin {
-        line.checked_sub(1).and_then(|index| self.0.get(index)).cloned().unwrap_or(LineOrigin::None)
+        let index = self.runs.partition_point(|run| run.first <= line);
+        let Some(run) = index.checked_sub(1).map(|index| &self.runs[index]).filter(|_| line <= self.lines) else {
+            return LineOrigin::None;
+        };
+        match &run.origin {
+            LineOrigin::Source { name, line: first } => {
+                LineOrigin::Source { name: name.clone(), line: first + line - run.first }
+            }
+            other => other.clone(),
+        }
     }
 }
 
@@ -152,7 +171,7 @@ pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Progr
             )),
         }
     }
-    diagnostics.gate(Program { plan: plan.clone(), linking: linking.clone(), passes })
+    diagnostics.gate(Program { linking: linking.clone(), passes })
 }
 
 fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, String> {
@@ -169,10 +188,9 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
         templates.push(instances::skeleton(skeleton, registry)?);
     }
-    let mut wanted = BTreeSet::new();
-    templates.iter().for_each(|source| source.mentions(&mut wanted));
-    let mut sources = emit::sources(plan, pass, linking, &|name| wanted.contains(name));
-    sources.extend(templates.iter().cloned());
+    let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
+    let mut sources = emit::sources(plan, pass, linking, &atomics);
+    sources.extend(templates);
     let export = format!("{}_fragment", pass.skeleton);
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };

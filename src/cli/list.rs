@@ -90,8 +90,11 @@ fn grouped(targets: &Map<String, Value>) -> String {
         return (*only).to_owned();
     }
     let group = |tier: &&str| {
-        let names: Vec<&str> =
-            targets.iter().filter(|(_, verdict)| verdict.as_str() == Some(tier)).map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = targets
+            .iter()
+            .filter(|(_, verdict)| verdict.as_str() == Some(tier))
+            .map(|(name, _)| name.as_str())
+            .collect();
         format!("{tier} {}", names.join(" "))
     };
     tiers.iter().map(group).collect::<Vec<_>>().join(", ")

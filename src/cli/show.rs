@@ -56,7 +56,12 @@ fn summary(generation: &Generation) -> String {
     text.push_str("targets\n");
     for planned in &generation.plans {
         for target in &planned.targets {
-            text.push_str(&format!("  {:12} {}  {}\n", target.name, tier(planned.plan.soundness, target), target.summary));
+            text.push_str(&format!(
+                "  {:12} {}  {}\n",
+                target.name,
+                tier(planned.plan.soundness, target),
+                target.summary
+            ));
         }
     }
     for (target, refusal) in &generation.refusals {

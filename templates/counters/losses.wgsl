@@ -1,5 +1,6 @@
 // Losses are counted, other events are not: a frame that loses nothing never touches the counters.
 
+/// Events that are no loss are not counted here.
 fn count_event(counter: u32) {}
 
 fn count_loss(counter: u32) {

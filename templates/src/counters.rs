@@ -18,13 +18,8 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             ..counting("losses", "losses only: memory is touched when a fragment is lost", template!("counters/losses"))
         },
-        Row {
-            ..counting("all", "everything, for statistics: every fragment pays for it", template!("counters/all"))
-        },
-        Row {
-            template: Some(template!("counters/none")),
-            ..Row::new("counters", "none", "nothing", "")
-        },
+        Row { ..counting("all", "everything, for statistics: every fragment pays for it", template!("counters/all")) },
+        Row { template: Some(template!("counters/none")), ..Row::new("counters", "none", "nothing", "") },
     ]
 }
 

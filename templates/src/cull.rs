@@ -4,10 +4,7 @@ use crate::vocabulary::{Fact, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        Row {
-            template: Some(template!("cull/none")),
-            ..Row::new("cull", "none", "no fragment is turned away", "")
-        },
+        Row { template: Some(template!("cull/none")), ..Row::new("cull", "none", "no fragment is turned away", "") },
         Row {
             template: Some(template!("cull/early")),
             calls: vec!["storage"],

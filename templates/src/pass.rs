@@ -7,13 +7,28 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         row("geometry", "the vertex stage of every geometry pass", template!("pass/geometry"), vec![]),
         row("fullscreen", "the vertex stage of every fullscreen pass", template!("pass/fullscreen"), vec![]),
-        row("reset", "brings every pixel's storage to its empty state", template!("pass/reset"), vec!["addressing", "storage"]),
+        row(
+            "reset",
+            "brings every pixel's storage to its empty state",
+            template!("pass/reset"),
+            vec!["addressing", "storage"],
+        ),
         row("count", "counts the fragments of each pixel", template!("pass/count"), vec!["addressing", "storage"]),
-        row("scan_blocks", "prefix sums inside blocks of 1024 pixels", template!("pass/scan_blocks"), vec!["addressing"]),
+        row(
+            "scan_blocks",
+            "prefix sums inside blocks of 1024 pixels",
+            template!("pass/scan_blocks"),
+            vec!["addressing"],
+        ),
         row("scan_sums", "prefix sum over the sums of the blocks", template!("pass/scan_sums"), vec!["addressing"]),
         row("scan_add", "adds each block's sum to its pixels", template!("pass/scan_add"), vec!["addressing"]),
         row("store", "stores the scene's fragments", template!("pass/store"), geometry),
-        row("resolve", "makes one colour of each pixel's fragments", template!("pass/resolve"), vec!["addressing", "storage", "sort", "resolve"]),
+        row(
+            "resolve",
+            "makes one colour of each pixel's fragments",
+            template!("pass/resolve"),
+            vec!["addressing", "storage", "sort", "resolve"],
+        ),
     ]
 }
 

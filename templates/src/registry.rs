@@ -109,9 +109,9 @@ impl Registry {
 
     /// The rows that offer `fact`, on axes that a user chooses on.
     pub fn offering(&self, fact: Fact) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(move |row| {
-            row.offers.contains(&fact) && self.axis(&row.axis).is_some_and(|axis| axis.chosen)
-        })
+        self.rows
+            .iter()
+            .filter(move |row| row.offers.contains(&fact) && self.axis(&row.axis).is_some_and(|axis| axis.chosen))
     }
 
     /// The techniques.

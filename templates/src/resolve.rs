@@ -1,7 +1,7 @@
 //! Axis `resolve`: what is made of the kept fragments.
 
-use crate::vocabulary::{Fact, Row};
 use crate::Registry;
+use crate::vocabulary::{Fact, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![

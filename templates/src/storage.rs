@@ -38,12 +38,7 @@ fn linked_list() -> Row {
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync", "slot_counter")],
-        ..Row::new(
-            "storage",
-            "linked_list",
-            "a list per pixel through one pool of nodes",
-            "Yang et al. 2010; K15 §2",
-        )
+        ..Row::new("storage", "linked_list", "a list per pixel through one pool of nodes", "Yang et al. 2010; K15 §2")
     }
 }
 
@@ -55,8 +50,12 @@ fn exact_regions() -> Row {
             Resource::new("counts", Element::Word, "fragments of the pixel; the store pass counts them down again")
                 .by("pixel", "pixels")
                 .cleared(0),
-            Resource::new("offsets", Element::Word, "where the pixel's region begins; one more for the end of the last")
-                .by("pixel", "pixels + 1"),
+            Resource::new(
+                "offsets",
+                Element::Word,
+                "where the pixel's region begins; one more for the end of the last",
+            )
+            .by("pixel", "pixels + 1"),
             Resource::new("block_sums", Element::Word, "fragments before each block of 1024 pixels")
                 .by("block", "ceil_div(pixels, 1024)"),
             Resource::new("entries", Element::Entry, "the fragments, pixel after pixel").by("place", "fragments"),
@@ -112,9 +111,7 @@ fn sorted_array() -> Row {
         resources: array_resources("keys in ascending order; EMPTY past the last"),
         steps: vec![
             Step::Pass(reset_pass().uses("keys", Access::Plain)),
-            Step::Pass(
-                Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic),
-            ),
+            Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic)),
             Step::Pass(
                 Pass::fullscreen("resolve", "resolve")
                     .uses("keys", Access::Read)
@@ -207,4 +204,3 @@ fn array_resources(keys: &'static str) -> Vec<Resource> {
 fn reset_pass() -> Pass {
     Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
 }
-

@@ -22,16 +22,19 @@ fn slot_counter() -> Row {
         calls: vec!["storage"],
         requires: vec![Fact::OwnAtomics],
         soundness: Soundness::Atomics,
-        ..Row::new("sync", "slot_counter", "by the storage's own counters: every fragment gets a place of its own", "K15 §2")
+        ..Row::new(
+            "sync",
+            "slot_counter",
+            "by the storage's own counters: every fragment gets a place of its own",
+            "K15 §2",
+        )
     }
 }
 
 fn spin_lock() -> Row {
     Row {
         template: Some(template!("sync/spin_lock")),
-        resources: vec![
-            Resource::new("locks", Element::Word, "0: free, 1: taken").by("pixel", "pixels").cleared(0),
-        ],
+        resources: vec![Resource::new("locks", Element::Word, "0: free, 1: taken").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("locks", Access::Atomic)],
         calls: vec!["storage", "overflow", "counters"],
         offers: vec![Fact::Critical],

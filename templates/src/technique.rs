@@ -19,12 +19,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "K15 §3.2",
             summary: "the k best by a criterion, in an array whose worst entry stands at slot 0",
             keep: KeepDefault::Best(8),
-            choices: vec![
-                ("storage", "max_array"),
-                ("sync", "spin_lock"),
-                ("cull", "early"),
-                ("sort", "insertion"),
-            ],
+            choices: vec![("storage", "max_array"), ("sync", "spin_lock"), ("cull", "early"), ("sort", "insertion")],
         },
         Technique {
             key: "ab_ll".to_owned(),

@@ -1,6 +1,12 @@
 //! What generating costs, per technique and target, against the floor: naga's parse, validation and writing of the same
 //! texts. Both are printed; the ratio is the figure to watch.
-#![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a bench prints, and fails by panicking")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a bench prints, and fails by panicking"
+)]
 
 use std::time::{Duration, Instant};
 
@@ -54,7 +60,8 @@ fn floor(texts: &[String], target: &Target) {
                     };
                     let mut out = String::new();
                     let policies = naga::proc::BoundsCheckPolicies::default();
-                    let mut writer = glsl::Writer::new(&mut out, &module, &info, &options, &pipeline, policies).unwrap();
+                    let mut writer =
+                        glsl::Writer::new(&mut out, &module, &info, &options, &pipeline, policies).unwrap();
                     writer.write().unwrap();
                 }
             }

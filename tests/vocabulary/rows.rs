@@ -2,8 +2,8 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row, Samples,
-    Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
+    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row,
+    Samples, Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -19,7 +19,10 @@ pub(super) fn registry() -> Registry {
         .with(dual())
         .with(repeated_array())
         .with(bounded_regions())
-        .with(Row { template: template_of("max_array"), ..Row::new("storage", "region_array", "in a region: array", "") })
+        .with(Row {
+            template: template_of("max_array"),
+            ..Row::new("storage", "region_array", "in a region: array", "")
+        })
         .with(Row { template: template_of("max_array"), ..Row::new("storage", "region_heap", "in a region: heap", "") })
         .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
@@ -63,9 +66,8 @@ fn stencil_routed() -> Row {
         reference: "iteration + 2".into(),
     });
     route.state.samples = Some(Samples { count: "k".into(), mask: "pow2(iteration)".into() });
-    let mut store = Pass::geometry("store", "store_routed")
-        .target("depths", Blend::Replace)
-        .target("colors", Blend::Replace);
+    let mut store =
+        Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
     store.state.stencil = Some(StencilState {
         resource: "routing".to_owned(),
         compare: Compare::Equal,
@@ -91,7 +93,11 @@ fn stencil_routed() -> Row {
             Resource::new("overflowed", Element::Word, "pixels whose last sample was passed").cleared(0),
         ],
         steps: vec![
-            Step::Repeat(Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() }),
+            Step::Repeat(Repeat {
+                body: vec![Step::Pass(route)],
+                until: Until::Times("k".into()),
+                at_most: "k".into(),
+            }),
             Step::Pass(store),
             Step::Pass(overflow),
             Step::Pass(
@@ -281,11 +287,8 @@ fn predict_k() -> Row {
     let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 256)", "1")
         .uses("counts", Access::Read)
         .uses("histogram", Access::Atomic);
-    let decide = Host {
-        function: "predict_k".to_owned(),
-        reads: vec!["histogram".to_owned()],
-        sets: vec!["k".to_owned()],
-    };
+    let decide =
+        Host { function: "predict_k".to_owned(), reads: vec!["histogram".to_owned()], sets: vec!["k".to_owned()] };
     Row {
         edits: vec![
             Edit::AddResource(

@@ -29,7 +29,8 @@ impl FunctionPrinter<'_, '_> {
 
     pub fn access_index(&mut self, expression: Handle<Expression>, base: Handle<Expression>, index: u32) -> Text {
         if let Expression::FunctionArgument(argument) = self.function.expressions[base]
-            && let Some(Argument::Members(members)) = self.interface.as_ref().and_then(|interface| interface.arguments.get(argument as usize))
+            && let Some(Argument::Members(members)) =
+                self.interface.as_ref().and_then(|interface| interface.arguments.get(argument as usize))
             && let Some(member) = members.get(index as usize)
         {
             return member.clone();
@@ -40,7 +41,9 @@ impl FunctionPrinter<'_, '_> {
         let inner = self.accessed(base);
         let base = self.primary(base);
         match inner {
-            TypeInner::Struct { ref members, .. } => Text::primary(format!("{base}.{}", names::field(members, index as usize))),
+            TypeInner::Struct { ref members, .. } => {
+                Text::primary(format!("{base}.{}", names::field(members, index as usize)))
+            }
             TypeInner::Vector { .. } => {
                 let letter = ['x', 'y', 'z', 'w'].get(index as usize).copied().unwrap_or('x');
                 Text::primary(format!("{base}.{letter}"))

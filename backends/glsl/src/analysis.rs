@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 
 use naga::{
-    AtomicFunction, BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, SampleLevel, ScalarKind, Statement, TypeInner,
+    AtomicFunction, BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, SampleLevel, ScalarKind,
+    Statement, TypeInner,
 };
 
 use crate::footprint::{self, Calls, Footprint};
@@ -50,7 +51,13 @@ pub struct Order<'m> {
 }
 
 impl<'m> Order<'m> {
-    pub fn new(module: &'m Module, function: &'m Function, info: &'m naga::valid::FunctionInfo, source: &'m str, calls: &Calls) -> Self {
+    pub fn new(
+        module: &'m Module,
+        function: &'m Function,
+        info: &'m naga::valid::FunctionInfo,
+        source: &'m str,
+        calls: &Calls,
+    ) -> Self {
         let mut order = Self {
             module,
             function,
@@ -102,7 +109,11 @@ impl<'m> Order<'m> {
             self.note_uses(statement, step);
             for inner in footprint::inner_blocks(statement) {
                 let inner_id = self.blocks.len();
-                self.blocks.push(BlockOrder { parent: Some(id), owner: step, is_loop: matches!(statement, Statement::Loop { .. }) });
+                self.blocks.push(BlockOrder {
+                    parent: Some(id),
+                    owner: step,
+                    is_loop: matches!(statement, Statement::Loop { .. }),
+                });
                 self.walk(inner, inner_id, calls);
                 if let Statement::Loop { continuing, break_if: Some(condition), .. } = statement
                     && std::ptr::eq(inner, continuing)
@@ -194,11 +205,18 @@ impl<'m> Order<'m> {
                 naga::ImageQuery::Size { level: Some(level) } => vec![once(image), once(level)],
                 _ => vec![once(image)],
             },
-            Expression::Unary { expr, .. } | Expression::Derivative { expr, .. } | Expression::As { expr, .. } => vec![once(expr)],
+            Expression::Unary { expr, .. } | Expression::Derivative { expr, .. } | Expression::As { expr, .. } => {
+                vec![once(expr)]
+            }
             Expression::Relational { argument, .. } => vec![once(argument)],
             Expression::Binary { op, left, right } => {
-                let lazy = matches!(op, BinaryOperator::And | BinaryOperator::InclusiveOr | BinaryOperator::LogicalAnd | BinaryOperator::LogicalOr)
-                    && self.is_scalar_bool(left);
+                let lazy = matches!(
+                    op,
+                    BinaryOperator::And
+                        | BinaryOperator::InclusiveOr
+                        | BinaryOperator::LogicalAnd
+                        | BinaryOperator::LogicalOr
+                ) && self.is_scalar_bool(left);
                 vec![once(left), (right, 1, lazy)]
             }
             Expression::Select { condition, accept, reject } => {

@@ -71,7 +71,13 @@ impl FunctionPrinter<'_, '_> {
         join(symbol, level, left, right)
     }
 
-    pub fn binary(&mut self, expression: Handle<Expression>, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Text {
+    pub fn binary(
+        &mut self,
+        expression: Handle<Expression>,
+        op: BinaryOperator,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Text {
         self.check_scalar(left);
         if let Some(text) = self.special(expression, op, left, right) {
             return text;
@@ -82,13 +88,21 @@ impl FunctionPrinter<'_, '_> {
     }
 
     /// The operators that GLSL has otherwise, or not with this meaning.
-    fn special(&mut self, expression: Handle<Expression>, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Option<Text> {
+    fn special(
+        &mut self,
+        expression: Handle<Expression>,
+        op: BinaryOperator,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Option<Text> {
         if matches!(self.order.inner(left), TypeInner::Matrix { .. }) {
             return None;
         }
         let (lanes, scalar) = self.shape(left)?;
         match (op, scalar.kind) {
-            (BinaryOperator::And | BinaryOperator::InclusiveOr, ScalarKind::Bool) => Some(self.boolean(op, lanes, left, right)),
+            (BinaryOperator::And | BinaryOperator::InclusiveOr, ScalarKind::Bool) => {
+                Some(self.boolean(op, lanes, left, right))
+            }
             (BinaryOperator::Divide, ScalarKind::Uint) if !self.is_safe_divisor(right) => {
                 Some(self.help(Helper::DivideUint(lanes), &[left, right]))
             }
@@ -99,7 +113,9 @@ impl FunctionPrinter<'_, '_> {
                 Some(self.help(Helper::RemainderUint(lanes), &[left, right]))
             }
             (BinaryOperator::Modulo, ScalarKind::Sint) => Some(self.help(Helper::RemainderInt(lanes), &[left, right])),
-            (BinaryOperator::Modulo, ScalarKind::Float) => Some(self.help(Helper::RemainderFloat(lanes), &[left, right])),
+            (BinaryOperator::Modulo, ScalarKind::Float) => {
+                Some(self.help(Helper::RemainderFloat(lanes), &[left, right]))
+            }
             (BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight, _) => Some(self.shift(op, left, right)),
             _ if lanes > 1 => {
                 let name = vector_comparison(op)?;
@@ -146,14 +162,20 @@ impl FunctionPrinter<'_, '_> {
         if harmless {
             return join(symbol, level, left, right_text);
         }
-        let mask = if self.shape(right).is_some_and(|(lanes, _)| lanes > 1) { self.type_name(right) + "(31u)" } else { "31u".to_owned() };
+        let mask = if self.shape(right).is_some_and(|(lanes, _)| lanes > 1) {
+            self.type_name(right) + "(31u)"
+        } else {
+            "31u".to_owned()
+        };
         let masked = join("&", Level::BitAnd, right_text, Text::primary(mask));
         join(symbol, level, left, masked)
     }
 
     /// Already `x & 31u` or less.
     fn is_masked(&self, amount: Handle<Expression>) -> bool {
-        let Expression::Binary { op: BinaryOperator::And, left, right } = self.function.expressions[amount] else { return false };
+        let Expression::Binary { op: BinaryOperator::And, left, right } = self.function.expressions[amount] else {
+            return false;
+        };
         [left, right].into_iter().any(|side| matches!(self.known(side), Some(Literal::U32(mask)) if mask < 32))
     }
 
@@ -171,9 +193,13 @@ impl FunctionPrinter<'_, '_> {
 
     /// `!condition`; comparisons of integers turn around instead.
     pub fn negated(&mut self, condition: Handle<Expression>) -> String {
-        if let (Expression::Binary { op, left, right }, false) = (&self.function.expressions[condition], self.values.contains_key(&condition)) {
+        if let (Expression::Binary { op, left, right }, false) =
+            (&self.function.expressions[condition], self.values.contains_key(&condition))
+        {
             let (op, left, right) = (*op, *left, *right);
-            let integers = self.shape(left).is_some_and(|(lanes, scalar)| lanes == 1 && matches!(scalar.kind, ScalarKind::Uint | ScalarKind::Sint));
+            let integers = self.shape(left).is_some_and(|(lanes, scalar)| {
+                lanes == 1 && matches!(scalar.kind, ScalarKind::Uint | ScalarKind::Sint)
+            });
             if let (true, Some(opposite)) = (integers, opposite(op)) {
                 let (symbol, level) = symbol(opposite);
                 let (left, right) = (self.text(left), self.text(right));

@@ -9,7 +9,14 @@ use naga::{Block, Expression, Handle, Span, Statement, SwitchCase, SwitchValue};
 use crate::function::{Continuing, FunctionPrinter};
 
 impl<'m> FunctionPrinter<'_, 'm> {
-    pub fn if_statement(&mut self, condition: Handle<Expression>, accept: &'m Block, reject: &'m Block, span: Span, tail: bool) {
+    pub fn if_statement(
+        &mut self,
+        condition: Handle<Expression>,
+        accept: &'m Block,
+        reject: &'m Block,
+        span: Span,
+        tail: bool,
+    ) {
         self.lead(span);
         let (condition, accept, reject) = if accept.is_empty() && !reject.is_empty() {
             (self.negated(condition), reject, accept)
@@ -52,7 +59,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
         let Some(statement @ Statement::If { condition, accept, reject }) = rest.next() else { return None };
         let step = self.order.step_of(statement);
         let alone = rest.next().is_none();
-        let plain = !self.plan.circuit_steps.contains_key(&step) && !self.declarations.before.contains_key(&step) && !accept.is_empty();
+        let plain = !self.plan.circuit_steps.contains_key(&step)
+            && !self.declarations.before.contains_key(&step)
+            && !accept.is_empty();
         (alone && plain).then_some((*condition, accept, reject))
     }
 
@@ -205,7 +214,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
         let own = body.iter().filter(|statement| !self.is_silent(statement));
         own.into_iter().any(|statement| match statement {
             Statement::Emit(_) => true,
-            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => self.plan.baked.contains(result),
+            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => {
+                self.plan.baked.contains(result)
+            }
             Statement::Store { .. } => self.declarations.by_store.contains_key(&self.order.step_of(statement)),
             _ => false,
         })

@@ -11,7 +11,13 @@ use crate::helpers::Helper;
 use crate::types::unsupported_scalar;
 
 impl FunctionPrinter<'_, '_> {
-    pub fn convert(&mut self, expression: Handle<Expression>, operand: Handle<Expression>, kind: ScalarKind, width: Option<u8>) -> Text {
+    pub fn convert(
+        &mut self,
+        expression: Handle<Expression>,
+        operand: Handle<Expression>,
+        kind: ScalarKind,
+        width: Option<u8>,
+    ) -> Text {
         if matches!(self.order.inner(operand), TypeInner::Matrix { .. }) {
             return self.text(operand);
         }
@@ -35,7 +41,9 @@ impl FunctionPrinter<'_, '_> {
             (Some(_), ScalarKind::Float, ScalarKind::Uint) if !self.fits(operand, -1.0, 4_294_967_296.0) => {
                 self.help(Helper::FloatToUint(lanes), &[operand])
             }
-            (Some(_), ScalarKind::Float, ScalarKind::Sint) if !self.fits(operand, -2_147_483_649.0, 2_147_483_648.0) => {
+            (Some(_), ScalarKind::Float, ScalarKind::Sint)
+                if !self.fits(operand, -2_147_483_649.0, 2_147_483_648.0) =>
+            {
                 self.help(Helper::FloatToInt(lanes), &[operand])
             }
             _ => {
@@ -67,12 +75,20 @@ impl FunctionPrinter<'_, '_> {
         }
         match self.function.expressions[expression] {
             Expression::Math { fun, arg, arg1, arg2, .. } => {
-                let bounds = |argument: Option<Handle<Expression>>| argument.map_or(ANY, |argument| self.range(argument));
+                let bounds =
+                    |argument: Option<Handle<Expression>>| argument.map_or(ANY, |argument| self.range(argument));
                 match fun {
-                    MathFunction::Saturate | MathFunction::Fract | MathFunction::Unpack4x8unorm | MathFunction::Unpack2x16unorm => (0.0, 1.0),
+                    MathFunction::Saturate
+                    | MathFunction::Fract
+                    | MathFunction::Unpack4x8unorm
+                    | MathFunction::Unpack2x16unorm => (0.0, 1.0),
                     MathFunction::Clamp => (bounds(arg1).0, bounds(arg2).1),
-                    MathFunction::Min => (f64::min(self.range(arg).0, bounds(arg1).0), f64::min(self.range(arg).1, bounds(arg1).1)),
-                    MathFunction::Max => (f64::max(self.range(arg).0, bounds(arg1).0), f64::max(self.range(arg).1, bounds(arg1).1)),
+                    MathFunction::Min => {
+                        (f64::min(self.range(arg).0, bounds(arg1).0), f64::min(self.range(arg).1, bounds(arg1).1))
+                    }
+                    MathFunction::Max => {
+                        (f64::max(self.range(arg).0, bounds(arg1).0), f64::max(self.range(arg).1, bounds(arg1).1))
+                    }
                     MathFunction::Floor | MathFunction::Ceil | MathFunction::Round | MathFunction::Trunc => {
                         let (low, high) = self.range(arg);
                         (low.floor(), high.ceil())
@@ -80,12 +96,16 @@ impl FunctionPrinter<'_, '_> {
                     _ => ANY,
                 }
             }
-            Expression::Binary { op: BinaryOperator::Multiply, left, right } => product(self.range(left), self.range(right)),
+            Expression::Binary { op: BinaryOperator::Multiply, left, right } => {
+                product(self.range(left), self.range(right))
+            }
             Expression::Binary { op: BinaryOperator::Add, left, right } => {
                 let (left, right) = (self.range(left), self.range(right));
                 (left.0 + right.0, left.1 + right.1)
             }
-            Expression::AccessIndex { base, .. } if matches!(self.order.inner(base), TypeInner::Vector { .. }) => self.range(base),
+            Expression::AccessIndex { base, .. } if matches!(self.order.inner(base), TypeInner::Vector { .. }) => {
+                self.range(base)
+            }
             Expression::Swizzle { vector, .. } => self.range(vector),
             _ => ANY,
         }
@@ -95,20 +115,31 @@ impl FunctionPrinter<'_, '_> {
     fn is_pixel_position(&self, expression: Handle<Expression>) -> bool {
         match self.function.expressions[expression] {
             Expression::AccessIndex { base, index: 0 | 1 } => self.is_position(base),
-            Expression::Swizzle { size, vector, pattern } => self.is_position(vector) && pattern[..size as usize].iter().all(|c| (*c as u32) < 2),
+            Expression::Swizzle { size, vector, pattern } => {
+                self.is_position(vector) && pattern[..size as usize].iter().all(|c| (*c as u32) < 2)
+            }
             _ => false,
         }
     }
 
     fn is_position(&self, expression: Handle<Expression>) -> bool {
-        let position = |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::BuiltIn(BuiltIn::Position { .. })));
+        let position =
+            |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::BuiltIn(BuiltIn::Position { .. })));
         match self.function.expressions[expression] {
-            Expression::FunctionArgument(index) => self.function.arguments.get(index as usize).is_some_and(|argument| position(&argument.binding)),
+            Expression::FunctionArgument(index) => {
+                self.function.arguments.get(index as usize).is_some_and(|argument| position(&argument.binding))
+            }
             Expression::AccessIndex { base, index } => {
                 let Expression::FunctionArgument(argument) = self.function.expressions[base] else { return false };
-                let Some(argument) = self.function.arguments.get(argument as usize).filter(|_| self.interface.is_some()) else { return false };
+                let Some(argument) =
+                    self.function.arguments.get(argument as usize).filter(|_| self.interface.is_some())
+                else {
+                    return false;
+                };
                 match self.printer.module.types[argument.ty].inner {
-                    TypeInner::Struct { ref members, .. } => members.get(index as usize).is_some_and(|member| position(&member.binding)),
+                    TypeInner::Struct { ref members, .. } => {
+                        members.get(index as usize).is_some_and(|member| position(&member.binding))
+                    }
                     _ => false,
                 }
             }

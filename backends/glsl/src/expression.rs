@@ -95,7 +95,10 @@ impl<'m> FunctionPrinter<'_, 'm> {
             }
             Expression::Swizzle { size, vector, pattern } => {
                 let vector = self.primary(vector);
-                let letters: String = pattern[..size as usize].iter().map(|component| ['x', 'y', 'z', 'w'][*component as usize]).collect();
+                let letters: String = pattern[..size as usize]
+                    .iter()
+                    .map(|component| ['x', 'y', 'z', 'w'][*component as usize])
+                    .collect();
                 Text::primary(format!("{vector}.{letters}"))
             }
             Expression::FunctionArgument(index) => self.argument(expression, index),
@@ -105,7 +108,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 Text::primary(name.unwrap_or_else(|| self.error("a variable used before its declaration", expression)))
             }
             Expression::Load { pointer } => self.load(expression, pointer),
-            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => self.texture(expression),
+            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => {
+                self.texture(expression)
+            }
             Expression::Unary { op, expr } => self.unary(op, expr),
             Expression::Binary { op, left, right } => self.binary(expression, op, left, right),
             Expression::Select { condition, accept, reject } => self.select(condition, accept, reject),
@@ -136,16 +141,27 @@ impl<'m> FunctionPrinter<'_, 'm> {
         Text::new(text, level)
     }
 
-    fn compose(&mut self, expression: Handle<Expression>, ty: Handle<naga::Type>, components: &[Handle<Expression>]) -> Text {
+    fn compose(
+        &mut self,
+        expression: Handle<Expression>,
+        ty: Handle<naga::Type>,
+        components: &[Handle<Expression>],
+    ) -> Text {
         let span = self.span(expression);
         let name = self.printer.type_name(ty, span);
         let parts: Vec<String> = components.iter().map(|component| self.expression(*component)).collect();
         Text::primary(format!("{name}({})", parts.join(", ")))
     }
 
-    fn select(&mut self, condition: Handle<Expression>, accept: Handle<Expression>, reject: Handle<Expression>) -> Text {
+    fn select(
+        &mut self,
+        condition: Handle<Expression>,
+        accept: Handle<Expression>,
+        reject: Handle<Expression>,
+    ) -> Text {
         if matches!(self.order.inner(condition), TypeInner::Vector { .. }) {
-            let (condition, accept, reject) = (self.expression(condition), self.expression(accept), self.expression(reject));
+            let (condition, accept, reject) =
+                (self.expression(condition), self.expression(accept), self.expression(reject));
             return Text::primary(format!("mix({reject}, {accept}, {condition})"));
         }
         let condition = self.text(condition).above(Level::Ternary);

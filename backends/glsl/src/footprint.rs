@@ -6,7 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{
-    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, LocalVariable, Module, Statement, StorageAccess, TypeInner,
+    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, LocalVariable, Module, Statement, StorageAccess,
+    TypeInner,
 };
 
 use crate::Marker;
@@ -105,9 +106,13 @@ pub fn of_expression(module: &Module, function: &Function, expression: Handle<Ex
             Some(_) => Footprint::default(),
             None => Footprint::reading(Place::Memory),
         },
-        Expression::ImageSample { .. } | Expression::Derivative { .. } => Footprint { uniform: true, ..Footprint::default() },
+        Expression::ImageSample { .. } | Expression::Derivative { .. } => {
+            Footprint { uniform: true, ..Footprint::default() }
+        }
         // A storage texture may be written by this very shader.
-        Expression::ImageLoad { image, .. } if is_storage_image(module, function, image) => Footprint::reading(Place::Memory),
+        Expression::ImageLoad { image, .. } if is_storage_image(module, function, image) => {
+            Footprint::reading(Place::Memory)
+        }
         _ => Footprint::default(),
     }
 }
@@ -190,7 +195,10 @@ pub fn of_statement(module: &Module, function: &Function, statement: &Statement,
             let Some(summary) = calls.get(&callee) else { return Footprint::writing(Place::Memory) };
             let bind = |places: &[Place]| {
                 let bound = |place: &Place| match *place {
-                    Place::Parameter(index) => arguments.get(index as usize).and_then(|pointer| root(module, function, *pointer)).unwrap_or(Place::Memory),
+                    Place::Parameter(index) => arguments
+                        .get(index as usize)
+                        .and_then(|pointer| root(module, function, *pointer))
+                        .unwrap_or(Place::Memory),
                     other => other,
                 };
                 places.iter().map(bound).collect::<Vec<_>>()
@@ -208,9 +216,11 @@ pub fn of_statement(module: &Module, function: &Function, statement: &Statement,
         Statement::Kill => Footprint::writing(Place::Memory),
         // Leaving: an effect must not move from before to after it.
         Statement::Return { .. } | Statement::Break | Statement::Continue => Footprint::reading(Place::Memory),
-        Statement::Emit(_) | Statement::Block(_) | Statement::If { .. } | Statement::Switch { .. } | Statement::Loop { .. } => {
-            Footprint::default()
-        }
+        Statement::Emit(_)
+        | Statement::Block(_)
+        | Statement::If { .. }
+        | Statement::Switch { .. }
+        | Statement::Loop { .. } => Footprint::default(),
         _ => Footprint::writing(Place::Memory),
     }
 }
@@ -229,7 +239,9 @@ fn pointee(module: &Module, function: &Function, pointer: Handle<Expression>) ->
     match function.expressions[pointer] {
         Expression::GlobalVariable(global) => Some(module.global_variables[global].ty),
         Expression::LocalVariable(local) => Some(function.local_variables[local].ty),
-        Expression::FunctionArgument(index) => function.arguments.get(index as usize).map(|argument| behind(argument.ty)),
+        Expression::FunctionArgument(index) => {
+            function.arguments.get(index as usize).map(|argument| behind(argument.ty))
+        }
         Expression::Access { base, .. } => match module.types[pointee(module, function, base)?].inner {
             TypeInner::Array { base, .. } => Some(base),
             _ => None,

@@ -11,8 +11,9 @@ use crate::analysis::Order;
 use crate::footprint::Calls;
 use crate::interface::Interface;
 use crate::locals::{Declarations, declarations};
-use crate::names::{free, is_reserved, legal};
+use crate::names::{free, legal};
 use crate::printer::Printer;
+use crate::reserved::is_reserved;
 use crate::schedule::{Plan, plan};
 
 /// What a `continue` of the innermost loop must do first.
@@ -44,7 +45,12 @@ pub struct FunctionPrinter<'p, 'm> {
 }
 
 impl<'p, 'm> FunctionPrinter<'p, 'm> {
-    pub fn new(printer: &'p mut Printer<'m>, function: &'m Function, info: &'m naga::valid::FunctionInfo, calls: &Calls) -> Self {
+    pub fn new(
+        printer: &'p mut Printer<'m>,
+        function: &'m Function,
+        info: &'m naga::valid::FunctionInfo,
+        calls: &Calls,
+    ) -> Self {
         let order = Order::new(printer.module, function, info, printer.source, calls);
         let plan = plan(&order);
         let declarations = declarations(&order, &plan);
@@ -68,7 +74,8 @@ impl<'p, 'm> FunctionPrinter<'p, 'm> {
 
     /// Takes a name for a variable declared here, unlike every name that can be seen from here.
     pub fn declare(&mut self, wanted: &str) -> String {
-        let taken = |name: &str| self.printer.names.is_taken(name) || self.scopes.iter().any(|scope| scope.contains(name));
+        let taken =
+            |name: &str| self.printer.names.is_taken(name) || self.scopes.iter().any(|scope| scope.contains(name));
         let name = free(&legal(wanted, is_reserved), taken);
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.clone());

@@ -3,7 +3,10 @@
 //! In: what the bodies turned out to need. Out: the text of each declaration. A buffer of words is declared without an
 //! instance name, so that its uses read `heads[i]`.
 
-use naga::{AddressSpace, ArraySize, Constant, Expression, GlobalVariable, Handle, ImageClass, MemoryDecorations, Span, StorageAccess, Type, TypeInner};
+use naga::{
+    AddressSpace, ArraySize, Constant, Expression, GlobalVariable, Handle, ImageClass, MemoryDecorations, Span,
+    StorageAccess, Type, TypeInner,
+};
 
 use crate::expression::{Level, Text};
 use crate::layout::{Rules, disagreement};
@@ -101,8 +104,13 @@ impl Printer<'_> {
 
     /// A structure that ends in an array without a length: GLSL has that as a block's members only.
     pub fn is_unwrapped(&self, global: Handle<GlobalVariable>) -> bool {
-        let TypeInner::Struct { ref members, .. } = self.module.types[self.module.global_variables[global].ty].inner else { return false };
-        members.last().is_some_and(|last| matches!(self.module.types[last.ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. }))
+        let TypeInner::Struct { ref members, .. } = self.module.types[self.module.global_variables[global].ty].inner
+        else {
+            return false;
+        };
+        members.last().is_some_and(|last| {
+            matches!(self.module.types[last.ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. })
+        })
     }
 
     /// A private array that is too long for its zeros to be written out, in a text that has a `main` to set them.
@@ -163,7 +171,11 @@ impl Printer<'_> {
             return self.error("a resource without a binding", self.module.global_variables.get_span(handle));
         };
         let slot = (self.options.bindings)(binding.group, binding.binding);
-        if self.vulkan() { format!("set = {}, binding = {}", slot.set, slot.binding) } else { format!("binding = {}", slot.binding) }
+        if self.vulkan() {
+            format!("set = {}, binding = {}", slot.set, slot.binding)
+        } else {
+            format!("binding = {}", slot.binding)
+        }
     }
 
     /// `coherent` makes what other invocations have written visible to this one's plain reads; words that are written by
@@ -172,7 +184,9 @@ impl Printer<'_> {
     fn buffer_qualifiers(&self, handle: Handle<GlobalVariable>, access: StorageAccess) -> String {
         let variable = &self.module.global_variables[handle];
         let plain = self.is_plain(handle);
-        let coherent = plain || variable.memory_decorations.contains(MemoryDecorations::COHERENT) || self.holds_atomics(variable.ty);
+        let coherent = plain
+            || variable.memory_decorations.contains(MemoryDecorations::COHERENT)
+            || self.holds_atomics(variable.ty);
         let volatile = plain || variable.memory_decorations.contains(MemoryDecorations::VOLATILE);
         let readonly = !access.intersects(StorageAccess::STORE | StorageAccess::ATOMIC);
         let qualifiers = [(readonly, "readonly "), (coherent, "coherent "), (volatile, "volatile ")];
@@ -188,7 +202,14 @@ impl Printer<'_> {
         }
     }
 
-    fn block(&mut self, handle: Handle<GlobalVariable>, name: &str, rules: Rules, keywords: &str, suffix: &str) -> Vec<String> {
+    fn block(
+        &mut self,
+        handle: Handle<GlobalVariable>,
+        name: &str,
+        rules: Rules,
+        keywords: &str,
+        suffix: &str,
+    ) -> Vec<String> {
         let ty = self.module.global_variables[handle].ty;
         let span = self.module.global_variables.get_span(handle);
         if let Some(difference) = disagreement(self.module, ty, rules) {
@@ -213,7 +234,9 @@ impl Printer<'_> {
         let span = self.module.global_variables.get_span(handle);
         let ty = match self.module.types[self.module.global_variables[handle].ty].inner {
             TypeInner::Image { dim, arrayed, class: class @ ImageClass::Storage { format, access } } => {
-                let Some(format) = format_name(format) else { return vec![self.error("a storage texture of this format", span)] };
+                let Some(format) = format_name(format) else {
+                    return vec![self.error("a storage texture of this format", span)];
+                };
                 let image = opaque_type("image", dim, arrayed, class);
                 let access = match (access.contains(StorageAccess::LOAD), access.contains(StorageAccess::STORE)) {
                     (true, false) => "readonly ",
@@ -223,7 +246,9 @@ impl Printer<'_> {
                 let slot = self.slot(handle);
                 return vec![format!("layout({format}, {slot}) {access}uniform {image} {name};")];
             }
-            TypeInner::Image { class: ImageClass::External, .. } => return vec![self.error("an external texture", span)],
+            TypeInner::Image { class: ImageClass::External, .. } => {
+                return vec![self.error("an external texture", span)];
+            }
             TypeInner::Image { dim, arrayed, class } if self.vulkan() => opaque_type("texture", dim, arrayed, class),
             TypeInner::Image { dim, arrayed, class } => {
                 let compares = self.needs.combined.get(&handle).is_some_and(|(_, comparison)| *comparison);

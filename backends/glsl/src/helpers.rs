@@ -48,7 +48,10 @@ impl Helper {
 
     /// The definition, once per shader: two libraries included in one shader may need the same function.
     pub fn guarded(self) -> String {
-        let words: String = format!("{self:?}").chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { ' ' }).collect();
+        let words: String = format!("{self:?}")
+            .chars()
+            .map(|letter| if letter.is_ascii_alphanumeric() { letter } else { ' ' })
+            .collect();
         let guard = format!("WGSL_{}", words.split_whitespace().collect::<Vec<_>>().join("_").to_ascii_uppercase());
         format!("#ifndef {guard}\n#define {guard}\n{}#endif\n", self.text())
     }
@@ -104,7 +107,11 @@ impl Helper {
 fn divide(stem: &str, scalar: &str, lanes: u8, signed: bool) -> String {
     let ty = typed(stem, scalar, lanes);
     let divisor = divisor(&ty, lanes, signed);
-    let reason = if signed { "// In WGSL, dividing by zero, or the least integer by -1, gives a." } else { "// In WGSL, dividing by zero gives a." };
+    let reason = if signed {
+        "// In WGSL, dividing by zero, or the least integer by -1, gives a."
+    } else {
+        "// In WGSL, dividing by zero gives a."
+    };
     format!("{reason}\n{ty} wgsl_divide({ty} a, {ty} b) {{\n    return a / {divisor};\n}}\n")
 }
 
@@ -126,7 +133,9 @@ fn divisor(ty: &str, lanes: u8, signed: bool) -> String {
 fn remainder_uint(lanes: u8) -> String {
     let ty = typed("uvec", "uint", lanes);
     let divisor = divisor(&ty, lanes, false);
-    format!("// In WGSL, the remainder of a division by zero is 0.\n{ty} wgsl_remainder({ty} a, {ty} b) {{\n    return a % {divisor};\n}}\n")
+    format!(
+        "// In WGSL, the remainder of a division by zero is 0.\n{ty} wgsl_remainder({ty} a, {ty} b) {{\n    return a % {divisor};\n}}\n"
+    )
 }
 
 fn remainder_int(lanes: u8) -> String {

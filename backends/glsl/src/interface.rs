@@ -4,7 +4,10 @@
 //! for each argument the text it prints as. Both sides of a stage border are matched by location, so names are free: `in_`
 //! or `out_` before the WGSL name.
 
-use naga::{Binding, BuiltIn, EntryPoint, Expression, Function, Handle, Interpolation, Sampling, ShaderStage, Span, Type, TypeInner};
+use naga::{
+    Binding, BuiltIn, EntryPoint, Expression, Function, Handle, Interpolation, Sampling, ShaderStage, Span, Type,
+    TypeInner,
+};
 
 use crate::expression::Text;
 use crate::function::FunctionPrinter;
@@ -17,7 +20,11 @@ pub enum Argument {
     /// A structure of which only members are used: each is a global of its own.
     Members(Vec<Text>),
     /// A structure that is used as a whole: `main` puts it together under this name.
-    Whole { name: String, ty: Handle<Type>, members: Vec<Text> },
+    Whole {
+        name: String,
+        ty: Handle<Type>,
+        members: Vec<Text>,
+    },
 }
 
 /// A part of the result: the global it is assigned to.
@@ -43,7 +50,9 @@ impl Printer<'_> {
         for (index, argument) in entry.function.arguments.iter().enumerate() {
             let name = argument.name.as_deref().unwrap_or("argument");
             let text = match &argument.binding {
-                Some(binding) => Argument::Value(self.input(entry.stage, name, argument.ty, binding, &mut interface.declarations)),
+                Some(binding) => {
+                    Argument::Value(self.input(entry.stage, name, argument.ty, binding, &mut interface.declarations))
+                }
                 None => self.input_structure(entry, index, argument.ty, name, &mut interface.declarations),
             };
             interface.arguments.push(text);
@@ -61,7 +70,14 @@ impl Printer<'_> {
         interface
     }
 
-    fn input_structure(&mut self, entry: &EntryPoint, index: usize, ty: Handle<Type>, name: &str, declarations: &mut Vec<String>) -> Argument {
+    fn input_structure(
+        &mut self,
+        entry: &EntryPoint,
+        index: usize,
+        ty: Handle<Type>,
+        name: &str,
+        declarations: &mut Vec<String>,
+    ) -> Argument {
         let module = self.module;
         let TypeInner::Struct { ref members, .. } = module.types[ty].inner else {
             self.error("an entry point's argument without a binding", Span::UNDEFINED);
@@ -98,11 +114,22 @@ impl Printer<'_> {
         }
     }
 
-    fn input(&mut self, stage: ShaderStage, name: &str, ty: Handle<Type>, binding: &Binding, declarations: &mut Vec<String>) -> Text {
+    fn input(
+        &mut self,
+        stage: ShaderStage,
+        name: &str,
+        ty: Handle<Type>,
+        binding: &Binding,
+        declarations: &mut Vec<String>,
+    ) -> Text {
         match *binding {
             Binding::BuiltIn(builtin) => self.builtin_input(builtin, ty),
             Binding::Location { location, interpolation, sampling, .. } => {
-                let qualifiers = if stage == ShaderStage::Fragment { self.interpolation(interpolation, sampling) } else { String::new() };
+                let qualifiers = if stage == ShaderStage::Fragment {
+                    self.interpolation(interpolation, sampling)
+                } else {
+                    String::new()
+                };
                 let name = self.names.declare(&format!("in_{name}"));
                 let declaration = self.declaration(ty, &name, Span::UNDEFINED);
                 declarations.push(format!("layout(location = {location}) {qualifiers}in {declaration};"));
@@ -111,7 +138,14 @@ impl Printer<'_> {
         }
     }
 
-    fn output(&mut self, stage: ShaderStage, name: &str, ty: Handle<Type>, binding: &Binding, declarations: &mut Vec<String>) -> Output {
+    fn output(
+        &mut self,
+        stage: ShaderStage,
+        name: &str,
+        ty: Handle<Type>,
+        binding: &Binding,
+        declarations: &mut Vec<String>,
+    ) -> Output {
         let plain = |target: &str| Output { target: target.to_owned(), as_int: false, is_position: false };
         match *binding {
             Binding::BuiltIn(BuiltIn::Position { invariant }) => {
@@ -123,9 +157,15 @@ impl Printer<'_> {
             Binding::BuiltIn(BuiltIn::FragDepth) => plain("gl_FragDepth"),
             Binding::BuiltIn(BuiltIn::PointSize) => plain("gl_PointSize"),
             Binding::BuiltIn(BuiltIn::SampleMask) => Output { as_int: true, ..plain("gl_SampleMask[0]") },
-            Binding::BuiltIn(builtin) => plain(&self.error(format!("the built-in output {builtin:?}"), Span::UNDEFINED)),
+            Binding::BuiltIn(builtin) => {
+                plain(&self.error(format!("the built-in output {builtin:?}"), Span::UNDEFINED))
+            }
             Binding::Location { location, interpolation, sampling, blend_src, .. } => {
-                let qualifiers = if stage == ShaderStage::Vertex { self.interpolation(interpolation, sampling) } else { String::new() };
+                let qualifiers = if stage == ShaderStage::Vertex {
+                    self.interpolation(interpolation, sampling)
+                } else {
+                    String::new()
+                };
                 let index = blend_src.map(|index| format!(", index = {index}")).unwrap_or_default();
                 let name = self.names.declare(&format!("out_{name}"));
                 let declaration = self.declaration(ty, &name, Span::UNDEFINED);
@@ -242,7 +282,10 @@ impl FunctionPrinter<'_, '_> {
 
     fn uses_argument(&self, index: usize) -> bool {
         let is_argument = |expression: &Expression| matches!(expression, Expression::FunctionArgument(argument) if *argument as usize == index);
-        self.function.expressions.iter().any(|(handle, expression)| is_argument(expression) && self.plan.live.contains(&handle))
+        self.function
+            .expressions
+            .iter()
+            .any(|(handle, expression)| is_argument(expression) && self.plan.live.contains(&handle))
     }
 
     /// Assigns the result to the outputs.
@@ -262,9 +305,13 @@ impl FunctionPrinter<'_, '_> {
     /// The members of a result, or the result itself.
     fn parts(&mut self, value: Handle<Expression>, count: usize) -> Vec<String> {
         let function = self.function;
-        let TypeInner::Struct { ref members, .. } = *self.order.inner(value) else { return vec![self.expression(value)] };
+        let TypeInner::Struct { ref members, .. } = *self.order.inner(value) else {
+            return vec![self.expression(value)];
+        };
         let members = members.clone();
-        if let (Expression::Compose { components, .. }, false) = (&function.expressions[value], self.values.contains_key(&value)) {
+        if let (Expression::Compose { components, .. }, false) =
+            (&function.expressions[value], self.values.contains_key(&value))
+        {
             return components.iter().map(|component| self.expression(*component)).collect();
         }
         let mut text = self.expression(value);

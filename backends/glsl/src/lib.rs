@@ -10,9 +10,11 @@ mod access;
 mod analysis;
 mod arithmetic;
 mod atomics;
+mod candidates;
 mod comments;
 mod control_flow;
 mod conversion;
+mod declaration;
 mod expression;
 mod footprint;
 mod function;
@@ -26,6 +28,7 @@ mod math;
 mod names;
 mod printer;
 mod reach;
+mod reserved;
 mod schedule;
 mod statement;
 mod texture;
@@ -116,7 +119,13 @@ impl std::error::Error for Unprintable {}
 ///
 /// # Errors
 /// Everything in the unit that cannot be printed, all at once.
-pub fn print(module: &naga::Module, info: &ModuleInfo, source: &str, unit: Unit, options: &Options) -> Result<String, Vec<Unprintable>> {
+pub fn print(
+    module: &naga::Module,
+    info: &ModuleInfo,
+    source: &str,
+    unit: Unit,
+    options: &Options,
+) -> Result<String, Vec<Unprintable>> {
     let mut printer = printer::Printer::new(module, info, source, options);
     let text = unit::print(&mut printer, unit);
     printer.finish(text)

@@ -45,7 +45,8 @@ pub fn declarations(order: &Order, plan: &Plan) -> Declarations {
 fn mentioned(order: &Order, step: usize) -> BTreeSet<Handle<LocalVariable>> {
     let entry = &order.steps[step];
     let touched = entry.footprint.reads.iter().chain(&entry.footprint.writes);
-    let mut locals: BTreeSet<_> = touched.filter_map(|place| if let Place::Local(local) = place { Some(*local) } else { None }).collect();
+    let mut locals: BTreeSet<_> =
+        touched.filter_map(|place| if let Place::Local(local) = place { Some(*local) } else { None }).collect();
     let pointers: Vec<Handle<Expression>> = match entry.statement {
         Some(Statement::Store { pointer, .. } | Statement::Atomic { pointer, .. }) => vec![*pointer],
         Some(Statement::Call { arguments, .. }) => arguments.clone(),
@@ -90,7 +91,9 @@ fn statement_before(order: &Order, local: Handle<LocalVariable>, mentions: &[usi
     }
     let block = block_of(order, common);
     let first_statement = block.and_then(|block| statement_holding(order, block, step)).unwrap_or(step);
-    block.and_then(|block| written_position(order, block, local)).map_or(first_statement, |written| written.min(first_statement))
+    block
+        .and_then(|block| written_position(order, block, local))
+        .map_or(first_statement, |written| written.min(first_statement))
 }
 
 fn block_of<'m>(order: &Order<'m>, id: usize) -> Option<&'m Block> {
@@ -98,7 +101,11 @@ fn block_of<'m>(order: &Order<'m>, id: usize) -> Option<&'m Block> {
         return Some(&order.function.body);
     }
     let owner = order.steps[order.blocks[id].owner].statement?;
-    let siblings = order.blocks.iter().enumerate().filter(|(_, block)| block.parent.is_some() && block.owner == order.blocks[id].owner);
+    let siblings = order
+        .blocks
+        .iter()
+        .enumerate()
+        .filter(|(_, block)| block.parent.is_some() && block.owner == order.blocks[id].owner);
     let position = siblings.map(|(sibling, _)| sibling).position(|sibling| sibling == id)?;
     footprint::inner_blocks(owner).get(position).copied()
 }
@@ -111,6 +118,8 @@ fn statement_holding(order: &Order, block: &Block, step: usize) -> Option<usize>
 /// The first statement of the block that the source has after the variable's own declaration.
 fn written_position(order: &Order, block: &Block, local: Handle<LocalVariable>) -> Option<usize> {
     let declared = order.function.local_variables.get_span(local).to_range()?;
-    let after = |span: &naga::Span| span.to_range().is_some_and(|range| range.start >= declared.start || range.end >= declared.end);
+    let after = |span: &naga::Span| {
+        span.to_range().is_some_and(|range| range.start >= declared.start || range.end >= declared.end)
+    };
     block.span_iter().find(|(_, span)| after(span)).map(|(statement, _)| order.step_of(statement))
 }

@@ -2,7 +2,10 @@
 //!
 //! Most differ in name alone. The others are written out here, or through a function of `helpers`.
 
-use naga::{DerivativeAxis, DerivativeControl, Expression, Handle, Literal, MathFunction, RelationalFunction, Scalar, ScalarKind};
+use naga::{
+    DerivativeAxis, DerivativeControl, Expression, Handle, Literal, MathFunction, RelationalFunction, Scalar,
+    ScalarKind,
+};
 
 use crate::expression::{Level, Text};
 use crate::function::FunctionPrinter;
@@ -131,7 +134,8 @@ impl FunctionPrinter<'_, '_> {
         let [left, right] = operands else { return self.call("dot", operands) };
         let lanes = self.shape(*left).map_or(0, |(lanes, _)| usize::from(lanes));
         let (left, right) = (self.primary(*left), self.primary(*right));
-        let terms: Vec<String> = ["x", "y", "z", "w"].iter().take(lanes).map(|c| format!("{left}.{c} * {right}.{c}")).collect();
+        let terms: Vec<String> =
+            ["x", "y", "z", "w"].iter().take(lanes).map(|c| format!("{left}.{c} * {right}.{c}")).collect();
         Text::new(terms.join(" + "), Level::Sum)
     }
 
@@ -179,9 +183,14 @@ impl FunctionPrinter<'_, '_> {
 
     fn bit_field(&mut self, fun: MathFunction, operands: &[Handle<Expression>]) -> Text {
         let extract = fun == MathFunction::ExtractBits;
-        let Some((size, scalar)) = operands.first().and_then(|value| self.shape(*value)) else { return self.call("bitfieldExtract", operands) };
+        let Some((size, scalar)) = operands.first().and_then(|value| self.shape(*value)) else {
+            return self.call("bitfieldExtract", operands);
+        };
         let (values, range) = operands.split_at(if extract { 1 } else { 2 });
-        let known: Vec<_> = range.iter().filter_map(|part| if let Some(Literal::U32(part)) = self.known(*part) { Some(part) } else { None }).collect();
+        let known: Vec<_> = range
+            .iter()
+            .filter_map(|part| if let Some(Literal::U32(part)) = self.known(*part) { Some(part) } else { None })
+            .collect();
         if let [offset, count] = known[..]
             && offset.saturating_add(count) <= 32
         {

@@ -5,79 +5,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::reserved::{is_keyword, is_reserved};
 use naga::{Constant, Function, GlobalVariable, Handle, Module, Type, TypeInner};
-
-/// Words that no variable, function, type or field may be called: keywords, those reserved for the future, and types.
-const KEYWORDS: &[&str] = &[
-    "active", "asm", "atomic_uint", "attribute", "bool", "break", "buffer", "bvec2", "bvec3", "bvec4", "case", "cast", "centroid",
-    "class", "coherent", "common", "const", "continue", "default", "discard", "do", "double", "else", "enum", "extern", "external",
-    "false", "filter", "fixed", "flat", "float", "for", "fvec2", "fvec3", "fvec4", "goto", "half", "highp", "hvec2", "hvec3",
-    "hvec4", "if", "in", "inline", "inout", "input", "int", "interface", "invariant", "ivec2", "ivec3", "ivec4", "layout", "long",
-    "lowp", "mediump", "namespace", "noinline", "noperspective", "out", "output", "packed", "partition", "patch", "precise",
-    "precision", "public", "readonly", "resource", "restrict", "return", "row_major", "sample", "sampler", "samplerShadow", "shared",
-    "short", "sizeof", "smooth", "static", "struct", "subroutine", "superp", "switch", "template", "this", "true", "typedef", "uint",
-    "uniform", "union", "unsigned", "using", "uvec2", "uvec3", "uvec4", "varying", "vec2", "vec3", "vec4", "void", "volatile",
-    "while", "writeonly", "int8_t", "int16_t", "int32_t", "int64_t", "uint8_t", "uint16_t", "uint32_t", "uint64_t", "float16_t",
-    "float32_t", "float64_t", "subpassInput", "isubpassInput", "usubpassInput", "subpassInputMS", "isubpassInputMS",
-    "usubpassInputMS", "nonuniformEXT", "demote", "accelerationStructureEXT", "rayQueryEXT", "defined", "std140", "std430",
-];
-
-/// Functions of the language: a function or variable of the same name would hide them.
-const FUNCTIONS: &[&str] = &[
-    "EmitStreamVertex", "EmitVertex", "EndPrimitive", "EndStreamPrimitive", "abs", "acos", "acosh", "all", "allInvocations",
-    "allInvocationsEqual", "any", "anyInvocation", "asin", "asinh", "atan", "atanh", "atomicAdd", "atomicAnd", "atomicCompSwap",
-    "atomicCounter", "atomicExchange", "atomicLoad", "atomicMax", "atomicMin", "atomicOr", "atomicStore", "atomicXor", "barrier",
-    "beginInvocationInterlockARB", "bitCount", "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "ceil", "clamp",
-    "controlBarrier", "cos", "cosh", "cross", "degrees", "determinant", "distance", "dot", "endInvocationInterlockARB", "equal",
-    "exp", "exp2", "faceforward", "findLSB", "findMSB", "floatBitsToInt", "floatBitsToUint", "floor", "fma", "fract", "frexp",
-    "ftransform", "fwidth", "fwidthCoarse", "fwidthFine", "greaterThan", "greaterThanEqual", "groupMemoryBarrier", "imulExtended",
-    "intBitsToFloat", "interpolateAtCentroid", "interpolateAtOffset", "interpolateAtSample", "inverse", "inversesqrt", "isinf",
-    "isnan", "ldexp", "length", "lessThan", "lessThanEqual", "log", "log2", "main", "matrixCompMult", "max", "min", "mix", "mod",
-    "modf", "normalize", "not", "notEqual", "outerProduct", "packDouble2x32", "packHalf2x16", "packSnorm2x16", "packSnorm4x8",
-    "packUnorm2x16", "packUnorm4x8", "pow", "radians", "reflect", "refract", "round", "roundEven", "sign", "sin", "sinh",
-    "smoothstep", "sqrt", "step", "subpassLoad", "tan", "tanh", "transpose", "trunc", "uaddCarry", "uintBitsToFloat",
-    "umulExtended", "dFdx", "dFdxCoarse", "dFdxFine", "dFdy", "dFdyCoarse", "dFdyFine", "unpackDouble2x32", "unpackHalf2x16", "unpackSnorm2x16", "unpackSnorm4x8", "unpackUnorm2x16",
-    "unpackUnorm4x8", "usubBorrow",
-];
-
-/// Whole families, by how their names begin: functions (`textureLod`), types (`sampler2D`, `mat4x3`) and what is generated.
-const FAMILIES: &[&str] =
-    &["gl_", "wgsl_", "texture", "texelFetch", "image", "atomicCounter", "memoryBarrier", "noise", "shadow1D", "shadow2D", "subgroup"];
-
-/// Prefixes of type names; what follows them in a type name is a digit or a shape.
-const TYPE_PREFIXES: &[&str] = &["", "i", "u"];
-const TYPE_STEMS: &[&str] = &["sampler", "texture", "image"];
-const SHAPES: &[&str] = &["1D", "2D", "3D", "Cube", "Buffer"];
-
-/// May not be used as any name at all, not even of a field.
-pub fn is_keyword(name: &str) -> bool {
-    KEYWORDS.contains(&name) || name.starts_with("gl_") || name.contains("__") || is_matrix(name) || is_opaque(name)
-}
-
-/// May not be used as the name of a function, variable or type.
-pub fn is_reserved(name: &str) -> bool {
-    is_keyword(name) || FUNCTIONS.contains(&name) || FAMILIES.iter().any(|family| is_of_family(name, family))
-}
-
-/// `texture` and `textureLod` are of the family `texture`; `textured` and `texture_size` are not.
-fn is_of_family(name: &str, family: &str) -> bool {
-    let Some(rest) = name.strip_prefix(family) else { return false };
-    family.ends_with('_') || !rest.starts_with(|c: char| c == '_' || c.is_lowercase())
-}
-
-/// `mat4`, `mat3x2`, `dmat4`, `dvec3`.
-fn is_matrix(name: &str) -> bool {
-    let shape = ["mat", "dmat", "dvec", "f16mat", "f16vec", "u64vec", "i64vec", "u16vec", "i16vec", "u8vec", "i8vec"].iter().find_map(|stem| name.strip_prefix(stem));
-    shape.is_some_and(|shape| shape.len() <= 3 && shape.starts_with(['2', '3', '4']))
-}
-
-/// `sampler2DMSArray`, `uimageBuffer` and their kin.
-fn is_opaque(name: &str) -> bool {
-    TYPE_PREFIXES.iter().any(|prefix| {
-        let Some(rest) = name.strip_prefix(prefix) else { return false };
-        TYPE_STEMS.iter().any(|stem| rest.strip_prefix(stem).is_some_and(|shape| SHAPES.iter().any(|known| shape.starts_with(known))))
-    })
-}
 
 /// A name that may be written, before asking whether it is taken.
 pub fn legal(name: &str, reserved: impl Fn(&str) -> bool) -> String {
@@ -101,6 +30,13 @@ pub fn legal(name: &str, reserved: impl Fn(&str) -> bool) -> String {
         text.push(if text.ends_with('_') { 'x' } else { '_' });
     }
     text
+}
+
+/// Whether a name may be written as it is.
+fn is_legal(name: &str) -> bool {
+    let plain = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+        && !name.starts_with(|c: char| c.is_ascii_digit());
+    plain && !name.is_empty() && !name.contains("__") && !name.starts_with("wgsl_") && !is_reserved(name)
 }
 
 /// The first of `name`, `name_2`, `name_3`, … that is not taken.
@@ -134,7 +70,8 @@ pub struct GlobalNames {
 impl GlobalNames {
     /// Takes a new name at module scope.
     pub fn declare(&mut self, name: &str) -> String {
-        let name = free(&legal(name, is_reserved), |candidate| self.taken.contains(candidate));
+        let legal = if is_legal(name) { name.to_owned() } else { legal(name, is_reserved) };
+        let name = free(&legal, |candidate| self.taken.contains(candidate));
         self.taken.insert(name.clone());
         name
     }
@@ -160,7 +97,7 @@ pub fn field(members: &[naga::StructMember], index: usize) -> String {
 pub fn global_names(module: &Module) -> GlobalNames {
     let mut names = GlobalNames::default();
     for keep in [true, false] {
-        let wanted = |name: &Option<String>| name.clone().filter(|name| (legal(name, is_reserved) == *name) == keep);
+        let wanted = |name: &Option<String>| name.clone().filter(|name| is_legal(name) == keep);
         for (handle, ty) in module.types.iter() {
             if let (Some(name), TypeInner::Struct { .. }) = (wanted(&ty.name), &ty.inner) {
                 let name = names.declare(&name);
@@ -203,7 +140,19 @@ mod tests {
 
     #[test]
     fn reserved_names_are_mangled() {
-        for name in ["mix", "sample", "input", "texture", "textureLod", "sampler2DMS", "mat4x3", "dvec2", "image2D", "imageStore", "main"] {
+        for name in [
+            "mix",
+            "sample",
+            "input",
+            "texture",
+            "textureLod",
+            "sampler2DMS",
+            "mat4x3",
+            "dvec2",
+            "image2D",
+            "imageStore",
+            "main",
+        ] {
             assert!(is_reserved(name), "{name}");
             assert_eq!(legal(name, is_reserved), format!("{name}_"));
         }

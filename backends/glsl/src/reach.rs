@@ -9,7 +9,11 @@ use naga::{Function, Handle, Module, Statement};
 use crate::footprint::visit;
 
 /// Functions reached from a body, without markers and what only they call.
-pub fn reached(module: &Module, body: &naga::Block, is_marker: &impl Fn(Handle<Function>) -> bool) -> BTreeSet<Handle<Function>> {
+pub fn reached(
+    module: &Module,
+    body: &naga::Block,
+    is_marker: &impl Fn(Handle<Function>) -> bool,
+) -> BTreeSet<Handle<Function>> {
     let mut found = BTreeSet::new();
     let mut open = callees(body);
     while let Some(function) = open.pop() {

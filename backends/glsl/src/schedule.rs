@@ -9,23 +9,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use naga::{AddressSpace, BinaryOperator, Block, Expression, Handle, Literal, LocalVariable, Statement};
+use naga::{AddressSpace, Expression, Handle, LocalVariable, Statement};
 
 use crate::analysis::{Order, Use};
+use crate::candidates::{Circuit, Circuits, Compound, find_circuits, find_compound};
 use crate::footprint::{self, Footprint, Place};
-
-/// `left && right` or `left || right`, which naga has lowered to an `if` that stores to a nameless variable.
-#[derive(Clone, Copy)]
-pub struct Circuit {
-    pub operator: BinaryOperator,
-    pub left: Handle<Expression>,
-    pub right: Handle<Expression>,
-    pub variable: Handle<LocalVariable>,
-    /// The expression that loads the variable, which stands for the whole.
-    pub value: Handle<Expression>,
-    first: usize,
-    end: usize,
-}
 
 #[derive(Default)]
 pub struct Plan {
@@ -53,103 +41,16 @@ pub fn plan(order: &Order) -> Plan {
     let mut compound = find_compound(order);
     loop {
         let decided = Decision::new(order, &circuits, &compound).decide();
-        let bad_circuits: Vec<_> = circuits.values().filter(|circuit| !decided.fits(circuit)).map(|circuit| circuit.value).collect();
-        let bad_stores: Vec<_> = compound.iter().filter(|(step, parts)| !decided.absorbs(**step, **parts)).map(|(step, _)| *step).collect();
+        let bad_circuits: Vec<_> =
+            circuits.values().filter(|circuit| !decided.fits(circuit)).map(|circuit| circuit.value).collect();
+        let bad_stores: Vec<_> =
+            compound.iter().filter(|(step, parts)| !decided.absorbs(**step, **parts)).map(|(step, _)| *step).collect();
         if bad_circuits.is_empty() && bad_stores.is_empty() {
             return decided.into_plan();
         }
         circuits.retain(|value, _| !bad_circuits.contains(value));
         compound.retain(|step, _| !bad_stores.contains(step));
     }
-}
-
-type Circuits = BTreeMap<Handle<Expression>, Circuit>;
-/// The value and the load within it of each store of the form `x = x op y`.
-type Compound = BTreeMap<usize, (Handle<Expression>, Handle<Expression>)>;
-
-fn find_circuits(order: &Order) -> Circuits {
-    let mut found = Circuits::new();
-    for (step, entry) in order.steps.iter().enumerate() {
-        let Some(Statement::If { condition, accept, reject }) = entry.statement else { continue };
-        let Some((variable, right)) = last_store(order, accept) else { continue };
-        let Some((same, otherwise)) = last_store(order, reject) else { continue };
-        let nameless = order.function.local_variables[variable].name.is_none();
-        let Expression::Literal(Literal::Bool(short)) = order.function.expressions[otherwise] else { continue };
-        if same != variable || !nameless || reject.len() != 1 {
-            continue;
-        }
-        let (operator, left) = match (short, &order.function.expressions[*condition]) {
-            (false, _) => (BinaryOperator::LogicalAnd, *condition),
-            (true, Expression::Unary { op: naga::UnaryOperator::LogicalNot, expr }) => (BinaryOperator::LogicalOr, *expr),
-            _ => continue,
-        };
-        let Some(value) = only_load(order, variable, entry.block) else { continue };
-        let end = step + 1 + count_steps(order, step);
-        found.insert(value, Circuit { operator, left, right, variable, value, first: step, end });
-    }
-    found
-}
-
-/// Steps inside the statement at `step`.
-fn count_steps(order: &Order, step: usize) -> usize {
-    let inside = |mut block: usize| loop {
-        if block != 0 && order.blocks[block].owner == step {
-            return true;
-        }
-        match order.blocks[block].parent {
-            Some(parent) => block = parent,
-            None => return false,
-        }
-    };
-    order.steps[step + 1..].iter().take_while(|entry| inside(entry.block)).count()
-}
-
-fn last_store(order: &Order, block: &Block) -> Option<(Handle<LocalVariable>, Handle<Expression>)> {
-    let Some(Statement::Store { pointer, value }) = block.last() else { return None };
-    match order.function.expressions[*pointer] {
-        Expression::LocalVariable(local) => Some((local, *value)),
-        _ => None,
-    }
-}
-
-/// The single load of a variable, if it is in the given block.
-fn only_load(order: &Order, variable: Handle<LocalVariable>, block: usize) -> Option<Handle<Expression>> {
-    let mut loads = order.function.expressions.iter().filter(|(_, expression)| {
-        matches!(expression, Expression::Load { pointer } if order.function.expressions[*pointer] == Expression::LocalVariable(variable))
-    });
-    let (load, _) = loads.next()?;
-    let step = *order.evaluated.get(&load)?;
-    (loads.next().is_none() && order.steps[step].block == block).then_some(load)
-}
-
-fn find_compound(order: &Order) -> Compound {
-    let mut found = Compound::new();
-    for (step, entry) in order.steps.iter().enumerate() {
-        let Some(statement @ Statement::Store { pointer, value }) = entry.statement else { continue };
-        let Expression::Binary { op, left, .. } = order.function.expressions[*value] else { continue };
-        let Expression::Load { pointer: loaded } = order.function.expressions[left] else { continue };
-        let single = |expression| order.uses.get(&expression).is_some_and(|uses| uses.len() == 1);
-        let nameless = |expression| !order.function.named_expressions.contains_key(&expression);
-        let unlike = footprint::is_atomic(order.module, order.function, *pointer);
-        if loaded == *pointer && can_assign(op) && single(*value) && single(left) && nameless(*value) && nameless(left) && !unlike && is_written_so(order, statement) {
-            found.insert(step, (*value, left));
-        }
-    }
-    found
-}
-
-/// Whether the source has `x op= y` or `x++` here; without a source, it might have.
-fn is_written_so(order: &Order, statement: &Statement) -> bool {
-    let Statement::Store { value, .. } = statement else { return false };
-    let range = order.function.expressions.get_span(*value).to_range();
-    let written = range.and_then(|range| order.source.get(range)).unwrap_or_default();
-    written.is_empty() || ["+=", "-=", "*=", "&=", "|=", "^=", "++", "--"].iter().any(|operator| written.contains(operator))
-}
-
-/// Division, remainder and shifts are left out: they need more than GLSL's operator.
-fn can_assign(op: BinaryOperator) -> bool {
-    use BinaryOperator::{Add, And, ExclusiveOr, InclusiveOr, Multiply, Subtract};
-    matches!(op, Add | Subtract | Multiply | And | ExclusiveOr | InclusiveOr)
 }
 
 #[derive(Clone, Copy)]
@@ -215,7 +116,10 @@ impl<'a, 'm> Decision<'a, 'm> {
     }
 
     fn must_bake(&self, expression: Handle<Expression>) -> bool {
-        if !self.order.evaluated.contains_key(&expression) || self.order.is_pointer(expression) || self.is_opaque(expression) {
+        if !self.order.evaluated.contains_key(&expression)
+            || self.order.is_pointer(expression)
+            || self.is_opaque(expression)
+        {
             return false;
         }
         if name_of(self.order, expression).is_some() {
@@ -248,7 +152,10 @@ impl<'a, 'm> Decision<'a, 'm> {
             Expression::AccessIndex { base, .. } => self.is_cheap_pointer(base),
             Expression::LocalVariable(_) | Expression::FunctionArgument(_) => true,
             Expression::GlobalVariable(global) => {
-                matches!(self.order.module.global_variables[global].space, AddressSpace::Private | AddressSpace::Uniform)
+                matches!(
+                    self.order.module.global_variables[global].space,
+                    AddressSpace::Private | AddressSpace::Uniform
+                )
             }
             _ => false,
         }
@@ -284,7 +191,9 @@ impl<'a, 'm> Decision<'a, 'm> {
     }
 
     fn is_inner_variable(&self, circuit: &Circuit, place: Place) -> bool {
-        let inner = |other: &Circuit| place == Place::Local(other.variable) && circuit.first < other.first && other.end <= circuit.end;
+        let inner = |other: &Circuit| {
+            place == Place::Local(other.variable) && circuit.first < other.first && other.end <= circuit.end
+        };
         self.circuits.values().any(inner)
     }
 
@@ -292,7 +201,8 @@ impl<'a, 'm> Decision<'a, 'm> {
         if name_of(self.order, expression).is_some() {
             return;
         }
-        let is_result = self.order.evaluated.get(&expression).is_some_and(|step| self.order.steps[*step].statement.is_some());
+        let is_result =
+            self.order.evaluated.get(&expression).is_some_and(|step| self.order.steps[*step].statement.is_some());
         if is_result || self.circuits.contains_key(&expression) {
             footprint.join(&self.origin(expression).map(|(_, _, own)| own).unwrap_or_default());
             return;
@@ -309,7 +219,13 @@ impl<'a, 'm> Decision<'a, 'm> {
         spots.iter().all(|spot| self.may_move_to(expression, (step, after), &footprint, *spot))
     }
 
-    fn may_move_to(&self, expression: Handle<Expression>, (step, after): (usize, usize), footprint: &Footprint, to: Spot) -> bool {
+    fn may_move_to(
+        &self,
+        expression: Handle<Expression>,
+        (step, after): (usize, usize),
+        footprint: &Footprint,
+        to: Spot,
+    ) -> bool {
         let Some(target) = self.order.steps.get(to.step) else { return false };
         let home = self.order.steps[step].block;
         let Some(enters_loop) = self.path(home, target.block) else { return false };
@@ -341,17 +257,24 @@ impl<'a, 'm> Decision<'a, 'm> {
     /// Whether everything the short circuit's right side needs can be written within it.
     fn fits(&self, circuit: &Circuit) -> bool {
         let steps = circuit.first + 1..circuit.end;
-        let baked = self.order.evaluated.iter().any(|(expression, step)| steps.contains(step) && self.baked.contains(expression));
+        let baked = self
+            .order
+            .evaluated
+            .iter()
+            .any(|(expression, step)| steps.contains(step) && self.baked.contains(expression));
         let statements = steps.clone().all(|step| match self.order.steps[step].statement {
             None => true,
             Some(Statement::Store { .. }) => self.is_circuit_store(step),
-            Some(Statement::If { .. }) => self.circuits.values().any(|other| other.first == step && !self.baked.contains(&other.value)),
+            Some(Statement::If { .. }) => {
+                self.circuits.values().any(|other| other.first == step && !self.baked.contains(&other.value))
+            }
             Some(Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. }) => {
                 self.times.get(result) == Some(&1)
             }
             Some(_) => false,
         });
-        let used = self.baked.contains(&circuit.value) || self.times.get(&circuit.value).is_some_and(|times| *times > 0);
+        let used =
+            self.baked.contains(&circuit.value) || self.times.get(&circuit.value).is_some_and(|times| *times > 0);
         !baked && statements && used
     }
 

@@ -3,7 +3,7 @@
 //! In: a block. Out: its lines, with declarations where `locals` wants them, variables for baked expressions where they
 //! are evaluated, and the comments of the source above and behind the statements they belong to.
 
-use naga::{ArraySize, Barrier, Block, Expression, Handle, Literal, LocalVariable, Span, Statement, TypeInner};
+use naga::{Barrier, Block, Expression, Handle, Literal, Span, Statement};
 
 use crate::Marker;
 use crate::expression::Text;
@@ -17,7 +17,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
 
     /// As [`Self::statements`], beginning at a statement of the block.
     pub fn statements_from(&mut self, block: &'m Block, start: usize, tail: bool) {
-        let statements: Vec<(&'m Statement, Span)> = block.span_iter().map(|(statement, span)| (statement, *span)).collect();
+        let statements: Vec<(&'m Statement, Span)> =
+            block.span_iter().map(|(statement, span)| (statement, *span)).collect();
         let mut initialiser = None;
         for (index, (statement, span)) in statements.iter().copied().enumerate().skip(start) {
             let last = index + 1 == statements.len();
@@ -32,77 +33,33 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 self.statement(statement, span, tail && last);
             }
         }
-        let last = statements.iter().skip(start).rev().find(|(statement, span)| span.is_defined() && !matches!(statement, Statement::Block(_)));
+        let last = statements
+            .iter()
+            .skip(start)
+            .rev()
+            .find(|(statement, span)| span.is_defined() && !matches!(statement, Statement::Block(_)));
         if let Some((_, span)) = last {
             self.leftover(*span);
         }
     }
 
-    /// Declares the variables that belong before a statement; the one in a `for` header is handed back instead.
-    fn declarations_before(&mut self, statement: &Statement, span: Span) -> Option<String> {
-        let step = self.order.step_of(statement);
-        let mut in_header = None;
-        for local in self.declarations.before.remove(&step).unwrap_or_default() {
-            let declared = self.function.local_variables.get_span(local);
-            if matches!(statement, Statement::Loop { .. }) && contains(span, declared) && in_header.is_none() {
-                self.lead(span);
-                self.enter();
-                in_header = Some(self.declare_local(local, None));
-                continue;
-            }
-            self.lead(declared);
-            let text = self.declare_local(local, None);
-            self.line(text + ";");
-            self.zero_long_array(local);
-            self.trail(declared);
-        }
-        in_header
-    }
-
-    /// `uint count = 0u`, with the given value or the variable's constant one.
-    fn declare_local(&mut self, local: Handle<LocalVariable>, value: Option<String>) -> String {
-        let variable = &self.function.local_variables[local];
-        let name = self.declare(variable.name.as_deref().unwrap_or("condition"));
-        self.locals.insert(local, name.clone());
-        let declaration = self.printer.declaration(variable.ty, &name, self.function.local_variables.get_span(local));
-        let value = match (value, variable.init) {
-            (Some(value), _) => value,
-            (None, Some(init)) => self.expression(init),
-            (None, None) if self.is_long_array(local) => return declaration,
-            (None, None) => self.printer.zero(variable.ty, self.function.local_variables.get_span(local)),
-        };
-        format!("{declaration} = {value}")
-    }
-
-    fn is_long_array(&self, local: Handle<LocalVariable>) -> bool {
-        let variable = &self.function.local_variables[local];
-        variable.init.is_none() && self.printer.is_long_array(variable.ty)
-    }
-
-    /// WGSL's variables begin as zero, GLSL's as anything.
-    fn zero_long_array(&mut self, local: Handle<LocalVariable>) {
-        let variable = &self.function.local_variables[local];
-        let TypeInner::Array { base, size: ArraySize::Constant(size), .. } = self.printer.module.types[variable.ty].inner else { return };
-        if !self.is_long_array(local) {
-            return;
-        }
-        let zero = self.printer.zero(base, self.function.local_variables.get_span(local));
-        let name = self.locals.get(&local).cloned().unwrap_or_default();
-        self.enter();
-        let index = self.declare("index");
-        self.line(format!("for (uint {index} = 0u; {index} < {size}u; {index}++) {{"));
-        self.line(format!("    {name}[{index}] = {zero};"));
-        self.line("}");
-        self.leave();
-    }
-
     /// The first part of a `for` header, if the statement is that: written inside the header of the loop that follows.
-    fn initialiser_before(&mut self, statement: &'m Statement, span: Span, rest: &[(&'m Statement, Span)]) -> Option<String> {
+    fn initialiser_before(
+        &mut self,
+        statement: &'m Statement,
+        span: Span,
+        rest: &[(&'m Statement, Span)],
+    ) -> Option<String> {
         let (header, loop_span) = rest.iter().find(|(next, _)| !self.is_silent(next))?;
-        let simple = matches!(statement, Statement::Store { .. } | Statement::Call { .. }) && !self.is_silent(statement);
+        let simple =
+            matches!(statement, Statement::Store { .. } | Statement::Call { .. }) && !self.is_silent(statement);
         let for_loop = matches!(header, Statement::Loop { .. }) && contains(*loop_span, span);
         // A variable that the header declared would end with the loop.
-        let declared = self.declarations.by_store.get(&self.order.step_of(statement)).map(|local| self.function.local_variables.get_span(*local));
+        let declared = self
+            .declarations
+            .by_store
+            .get(&self.order.step_of(statement))
+            .map(|local| self.function.local_variables.get_span(*local));
         let outlives = declared.is_some_and(|declared| !contains(*loop_span, declared));
         if !simple || !for_loop || outlives || self.is_long_zero(statement) {
             return None;
@@ -123,11 +80,14 @@ impl<'m> FunctionPrinter<'_, 'm> {
     /// Whether a statement prints nothing where it stands.
     pub fn is_silent(&self, statement: &Statement) -> bool {
         let step = self.order.step_of(statement);
-        let inlined = |result: &Handle<Expression>| self.plan.live.contains(result) && !self.plan.baked.contains(result);
+        let inlined =
+            |result: &Handle<Expression>| self.plan.live.contains(result) && !self.plan.baked.contains(result);
         let own = match statement {
             Statement::Emit(range) => !range.clone().any(|expression| self.is_baked_here(expression)),
             Statement::If { .. } => self.plan.circuit_steps.get(&step).is_some_and(inlined),
-            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => inlined(result),
+            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => {
+                inlined(result)
+            }
             _ => false,
         };
         own && !self.declarations.before.contains_key(&step)
@@ -153,7 +113,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
                     self.bake(value, span);
                 }
             }
-            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } if self.plan.baked.contains(result) => {
+            Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. }
+                if self.plan.baked.contains(result) =>
+            {
                 self.bake(*result, span);
             }
             Statement::Block(block) => {
@@ -220,7 +182,10 @@ impl<'m> FunctionPrinter<'_, 'm> {
             Expression::AtomicResult { .. } => "old_value".to_owned(),
             Expression::Load { pointer } => match crate::footprint::root(self.printer.module, self.function, pointer) {
                 Some(crate::footprint::Place::Global(global) | crate::footprint::Place::Private(global)) => {
-                    format!("{}_value", self.printer.module.global_variables[global].name.as_deref().unwrap_or("loaded"))
+                    format!(
+                        "{}_value",
+                        self.printer.module.global_variables[global].name.as_deref().unwrap_or("loaded")
+                    )
                 }
                 Some(crate::footprint::Place::Local(local)) => {
                     format!("{}_value", self.function.local_variables[local].name.as_deref().unwrap_or("loaded"))
@@ -242,7 +207,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 self.check_compare_exchange(result);
                 self.atomic(statement)
             }
-            Statement::ImageStore { image, coordinate, array_index, value } => self.image_store(image, coordinate, array_index, value),
+            Statement::ImageStore { image, coordinate, array_index, value } => {
+                self.image_store(image, coordinate, array_index, value)
+            }
             Statement::ControlBarrier(barrier) => barrier_text(barrier, true),
             Statement::MemoryBarrier(barrier) => barrier_text(barrier, false),
             _ => return None,
@@ -252,7 +219,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
     fn check_compare_exchange(&mut self, result: Option<Handle<Expression>>) {
         let Some(result) = result.filter(|result| self.order.compared.contains_key(result)) else { return };
         let members_only = self.order.uses.get(&result).into_iter().flatten().all(|used| match used {
-            crate::analysis::Use::Expression { user, .. } => matches!(self.function.expressions[*user], Expression::AccessIndex { .. }),
+            crate::analysis::Use::Expression { user, .. } => {
+                matches!(self.function.expressions[*user], Expression::AccessIndex { .. })
+            }
             crate::analysis::Use::Step { .. } => false,
         });
         if !members_only {
@@ -324,7 +293,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
     fn critical(&mut self, statement: &Statement, marker: Marker) -> String {
         let block = self.order.steps[self.order.step_of(statement)].block;
         if self.interface.is_none() || block != 0 {
-            self.printer.error("the border of a critical section outside the top level of the entry point", Span::UNDEFINED);
+            self.printer
+                .error("the border of a critical section outside the top level of the entry point", Span::UNDEFINED);
         }
         self.printer.needs.extensions.insert("GL_ARB_fragment_shader_interlock");
         let layout = match marker {
@@ -348,7 +318,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
 }
 
 /// Whether a span lies inside another.
-fn contains(outer: Span, inner: Span) -> bool {
+/// Whether a place of the source lies inside another.
+pub fn contains(outer: Span, inner: Span) -> bool {
     match (outer.to_range(), inner.to_range()) {
         (Some(outer), Some(inner)) => outer.start <= inner.start && inner.end <= outer.end,
         _ => false,

@@ -3,7 +3,9 @@
 //! Vulkan's dialect keeps textures and samplers apart, as WGSL does. OpenGL has combined samplers only: a texture takes
 //! along the one sampler it is used with, and one that is used with several cannot be printed.
 
-use naga::{Expression, GlobalVariable, Handle, ImageClass, ImageDimension, ImageQuery, SampleLevel, ScalarKind, TypeInner};
+use naga::{
+    Expression, GlobalVariable, Handle, ImageClass, ImageDimension, ImageQuery, SampleLevel, ScalarKind, TypeInner,
+};
 
 use crate::expression::Text;
 use crate::function::FunctionPrinter;
@@ -44,13 +46,25 @@ impl FunctionPrinter<'_, '_> {
 
     pub fn texture(&mut self, expression: Handle<Expression>) -> Text {
         let text = match self.function.expressions[expression] {
-            Expression::ImageSample { image, sampler, gather, coordinate, array_index, offset, level, depth_ref, clamp_to_edge } => {
+            Expression::ImageSample {
+                image,
+                sampler,
+                gather,
+                coordinate,
+                array_index,
+                offset,
+                level,
+                depth_ref,
+                clamp_to_edge,
+            } => {
                 if clamp_to_edge {
                     self.error("textureSampleBaseClampToEdge", expression);
                 }
                 self.sample(image, sampler, &Sample { coordinate, array_index, offset, level, depth_ref, gather })
             }
-            Expression::ImageLoad { image, coordinate, array_index, sample, level } => self.image_load(image, coordinate, array_index, sample, level),
+            Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+                self.image_load(image, coordinate, array_index, sample, level)
+            }
             Expression::ImageQuery { image, query } => self.image_query(expression, image, query),
             _ => None,
         };
@@ -72,7 +86,8 @@ impl FunctionPrinter<'_, '_> {
         let texture = self.name(image.global);
         if self.printer.vulkan() {
             self.printer.needs.globals.insert(sampler_global);
-            let stem = format!("{}sampler{}{}", prefix(image.class), shape(image), if comparison { "Shadow" } else { "" });
+            let stem =
+                format!("{}sampler{}{}", prefix(image.class), shape(image), if comparison { "Shadow" } else { "" });
             return Some(format!("{stem}({texture}, {})", self.name(sampler_global)));
         }
         let before = self.printer.needs.combined.insert(image.global, (sampler_global, comparison));
@@ -206,11 +221,17 @@ impl FunctionPrinter<'_, '_> {
         format!("imageStore({texture}, {texel}, {value})")
     }
 
-    fn image_query(&mut self, expression: Handle<Expression>, image: Handle<Expression>, query: ImageQuery) -> Option<String> {
+    fn image_query(
+        &mut self,
+        expression: Handle<Expression>,
+        image: Handle<Expression>,
+        query: ImageQuery,
+    ) -> Option<String> {
         let image = self.image(image)?;
         let texture = self.name(image.global);
         let storage = matches!(image.class, ImageClass::Storage { .. });
-        let multisampled = matches!(image.class, ImageClass::Sampled { multi: true, .. } | ImageClass::Depth { multi: true });
+        let multisampled =
+            matches!(image.class, ImageClass::Sampled { multi: true, .. } | ImageClass::Depth { multi: true });
         if self.printer.vulkan() && !storage {
             self.printer.needs.extensions.insert(SAMPLERLESS);
         }

@@ -19,7 +19,12 @@ pub fn print(printer: &mut Printer, unit: Unit) -> String {
     let calls = of_functions(module, |function| printer.marker(function));
     match unit {
         Unit::Library => {
-            let functions = module.functions.iter().map(|(handle, _)| handle).filter(|handle| printer.marker(*handle).is_none()).collect();
+            let functions = module
+                .functions
+                .iter()
+                .map(|(handle, _)| handle)
+                .filter(|handle| printer.marker(*handle).is_none())
+                .collect();
             let bodies = print_functions(printer, &functions, &calls);
             assemble(printer, Vec::new(), Vec::new(), bodies, false)
         }
@@ -61,8 +66,13 @@ fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls
         let name = inner.declare(argument.name.as_deref().unwrap_or("argument"));
         inner.arguments.push(name.clone());
         let (qualifier, ty) = match inner.printer.module.types[argument.ty].inner {
-            TypeInner::Pointer { base, space: naga::AddressSpace::Function | naga::AddressSpace::Private } => ("inout ", base),
-            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } | TypeInner::Image { .. } | TypeInner::Sampler { .. } => {
+            TypeInner::Pointer { base, space: naga::AddressSpace::Function | naga::AddressSpace::Private } => {
+                ("inout ", base)
+            }
+            TypeInner::Pointer { .. }
+            | TypeInner::ValuePointer { .. }
+            | TypeInner::Image { .. }
+            | TypeInner::Sampler { .. } => {
                 inner.printer.error(format!("the argument `{name}`, of a type that GLSL cannot pass"), Span::UNDEFINED);
                 continue;
             }
@@ -103,7 +113,8 @@ fn print_main(printer: &mut Printer, index: usize, calls: &Calls) -> (Vec<String
 /// What makes those variables zero at first, as WGSL has them, that GLSL gives no initial value.
 fn zeros(printer: &mut Printer) -> Vec<String> {
     let module = printer.module;
-    let shared = |handle: &Handle<GlobalVariable>| module.global_variables[*handle].space == naga::AddressSpace::WorkGroup;
+    let shared =
+        |handle: &Handle<GlobalVariable>| module.global_variables[*handle].space == naga::AddressSpace::WorkGroup;
     let (shared, private): (Vec<_>, Vec<_>) = printer.needs.globals.iter().copied().partition(shared);
     let mut lines = Vec::new();
     for handle in private.into_iter().filter(|handle| printer.is_long_private_array(*handle)).collect::<Vec<_>>() {
@@ -168,10 +179,17 @@ fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
 }
 
 /// Puts all parts together, each top-level item after a free line; one-line declarations of a kind stay together.
-fn assemble(printer: &mut Printer, mut stage: Vec<String>, interface: Vec<String>, bodies: Vec<Vec<String>>, versioned: bool) -> String {
+fn assemble(
+    printer: &mut Printer,
+    mut stage: Vec<String>,
+    interface: Vec<String>,
+    bodies: Vec<Vec<String>>,
+    versioned: bool,
+) -> String {
     stage.extend(printer.needs.interlock.map(|interlock| format!("layout({interlock}) in;")));
     let (structures, constants, globals) = declarations(printer);
-    let helpers: Vec<_> = printer.needs.helpers.iter().map(|helper| if versioned { helper.text() } else { helper.guarded() }).collect();
+    let helpers: Vec<_> =
+        printer.needs.helpers.iter().map(|helper| if versioned { helper.text() } else { helper.guarded() }).collect();
 
     let mut sections: Vec<Vec<String>> = Vec::new();
     let mut head = Vec::new();
@@ -188,7 +206,8 @@ fn assemble(printer: &mut Printer, mut stage: Vec<String>, interface: Vec<String
     sections.extend(grouped(globals));
     sections.extend(helpers.iter().map(|text| text.lines().map(str::to_owned).collect()));
     sections.extend(bodies);
-    let texts: Vec<String> = sections.into_iter().filter(|lines| !lines.is_empty()).map(|lines| lines.join("\n")).collect();
+    let texts: Vec<String> =
+        sections.into_iter().filter(|lines| !lines.is_empty()).map(|lines| lines.join("\n")).collect();
     texts.join("\n\n") + "\n"
 }
 
@@ -199,7 +218,8 @@ fn declarations(printer: &mut Printer) -> (Items, Items, Items) {
     let globals = printer.needs.globals.clone().into_iter().map(|handle| printer.global_declaration(handle)).collect();
     loop {
         let before = (printer.needs.types.len(), printer.needs.constants.len());
-        let constants = printer.needs.constants.clone().into_iter().map(|handle| printer.constant_declaration(handle)).collect();
+        let constants =
+            printer.needs.constants.clone().into_iter().map(|handle| printer.constant_declaration(handle)).collect();
         let structures = printer.needs.types.clone().into_iter().map(|handle| printer.structure(handle)).collect();
         if before == (printer.needs.types.len(), printer.needs.constants.len()) {
             return (structures, constants, globals);

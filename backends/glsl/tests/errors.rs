@@ -85,9 +85,12 @@ fn errors_have_a_place() {
 #[test]
 fn reserved_names_are_accepted_as_wgsl_names() {
     let words = include_str!("glsl_reserved.txt").split_whitespace();
-    let usable: Vec<&str> = words.filter(|word| !naga::keywords::wgsl::RESERVED.contains(word) && !word.starts_with("gl_")).collect();
+    let usable: Vec<&str> =
+        words.filter(|word| !naga::keywords::wgsl::RESERVED.contains(word) && !word.starts_with("gl_")).collect();
     let lets: String = usable.iter().map(|word| format!("    let {word} = a[0];\n    a[1] = {word};\n")).collect();
-    let source = format!("@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n@compute @workgroup_size(1) fn entry() {{\n{lets}}}\n");
+    let source = format!(
+        "@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n@compute @workgroup_size(1) fn entry() {{\n{lets}}}\n"
+    );
     for dialect in BOTH {
         let text = print(&source, Unit::EntryPoint("entry"), dialect).unwrap_or_else(|errors| panic!("{errors:?}"));
         accept(&text, "reserved_locals", "comp", dialect).unwrap_or_else(|message| panic!("{message}"));

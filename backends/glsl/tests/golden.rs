@@ -531,9 +531,13 @@ fn header_stands_below_the_version() {
     let (module, info) = support::parse(source);
     let slot = |_, _| fragbuf_glsl::Slot::default();
     let header = "made by a test\nin two lines";
-    let options = fragbuf_glsl::Options { dialect: Dialect::Vulkan450, header, markers: &[], bindings: &slot, plain_loads: &[] };
+    let options =
+        fragbuf_glsl::Options { dialect: Dialect::Vulkan450, header, markers: &[], bindings: &slot, plain_loads: &[] };
     let text = fragbuf_glsl::print(&module, &info, source, Unit::EntryPoint("main"), &options).unwrap();
-    assert!(text.starts_with("#version 450\n\n// made by a test\n// in two lines\n\nlayout(local_size_x = 1"), "{text}");
+    assert!(
+        text.starts_with("#version 450\n\n// made by a test\n// in two lines\n\nlayout(local_size_x = 1"),
+        "{text}"
+    );
     let library = fragbuf_glsl::print(&module, &info, source, Unit::Library, &options).unwrap();
     let expected = "// made by a test\n// in two lines\n\n/// Doubles.\nuint twice(uint n) {\n    return n * 2u;\n}\n";
     assert_eq!(library, expected);
@@ -544,7 +548,8 @@ fn header_stands_below_the_version() {
 
 #[test]
 fn comments_above_functions_go_along() {
-    let source = "// The head of a file.\n\n// Two lines\n// about it.\nfn twice(n: u32) -> u32 {\n    return n * 2u;\n}\n";
+    let source =
+        "// The head of a file.\n\n// Two lines\n// about it.\nfn twice(n: u32) -> u32 {\n    return n * 2u;\n}\n";
     let text = print(source, Unit::Library, Dialect::OpenGl450).unwrap();
     assert_eq!(text, "// Two lines\n// about it.\nuint twice(uint n) {\n    return n * 2u;\n}\n");
 }

@@ -45,7 +45,8 @@ pub struct Cut {
 /// Where frames are resolved into.
 #[derive(Clone, Copy, Debug)]
 pub struct Output<'a> {
-    /// One sample per pixel, of the renderer's format and size. Colours written to it are premultiplied.
+    /// One sample per pixel, of the renderer's format and at least its size; the frame is its top left. Colours written to
+    /// it are premultiplied.
     pub view: &'a wgpu::TextureView,
     /// `Load`: over what is there; `Clear`: over this background.
     pub load: wgpu::LoadOp<wgpu::Color>,
@@ -153,6 +154,8 @@ impl Frame {
             pass.set_pipeline(pipeline);
         }
         pass.set_bind_group(renderer.group, group, &[]);
+        // Beyond the frame there is no memory to read: a greater output is left as it is, a smaller one refused.
+        pass.set_scissor_rect(0, 0, renderer.sized.symbols.width, renderer.sized.symbols.height);
         match prepared.pass.kind {
             Kind::Geometry => draw(&mut pass, &prepared.pass),
             _ => pass.draw(0..3, 0..1),

@@ -7,6 +7,9 @@
 //!                                               └──resume── Cut ◄─┘
 //! ```
 //!
+//! `examples/embed.rs` is a host that owns its device and the order of its passes. Whole frames, where blocking is
+//! possible, are [`Renderer::render`]; frames beyond a limit are made in slices ([`Renderer::fitting_height`]).
+//!
 //! Nothing here knows a technique by name, and nothing blocks, apart from [`Renderer::render`], [`block_on`] and
 //! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
 

@@ -29,10 +29,7 @@ impl Memory {
         symbols: &Symbols,
         old: Option<&Memory>,
     ) -> Result<Self, Error> {
-        let sizes = sizes(plan, symbols)?;
-        for (size, planned) in sizes.iter().zip(&plan.resources) {
-            check(&device.limits(), &planned.resource.name, *size)?;
-        }
+        let sizes = checked_sizes(plan, symbols, &device.limits())?;
         let mut held = Vec::with_capacity(sizes.len());
         for (index, (size, planned)) in sizes.into_iter().zip(&plan.resources).enumerate() {
             let kept = old.and_then(|old| old.held.get(index)).filter(|held| held.size == size);
@@ -70,11 +67,12 @@ fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
 }
 
-/// Bytes of every resource. What is counted later has no room yet.
-pub(crate) fn sizes(plan: &Plan, symbols: &Symbols) -> Result<Vec<u64>, Error> {
+/// Bytes of every resource, each within the limits. What is counted later has no room yet.
+pub(crate) fn checked_sizes(plan: &Plan, symbols: &Symbols, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
     let sizes = plan.resources.iter().map(|planned| {
-        let words = symbols.evaluate(plan, &planned.words, &format!("`{}`", planned.resource.name))?;
-        Ok(words.saturating_mul(4))
+        let name = &planned.resource.name;
+        let bytes = symbols.evaluate(plan, &planned.words, &format!("`{name}`"))?.saturating_mul(4);
+        check(limits, name, bytes).map(|()| bytes)
     });
     sizes.collect()
 }
@@ -91,6 +89,6 @@ fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {
         needed,
         limit,
         limit_name,
-        hint: "take a smaller frame, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
+        hint: "take a smaller frame or slices of it, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
     })
 }

@@ -11,7 +11,7 @@ use crate::blocks::{Blocks, IDENTITY};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::pattern::patterns;
 use crate::pipeline::{Maker, Pipeline, no_target};
-use crate::room::{automatic_room, counted};
+use crate::room::{automatic_room, fitting_height, symbols};
 use crate::scope::{is_lost, scoped};
 use crate::sized::Sized;
 use crate::symbols::Symbols;
@@ -82,9 +82,8 @@ impl Renderer {
         let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let names = passes.iter().map(|prepared| prepared.pass.anchor.clone()).collect();
         let timing = if timed { Some(Timing::new(device, queue, names).await?) } else { None };
-        let k = plan.frame.iter().any(|field| field == "k").then_some(plan.variant.keep).flatten();
-        let (counted, exact) = counted(&plan, &actions, settings)?;
-        let symbols = Symbols { width: settings.width, height: settings.height, k, counted };
+        let (symbols, exact) = symbols(&plan, &actions, settings)?;
+        let k = symbols.k;
         let uniforms = zeros(&plan.variant.uniforms);
         let make = || (Blocks::new(device, &plan, &uniforms), patterns(device, &actions));
         let (blocks, patterns) = scoped(device, "the uniform buffers", 0, make).await?;
@@ -110,6 +109,14 @@ impl Renderer {
         renderer.set_camera(&IDENTITY);
         renderer.write_uniforms();
         Ok(renderer)
+    }
+
+    /// The greatest height, up to that of `settings`, at which every buffer is within the device's limits: the rows of a
+    /// slice. A frame beyond the limits can be made of slices, by a renderer of that height and a draw function that moves
+    /// each to the top, with `set_viewport(0, -first_row, width, whole_height, 0, 1)`. A pool that is counted exactly is
+    /// not known yet, and may still be too large.
+    pub fn fitting_height(device: &wgpu::Device, shaders: &Shaders, settings: &Settings) -> Result<u32, Error> {
+        fitting_height(&shaders.plan, settings, &device.limits())
     }
 
     /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:

@@ -44,15 +44,15 @@ pub enum Code {
 }
 
 impl Shaders {
-    /// The WGSL of a linked program.
-    pub fn from_program(program: &Program) -> Self {
+    /// The WGSL of `plan`, linked.
+    pub fn from_program(plan: &Plan, program: &Program) -> Self {
         let modules = program.passes.iter().map(|pass| Module {
             pass: pass.anchor.clone(),
             entry_points: pass.entry_points.clone(),
             code: Code::Wgsl(pass.text.clone()),
         });
         Shaders {
-            plan: program.plan.clone(),
+            plan: plan.clone(),
             group: program.linking.group,
             profile: program.linking.profile,
             modules: modules.collect(),

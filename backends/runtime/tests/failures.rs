@@ -5,7 +5,7 @@ use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Settings, Sizing,
 use fragbuf_templates::vocabulary::{Host, Step};
 
 use crate::quads::{Quad, SIZE};
-use crate::stage::{FORMAT, device, renderer, see, settings, shaders, technique};
+use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
 
 fn fresh() -> Headless {
     Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap()
@@ -31,6 +31,11 @@ fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     assert_eq!((renderer.allocated_bytes(), renderer.symbol("width")), before);
     let quads = [Quad::whole(0.5, [1, 2, 3, 4])];
     assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
+    // The way out: as many rows as fit, and not one more.
+    let shaders = shaders(&technique("kplus_array", &[("k", "64")]), "wgsl");
+    let whole = Settings { width: side, height: side, ..settings() };
+    let rows = Renderer::fitting_height(&stage.device, &shaders, &whole).unwrap();
+    assert_eq!(u64::from(rows), (limit / (4 * 64 * u64::from(side))).min(u64::from(side)));
     let error = block_on(&stage.device, renderer.resize(side + 1, 1)).unwrap().unwrap_err();
     assert!(error.to_string().contains("max_texture_dimension_2d"), "{error}");
 }
@@ -96,6 +101,23 @@ fn code_and_settings_that_do_not_fit_are_values() {
     assert!(message(renderer(&stage, &good, &unblendable)).contains("pipeline of pass `resolve`"));
     let empty = Settings { width: 0, ..settings() };
     assert_eq!(message(renderer(&stage, &good, &empty)), "the frame's width must be at least 1");
+}
+
+#[test]
+fn an_output_of_another_size_is_never_read_beyond_the_frame() {
+    let stage = device();
+    let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[]), "wgsl"), &settings()).unwrap();
+    let quads = [Quad::whole(0.5, [255, 255, 255, 255])];
+    let greater = Offscreen::new(&stage.device, FORMAT, SIZE + 5, SIZE + 3).unwrap();
+    // Clip space is stretched over the attachment of the geometry pass alone.
+    draw_over(&stage, &mut renderer, &quads, &greater).unwrap();
+    for (index, [r, ..]) in greater.colors(&stage.device, &stage.queue).unwrap().into_iter().enumerate() {
+        let (x, y) = (index as u32 % (SIZE + 5), index as u32 / (SIZE + 5));
+        assert_eq!(r == 1.0, x < SIZE && y < SIZE, "pixel {x}, {y}");
+    }
+    let smaller = Offscreen::new(&stage.device, FORMAT, SIZE - 1, SIZE).unwrap();
+    assert!(message(draw_over(&stage, &mut renderer, &quads, &smaller)).contains("wgpu refuses the frame's commands"));
+    assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1), "the next frame is a good one");
 }
 
 #[test]

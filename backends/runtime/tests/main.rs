@@ -18,6 +18,7 @@ mod stage;
 mod capture;
 mod embedding;
 mod failures;
+mod larger;
 mod rasterisation;
 mod sizing;
 mod sloped;

@@ -6,7 +6,7 @@ use fragbuf_runtime::{Error, Output, Recorded, Renderer, Settings, Sizing, block
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, kept_words, total};
 use crate::quads::{Quad, SIZE, vertices};
-use crate::stage::{FORMAT, device, draw, renderer, see, settings, shaders, technique};
+use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
@@ -75,8 +75,8 @@ fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
 fn what_is_kept_culled_and_displaced_is_all_there_was() {
     let stage = device();
     let quads = scattered(8, 9);
-    for key in ["kplus_array", "kb"] {
-        let mut renderer = open(&stage, key, &[("k", "2"), ("counters", "all")], Sizing::Auto).unwrap();
+    for (key, k) in [("kplus_array", "1"), ("kplus_array", "2"), ("kb", "1"), ("kb", "2"), ("kb", "5")] {
+        let mut renderer = open(&stage, key, &[("k", k), ("counters", "all")], Sizing::Auto).unwrap();
         let seen = see(&stage, &mut renderer, &quads);
         let count = |name| seen.counters.get(name) as usize;
         let kept: usize = seen.kept.iter().map(Vec::len).sum();
@@ -165,7 +165,7 @@ fn several_frames_in_flight_see_their_own_scenes() {
     let scenes: Vec<Vec<Quad>> = (0..3).map(|seed| scattered(5, seed)).collect();
     for (quads, target) in scenes.iter().zip(&targets) {
         assert!(!vertices(quads, renderer.vertex_inputs()).is_empty());
-        draw(&stage, &mut renderer, quads, target).unwrap();
+        draw_over(&stage, &mut renderer, quads, target).unwrap();
     }
     for (quads, target) in scenes.iter().zip(&targets) {
         let alone = see(&stage, &mut renderer, quads).pixels;

@@ -72,7 +72,7 @@ pub struct Seen {
 pub fn see(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Seen {
     let Headless { device, queue, .. } = stage;
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
-    draw(stage, renderer, quads, &offscreen).unwrap();
+    draw_over(stage, renderer, quads, &offscreen).unwrap();
     let counters = read_counters(stage, renderer);
     let pixels = offscreen.colors(device, queue).unwrap();
     Seen { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer)), counters }
@@ -95,7 +95,12 @@ pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, V
 }
 
 /// Draws `quads` in their order over the background.
-pub fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], offscreen: &Offscreen) -> Result<(), Error> {
+pub fn draw_over(
+    stage: &Headless,
+    renderer: &mut Renderer,
+    quads: &[Quad],
+    offscreen: &Offscreen,
+) -> Result<(), Error> {
     let bytes = vertices(quads, renderer.vertex_inputs());
     let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("quads"),

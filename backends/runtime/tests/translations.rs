@@ -4,7 +4,7 @@
 use std::process::Command;
 
 use fragbuf_backends::{Request, generate, target};
-use fragbuf_codegen::{EntryPoint, Form, Stage};
+use fragbuf_codegen::{EntryPoint, Form, Linking, Stage, link, plan};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Checks, Code, Module, Renderer, Settings, Shaders};
 use fragbuf_templates::Registry;
@@ -31,6 +31,16 @@ fn glsl_shaders(variant: &Variant) -> Shaders {
     Shaders { modules: modules.collect(), plan, group: 0, profile: targets[0].profile }
 }
 
+/// A program that never was a file.
+fn linked(variant: &Variant) -> Shaders {
+    let (target, registry) = (target("wgsl").unwrap(), Registry::builtin());
+    let selection = variant.select(target.offers).unwrap();
+    let plan = plan(variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
+    let program = link(&plan, &linking, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    Shaders::from_program(&plan, &program)
+}
+
 /// Compiles one stage with `glslangValidator`, which must be installed.
 fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
     let folder = tempfile::tempdir().unwrap();
@@ -49,6 +59,7 @@ fn check(variant: &Variant, prepare: impl Fn(&mut Renderer)) {
     let stage = device();
     let languages = [
         ("wgsl", shaders(variant, "wgsl"), Checks::Off),
+        ("a linked program", linked(variant), Checks::Off),
         ("wgsl, checked at run time", shaders(variant, "wgsl"), Checks::On),
         ("wgsl-native", shaders(variant, "wgsl-native"), Checks::Off),
         ("spirv", shaders(variant, "spirv"), Checks::Off),

@@ -8,13 +8,13 @@ use fragbuf_templates::vocabulary::{Access, Element, Expression, Formula, Pass, 
 
 use crate::{Linking, Plan, Planned, Profile};
 
-pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, wanted: &dyn Fn(&str) -> bool) -> String {
+pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> String {
     let mut text = uniform_blocks(plan, linking);
     for planned in &plan.resources {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
         if let Some(usage) = usage.filter(|usage| is_buffer(&planned.resource, usage)) {
             let access = shader_access(usage.access, linking.profile);
-            Accessors { plan, planned, access, wanted }.write(linking, &mut text);
+            Accessors { plan, planned, access, atomics }.write(linking, &mut text);
         }
     }
     text
@@ -64,7 +64,8 @@ struct Accessors<'a> {
     plan: &'a Plan,
     planned: &'a Planned,
     access: ShaderAccess,
-    wanted: &'a dyn Fn(&str) -> bool,
+    /// The atomic accessors that somebody calls.
+    atomics: &'a [String],
 }
 
 /// Atomic operations that return the old value.
@@ -162,18 +163,25 @@ impl Accessors<'_> {
         let (name, place) = (self.name(), self.place(None));
         let parameters = self.parameters(&["value: u32"]);
         for (operation, function) in OPERATIONS {
-            if !(self.wanted)(&format!("{name}_atomic_{operation}")) {
+            if !self.is_called(operation) {
                 continue;
             }
             let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> u32 {{");
             let _ = writeln!(text, "    return {function}(&{place}, value);\n}}\n");
         }
-        if !(self.wanted)(&format!("{name}_atomic_compare_exchange")) {
+        if !self.is_called("compare_exchange") {
             return;
         }
         let parameters = self.parameters(&["expected: u32", "value: u32"]);
         let _ = writeln!(text, "fn {name}_atomic_compare_exchange({parameters}) -> bool {{");
         let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{place}, expected, value).exchanged;\n}}\n");
+    }
+
+    fn is_called(&self, operation: &str) -> bool {
+        self.atomics.iter().any(|name| {
+            let rest = name.strip_prefix(self.name()).and_then(|rest| rest.strip_prefix("_atomic_"));
+            rest == Some(operation)
+        })
     }
 
     fn parameters(&self, more: &[&str]) -> String {

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use fragbuf_model::{Format, mangled};
 use fragbuf_templates::vocabulary::Order;
 
-use crate::layout::{Key, Layout, Word};
 use crate::Plan;
+use crate::layout::{Key, Layout, Word};
 
 pub(super) fn text(plan: &Plan) -> String {
     let mut text = String::new();

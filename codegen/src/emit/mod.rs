@@ -10,14 +10,15 @@ use fragbuf_templates::vocabulary::{Kind, Pass};
 use crate::link::Source;
 use crate::{Linking, Plan};
 
-/// The generated sources of one pass. `wanted` says which names the templates mention; declarations that nothing reaches
-/// are dropped by the linker.
-pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, wanted: &dyn Fn(&str) -> bool) -> Vec<Source> {
-    let mut sources = vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
+/// The generated sources of one pass. `atomics` are the atomic accessors that its templates mention; other
+/// declarations that nothing reaches are dropped by the linker.
+pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> Vec<Source> {
+    let mut sources =
+        vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
     if pass.kind == Kind::Geometry {
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }
-    sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, wanted)));
+    sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, atomics)));
     for function in plan.variant.helpers.iter().chain(closures(plan)) {
         sources.push(Source::user(function));
     }

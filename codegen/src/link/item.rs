@@ -21,29 +21,26 @@ pub(super) struct Item<'a> {
 
 /// The declarations in order. `Err`: the line of something that is none.
 pub(super) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
-    let all = tokens(text);
-    let code: Vec<usize> = (0..all.len()).filter(|&index| all[index].kind != TokenKind::Comment).collect();
+    let (code, comments) = tokens(text);
     let mut items = Vec::new();
-    let (mut at, mut line, mut counted) = (0, 1, 0);
-    while at < code.len() {
-        let rest = code[at..].iter().map(|&index| all[index]);
-        let length = item_length(rest).ok_or_else(|| line_of(text, all[code[at]].at))?;
-        let tokens: Vec<Token<'_>> = code[at..at + length].iter().map(|&index| all[index]).collect();
-        let name = declared_name(&tokens).ok_or_else(|| line_of(text, tokens[0].at))?;
-        let last = tokens[length - 1];
-        let start = with_comments(text, &all[..code[at]], tokens[0].at);
+    let (mut rest, mut line, mut counted) = (code.as_slice(), 1, 0);
+    while let Some(first) = rest.first() {
+        let length = item_length(rest).ok_or_else(|| line_of(text, first.at))?;
+        let (tokens, after) = rest.split_at(length);
+        let name = declared_name(tokens).ok_or_else(|| line_of(text, first.at))?;
+        let end = tokens.last().map_or(first.at, |last| last.at + last.text.len());
+        let start = with_comments(text, &comments, first.at);
         line += newlines(&text[counted..start]);
         counted = start;
-        let item_text = &text[start..last.at + last.text.len()];
         items.push(Item {
             name,
-            text: item_text,
+            text: &text[start..end],
             first_line: line,
-            mentions: mentions(&tokens),
-            stage: stage(&tokens),
-            is_short: !item_text.contains('\n'),
+            mentions: mentions(tokens),
+            stage: stage(tokens),
+            is_short: !text[start..end].contains('\n'),
         });
-        at += length;
+        rest = after;
     }
     Ok(items)
 }
@@ -88,16 +85,15 @@ fn newlines(text: &str) -> usize {
 }
 
 /// Up to the brace that closes the first one opened, or the semicolon before any.
-fn item_length<'a>(tokens: impl Iterator<Item = Token<'a>>) -> Option<usize> {
+fn item_length(tokens: &[Token<'_>]) -> Option<usize> {
     let mut depth = 0usize;
-    let mut tokens = tokens.enumerate().peekable();
-    while let Some((index, token)) = tokens.next() {
+    for (index, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Sign) {
         match token.text {
             "{" => depth += 1,
             "}" => {
                 depth = depth.checked_sub(1)?;
                 if depth == 0 {
-                    let semicolon = tokens.peek().is_some_and(|(_, next)| next.text == ";");
+                    let semicolon = tokens.get(index + 1).is_some_and(|next| next.text == ";");
                     return Some(index + 1 + usize::from(semicolon));
                 }
             }
@@ -109,7 +105,9 @@ fn item_length<'a>(tokens: impl Iterator<Item = Token<'a>>) -> Option<usize> {
 }
 
 fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
-    let keyword = tokens.iter().position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
+    let keyword = tokens
+        .iter()
+        .position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
     let mut rest = tokens[keyword + 1..].iter();
     let mut next = rest.next()?;
     if next.text == "<" {
@@ -121,10 +119,11 @@ fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
     (next.kind == TokenKind::Name).then_some(next.text)
 }
 
-/// Where the comments begin that stand directly above `at`, line by line; `before` are the tokens up to it.
-fn with_comments(text: &str, before: &[Token<'_>], at: usize) -> usize {
+/// Where the comments begin that stand directly above `at`, line by line.
+fn with_comments(text: &str, comments: &[Token<'_>], at: usize) -> usize {
+    let before = comments.partition_point(|comment| comment.at < at);
     let mut start = at;
-    for token in before.iter().rev().take_while(|token| token.kind == TokenKind::Comment) {
+    for token in comments[..before].iter().rev() {
         let between = &text[token.at + token.text.len()..start];
         if !between.trim().is_empty() || newlines(between) != 1 {
             break;
@@ -155,6 +154,7 @@ fn stage(tokens: &[Token<'_>]) -> Option<Stage> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -11,7 +11,7 @@ pub(crate) use item::{head, heads, names};
 pub(crate) use rename::Renames;
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use fragbuf_model::{Origin, UserFunction};
@@ -43,24 +43,16 @@ impl Source {
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
     /// lies.
     pub(crate) fn user(function: &UserFunction) -> Self {
-        Source {
-            name: "description".into(),
-            text: function.wgsl.clone().into(),
-            origins: Some(function.lines.clone()),
-        }
+        Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(function.lines.clone()) }
     }
 
-    /// Adds the names that its declarations mention to `names`.
-    pub(crate) fn mentions<'a>(&'a self, names: &mut BTreeSet<Cow<'a, str>>) {
+    /// The atomic accessors that its declarations mention: buffers offer many, and few are ever used.
+    pub(crate) fn atomic_accessors(&self) -> Vec<String> {
         match self.items() {
-            Ok(Items::Kept(items)) => {
-                names.extend(items.iter().flat_map(|item| item.mentions.iter().map(|name| Cow::Borrowed(*name))));
-            }
-            Ok(Items::Parsed(items)) => {
-                names.extend(items.iter().flat_map(|item| item.mentions.iter().map(|name| Cow::Borrowed(*name))));
-            }
-            // Linking will say what is wrong.
-            Err(_) => {}
+            Ok(Items::Kept(text)) => text.atomic_accessors.iter().map(|name| (*name).to_owned()).collect(),
+            Ok(Items::Parsed(items)) => atomic_accessors(&items).into_iter().map(str::to_owned).collect(),
+            // Linking says what is wrong with it.
+            Err(_) => Vec::new(),
         }
     }
 
@@ -75,35 +67,45 @@ impl Source {
 
 /// The declarations of a source: a template's are found once and kept.
 enum Items<'a> {
-    Kept(Arc<Vec<Item<'static>>>),
+    Kept(Arc<KeptText>),
     Parsed(Vec<Item<'a>>),
 }
 
 impl Items<'_> {
     fn as_slice(&self) -> &[Item<'_>] {
         match self {
-            Items::Kept(items) => items,
+            Items::Kept(text) => &text.items,
             Items::Parsed(items) => items,
         }
     }
 }
 
-/// The declarations of a text that lives as long as the program does.
-fn kept_items(text: &'static str) -> Result<Arc<Vec<Item<'static>>>, usize> {
-    type Kept = BTreeMap<(usize, usize), Arc<Vec<Item<'static>>>>;
-    static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
+/// What is known of a text that lives as long as the program does.
+struct KeptText {
+    items: Vec<Item<'static>>,
+    atomic_accessors: Vec<&'static str>,
+}
+
+fn kept_items(text: &'static str) -> Result<Arc<KeptText>, usize> {
+    static KEPT: LazyLock<Mutex<BTreeMap<(usize, usize), Arc<KeptText>>>> = LazyLock::new(Mutex::default);
     let key = (text.as_ptr() as usize, text.len());
     // A thread that panicked while holding the lock left only whole entries behind.
     let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some(items) = kept.get(&key) {
-        return Ok(items.clone());
+    if let Some(text) = kept.get(&key) {
+        return Ok(text.clone());
     }
-    let items = Arc::new(item::parse(text)?);
-    kept.insert(key, items.clone());
-    Ok(items)
+    let items = item::parse(text)?;
+    let known = Arc::new(KeptText { atomic_accessors: atomic_accessors(&items), items });
+    kept.insert(key, known.clone());
+    Ok(known)
+}
+
+fn atomic_accessors<'a>(items: &[Item<'a>]) -> Vec<&'a str> {
+    items.iter().flat_map(|item| item.mentions.iter().copied()).filter(|name| name.contains("_atomic_")).collect()
 }
 
 /// What linking yields.
+#[derive(Debug)]
 pub(crate) struct Linked {
     pub(crate) text: String,
     pub(crate) lines: LineMap,
@@ -144,8 +146,9 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
     Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
 }
 
-fn declarations<'a>(items: &[(usize, &Item<'a>)]) -> Result<BTreeMap<&'a str, usize>, String> {
-    let mut index = BTreeMap::new();
+/// Where each name is declared. Looked up only: the order of the text is the order of the items.
+fn declarations<'a>(items: &[(usize, &Item<'a>)]) -> Result<HashMap<&'a str, usize>, String> {
+    let mut index = HashMap::with_capacity(items.len());
     for (id, (_, item)) in items.iter().enumerate() {
         if index.insert(item.name, id).is_some() {
             return Err(format!("`{}` is declared twice", item.name));
@@ -157,7 +160,7 @@ fn declarations<'a>(items: &[(usize, &Item<'a>)]) -> Result<BTreeMap<&'a str, us
 /// The items that the roots reach, in the order of the sources.
 fn reach(
     items: &[(usize, &Item<'_>)],
-    index: &BTreeMap<&str, usize>,
+    index: &HashMap<&str, usize>,
     exports: &[&str],
 ) -> Result<BTreeSet<usize>, String> {
     let mut waiting: Vec<usize> = Vec::new();
@@ -205,11 +208,14 @@ impl Writer {
         }
         self.text.push_str(&prefixed.apply(item.text));
         self.text.push('\n');
-        for at in (item.first_line..).take(item.text.lines().count()) {
-            self.lines.push(match &source.origins {
-                Some(origins) => origins.get(at - 1).map_or(LineOrigin::None, |origin| LineOrigin::User(origin.clone())),
-                None => LineOrigin::Source { name: source.name.clone(), line: at },
-            });
+        let lines = item.text.lines().count();
+        match &source.origins {
+            Some(origins) => {
+                for at in (item.first_line..).take(lines) {
+                    self.lines.run(1, origins.get(at - 1).map_or(LineOrigin::None, |o| LineOrigin::User(o.clone())));
+                }
+            }
+            None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
         }
         if !item.is_short {
             self.blank_line();
@@ -218,6 +224,7 @@ impl Writer {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 
@@ -227,9 +234,10 @@ mod tests {
 
     #[test]
     fn only_what_is_reached_is_linked() {
-        let library = source("a", "const USED = 1u;\nconst UNUSED = 2u;\n\n/// Doc.\nfn f() -> u32 {\n    return USED;\n}\n");
+        let library =
+            source("a", "const USED = 1u;\nconst UNUSED = 2u;\n\n/// Doc.\nfn f() -> u32 {\n    return USED;\n}\n");
         let main = source("b", "// Head.\n\n@compute @workgroup_size(1)\nfn main() {\n    _ = f();\n}\n");
-        let linked = link("// h\n", &[library, main], &[], "").map_err(|e| panic!("{e}")).unwrap();
+        let linked = link("// h\n", &[library, main], &[], "").unwrap();
         let expected = "// h\n\n// ---- generated/a\nconst USED = 1u;\n\n/// Doc.\nfn f() -> u32 {\n    return USED;\n}\n\n\
                         // ---- generated/b\n// Head.\n\n@compute @workgroup_size(1)\nfn main() {\n    _ = f();\n}\n\n";
         assert_eq!(linked.text, expected);
@@ -247,7 +255,7 @@ mod tests {
     #[test]
     fn prefixes_spare_entry_points_members_and_locals_of_other_names() {
         let text = "struct S {\n    x: u32,\n}\nvar<private> s: S;\n@compute @workgroup_size(1)\nfn main() {\n    s.x = 1u;\n}\n";
-        let linked = link("", &[source("a", text)], &[], "p_").map_err(|e| panic!("{e}")).unwrap();
+        let linked = link("", &[source("a", text)], &[], "p_").unwrap();
         assert!(linked.text.contains("struct p_S {\n    x: u32,"));
         assert!(linked.text.contains("var<private> p_s: p_S;"));
         assert!(linked.text.contains("fn main() {\n    p_s.x = 1u;"));

@@ -28,7 +28,7 @@ impl Renames {
         if self.0.is_empty() {
             return Cow::Borrowed(text);
         }
-        let all = tokens(text);
+        let (all, _) = tokens(text);
         let mut out = String::with_capacity(text.len() * 2);
         let mut copied = 0;
         let mut in_struct = false;

@@ -14,13 +14,13 @@ pub(super) enum TokenKind {
     Name,
     Number,
     Sign,
-    Comment,
 }
 
-/// Every token of `text`, comments included; block comments nest, as in WGSL.
-pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
+/// The tokens of `text`, and its comments apart; block comments nest, as in WGSL.
+pub(super) fn tokens(text: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
     let bytes = text.as_bytes();
     let mut tokens = Vec::with_capacity(text.len() / 4);
+    let mut comments = Vec::new();
     let mut at = 0;
     while at < bytes.len() {
         let (kind, end) = match bytes[at] {
@@ -28,8 +28,12 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
                 at += 1;
                 continue;
             }
-            b'/' if bytes.get(at + 1) == Some(&b'/') => (TokenKind::Comment, line_end(bytes, at)),
-            b'/' if bytes.get(at + 1) == Some(&b'*') => (TokenKind::Comment, block_end(bytes, at)),
+            b'/' if matches!(bytes.get(at + 1), Some(b'/' | b'*')) => {
+                let end = if bytes[at + 1] == b'/' { line_end(bytes, at) } else { block_end(bytes, at) };
+                comments.push(Token { text: &text[at..end], at, kind: TokenKind::Sign });
+                at = end;
+                continue;
+            }
             byte if byte.is_ascii_alphabetic() || byte == b'_' => (TokenKind::Name, word_end(bytes, at, b'_')),
             byte if byte.is_ascii_digit() => (TokenKind::Number, word_end(bytes, at, b'.')),
             _ => (TokenKind::Sign, at + text[at..].chars().next().map_or(1, char::len_utf8)),
@@ -37,7 +41,7 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
         tokens.push(Token { text: &text[at..end], at, kind });
         at = end;
     }
-    tokens
+    (tokens, comments)
 }
 
 fn line_end(bytes: &[u8], at: usize) -> usize {

@@ -2,9 +2,7 @@
 
 use std::fmt::{Display, Formatter, Result, Write};
 
-use fragbuf_templates::vocabulary::{
-    Access, Element, Init, Kind, Life, Loads, Objects, Pass, State, Step, Until,
-};
+use fragbuf_templates::vocabulary::{Access, Element, Init, Kind, Life, Loads, Objects, Pass, State, Step, Until};
 
 use super::{Plan, Planned};
 use crate::Key;

@@ -32,7 +32,8 @@ fn complete_pass(
     registry: &Registry,
 ) -> Result<(), String> {
     let skeleton = registry.row("pass", &pass.skeleton);
-    let mut wanted: Vec<String> = skeleton.map(|row| row.calls.iter().map(|call| (*call).to_owned()).collect()).unwrap_or_default();
+    let mut wanted: Vec<String> =
+        skeleton.map(|row| row.calls.iter().map(|call| (*call).to_owned()).collect()).unwrap_or_default();
     wanted.extend(pass.roles.iter().map(|role| role.contract.clone()));
     let mut next = 0;
     while let Some(contract) = wanted.get(next).cloned() {
@@ -100,10 +101,10 @@ pub(crate) fn instance_row<'a>(
     registry: &'a Registry,
 ) -> Result<&'a Row, String> {
     let axis = axis_of(&role.contract, registry);
-    let selected = selection.row(axis).map(|selected| &selected.row).filter(|row| row.key == role.instance.row);
-    selected
-        .or_else(|| registry.row(axis, &role.instance.row))
-        .ok_or_else(|| format!("`{}` names the row `{}: {}`, which does not exist", role.contract, axis, role.instance.row))
+    let selected = selection.row(axis).map(|selected| &*selected.row).filter(|row| row.key == role.instance.row);
+    selected.or_else(|| registry.row(axis, &role.instance.row)).ok_or_else(|| {
+        format!("`{}` names the row `{}: {}`, which does not exist", role.contract, axis, role.instance.row)
+    })
 }
 
 /// The axis that a contract's rows are on.

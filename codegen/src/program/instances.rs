@@ -12,7 +12,9 @@ use crate::{CONTRACTS, Plan};
 /// The skeleton's text.
 pub(super) fn skeleton(key: &str, registry: &Registry) -> Result<Source, String> {
     let template = registry.row("pass", key).and_then(|row| row.template);
-    template.map(|template| Source::template(template, &Renames::default())).ok_or_else(|| format!("no text for the skeleton `{key}`"))
+    template
+        .map(|template| Source::template(template, &Renames::default()))
+        .ok_or_else(|| format!("no text for the skeleton `{key}`"))
 }
 
 /// One source per role, in the order of the axes. An instance of two roles is linked once.

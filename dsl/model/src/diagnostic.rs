@@ -101,7 +101,7 @@ impl Diagnostics {
         if self.0.is_empty() {
             return Ok(value);
         }
-        self.0.sort_by(|a, b| (a.origin.line, a.origin.column).cmp(&(b.origin.line, b.origin.column)));
+        self.0.sort_by_key(|diagnostic| (diagnostic.origin.line, diagnostic.origin.column));
         Err(self)
     }
 }

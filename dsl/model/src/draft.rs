@@ -124,14 +124,8 @@ pub enum UniformType {
 
 impl UniformType {
     /// Every type, in the order in which the documentation lists them.
-    pub const ALL: [UniformType; 6] = [
-        UniformType::F32,
-        UniformType::U32,
-        UniformType::I32,
-        UniformType::Vec2,
-        UniformType::Vec3,
-        UniformType::Vec4,
-    ];
+    pub const ALL: [UniformType; 6] =
+        [UniformType::F32, UniformType::U32, UniformType::I32, UniformType::Vec2, UniformType::Vec3, UniformType::Vec4];
 
     /// The word of the language.
     pub fn keyword(self) -> &'static str {

@@ -47,7 +47,10 @@ impl Draft {
     fn set_axis(&mut self, axis: &str, value: &str, origin: &Origin) {
         let alternatives = value
             .split(" else ")
-            .map(|value| Alternative { value: Spanned::new(value.trim().to_owned(), origin.clone()), options: Vec::new() })
+            .map(|value| Alternative {
+                value: Spanned::new(value.trim().to_owned(), origin.clone()),
+                options: Vec::new(),
+            })
             .collect();
         self.choices.retain(|choice| choice.axis.value != axis);
         self.choices.push(Choice { axis: Spanned::new(axis.to_owned(), origin.clone()), alternatives });
@@ -65,8 +68,7 @@ impl Draft {
         };
         let entry = (Spanned::new(option.to_owned(), origin.clone()), Spanned::new(value, origin.clone()));
         if !self.choices.iter().any(|choice| choice.axis.value == axis) {
-            let alternative =
-                Alternative { value: Spanned::new(String::new(), origin.clone()), options: Vec::new() };
+            let alternative = Alternative { value: Spanned::new(String::new(), origin.clone()), options: Vec::new() };
             let axis = Spanned::new(axis.to_owned(), origin.clone());
             self.choices.push(Choice { axis, alternatives: vec![alternative] });
         }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::ops::Deref;
+use std::sync::Arc;
 
 use fragbuf_templates::vocabulary::{Fact, Row, Soundness};
 
@@ -50,8 +51,8 @@ pub struct Chosen {
 /// One row, with the numbers that a user set on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selected {
-    /// The row.
-    pub row: Row,
+    /// The row, shared by everything that is made from the variant.
+    pub row: Arc<Row>,
     /// (parameter, value) for those that were set.
     pub options: Vec<(String, u32)>,
 }

@@ -229,7 +229,13 @@ impl fmt::Display for Polynomial {
         let mut terms: Vec<_> = self.0.iter().collect();
         terms.sort_by_key(|(symbols, _)| std::cmp::Reverse(symbols.len()));
         for (index, (symbols, coefficient)) in terms.into_iter().enumerate() {
-            let sign = if *coefficient < 0 { "-" } else if index > 0 { "+" } else { "" };
+            let sign = if *coefficient < 0 {
+                "-"
+            } else if index > 0 {
+                "+"
+            } else {
+                ""
+            };
             let magnitude = coefficient.unsigned_abs();
             let product = symbols.join("*");
             match (magnitude, product.as_str()) {

@@ -3,6 +3,7 @@
 use super::{Formula, Resource};
 
 /// One step of a frame, in order.
+#[allow(clippy::large_enum_variant, reason = "a plan has a dozen steps, and most are passes")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// Draw or dispatch.

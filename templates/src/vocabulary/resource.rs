@@ -95,14 +95,7 @@ pub enum Life {
 impl Resource {
     /// A buffer of `element`s without extents, kept from nothing.
     pub fn new(name: &str, element: Element, summary: &'static str) -> Self {
-        Resource {
-            name: name.to_owned(),
-            element,
-            extents: Vec::new(),
-            init: Init::Keep,
-            life: Life::Frame,
-            summary,
-        }
+        Resource { name: name.to_owned(), element, extents: Vec::new(), init: Init::Keep, life: Life::Frame, summary }
     }
 
     /// Adds an index part inside those already there.

@@ -31,7 +31,12 @@ pub fn print(source: &str, unit: Unit, dialect: Dialect) -> Result<String, Vec<U
     print_with(source, unit, dialect, &[])
 }
 
-pub fn print_with(source: &str, unit: Unit, dialect: Dialect, plain_loads: &[&str]) -> Result<String, Vec<Unprintable>> {
+pub fn print_with(
+    source: &str,
+    unit: Unit,
+    dialect: Dialect,
+    plain_loads: &[&str],
+) -> Result<String, Vec<Unprintable>> {
     let (module, info) = parse(source);
     let bindings = |group: u32, binding: u32| Slot { set: group, binding: group * 16 + binding };
     let options = Options { dialect, header: "", markers: MARKERS, bindings: &bindings, plain_loads };
@@ -66,7 +71,10 @@ pub fn accept(text: &str, name: &str, stage: &str, dialect: Dialect) -> Result<(
         Dialect::OpenGl450 => run(Command::new("glslangValidator").args(["--target-env", "opengl"]).arg(&file)),
         Dialect::Vulkan450 => {
             let binary: PathBuf = file.with_extension(format!("{stage}.spv"));
-            run(Command::new("glslangValidator").args(["-V", "--target-env", "vulkan1.1", "-o"]).arg(&binary).arg(&file))?;
+            run(Command::new("glslangValidator")
+                .args(["-V", "--target-env", "vulkan1.1", "-o"])
+                .arg(&binary)
+                .arg(&file))?;
             run(Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(&binary))
         }
     }

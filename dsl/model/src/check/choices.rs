@@ -1,5 +1,7 @@
 //! One choice per axis: the description's, else the preset's, else what suits the storage, else the axis's default.
 
+use std::sync::Arc;
+
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Axis, Parameter, Row, Technique};
 
@@ -105,7 +107,8 @@ fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnost
 fn with_options(mut chosen: Chosen, choice: &Choice, diagnostics: &mut Diagnostics) -> Chosen {
     let options = choice.alternatives.iter().flat_map(|alternative| &alternative.options);
     if let Some(selected) = chosen.alternatives.first_mut() {
-        selected.options = options.filter_map(|(name, value)| option(&selected.row, name, value, diagnostics)).collect();
+        selected.options =
+            options.filter_map(|(name, value)| option(&selected.row, name, value, diagnostics)).collect();
     }
     chosen
 }
@@ -118,11 +121,7 @@ fn said(choice: &Choice, registry: &Registry, diagnostics: &mut Diagnostics) -> 
         .filter_map(|alternative| selected(&choice.axis, alternative, registry, diagnostics))
         .collect();
     let origin = choice.alternatives.first().map_or(&choice.axis.origin, |first| &first.value.origin);
-    (!alternatives.is_empty()).then(|| Chosen {
-        axis: choice.axis.value.clone(),
-        origin: origin.clone(),
-        alternatives,
-    })
+    (!alternatives.is_empty()).then(|| Chosen { axis: choice.axis.value.clone(), origin: origin.clone(), alternatives })
 }
 
 fn unsaid(
@@ -158,7 +157,7 @@ fn unsaid(
         ));
         return None;
     };
-    let selected = Selected { row: row.clone(), options: Vec::new() };
+    let selected = Selected { row: Arc::new(row.clone()), options: Vec::new() };
     Some(Chosen { axis: axis.key.to_owned(), origin: origin.clone(), alternatives: vec![selected] })
 }
 
@@ -171,11 +170,8 @@ fn selected(
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
     let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
-        let known: Vec<&str> = registry
-            .rows_of(&axis.value)
-            .map(|row| row.key.as_str())
-            .filter(|key| *key != Registry::CLOSURE)
-            .collect();
+        let known: Vec<&str> =
+            registry.rows_of(&axis.value).map(|row| row.key.as_str()).filter(|key| *key != Registry::CLOSURE).collect();
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_VALUE,
             &value.origin,
@@ -184,12 +180,9 @@ fn selected(
         ));
         return None;
     };
-    let options = alternative
-        .options
-        .iter()
-        .filter_map(|(name, value)| option(row, name, value, diagnostics))
-        .collect();
-    Some(Selected { row: row.clone(), options })
+    let options =
+        alternative.options.iter().filter_map(|(name, value)| option(row, name, value, diagnostics)).collect();
+    Some(Selected { row: Arc::new(row.clone()), options })
 }
 
 fn option(

@@ -37,7 +37,7 @@ fn picks(choices: &[Chosen]) -> Vec<Pick<'_>> {
     for chosen in choices {
         picks = picks
             .iter()
-            .flat_map(|pick| chosen.alternatives.iter().map(|selected| [pick.as_slice(), &[&selected.row]].concat()))
+            .flat_map(|pick| chosen.alternatives.iter().map(|selected| [pick.as_slice(), &[&*selected.row]].concat()))
             .collect();
     }
     picks
@@ -102,7 +102,8 @@ impl Situation<'_> {
         for (other, row) in self.choices.iter().zip(pick) {
             let could = self.registry.rows_of(&other.axis).any(|row| row.offers.contains(&fact));
             if could && other.origin != chosen.origin {
-                diagnostic = diagnostic.label(&other.origin, format!("`{}: {}` does not offer it", other.axis, row.key));
+                diagnostic =
+                    diagnostic.label(&other.origin, format!("`{}: {}` does not offer it", other.axis, row.key));
             }
         }
         diagnostic
