@@ -98,7 +98,11 @@ fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [
 }
 
 fn fragbuf(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_fragbuf"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
 }
 
 fn stderr(output: &Output) -> String {
@@ -143,7 +147,11 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, background: [f64;
         assert_eq!(pixel[3], 255);
         for (seen, expected) in pixel.iter().zip(expected) {
             let apart = (f64::from(*seen) - 255.0 * expected).abs();
-            assert!(apart <= 1.0, "{key}, {count} quads, seed {seed}: pixel {x}, {y} is {seen}, and not {}", 255.0 * expected);
+            assert!(
+                apart <= 1.0,
+                "{key}, {count} quads, seed {seed}: pixel {x}, {y} is {seen}, and not {}",
+                255.0 * expected
+            );
         }
     }
 }
@@ -193,7 +201,20 @@ fn what_is_lost_all_the_same_is_said() {
     quads.iter_mut().for_each(|quad| (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE));
     let (model, out) = (write(&folder, &quads), folder.join("o.png"));
     let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
-    let output = fragbuf(&["render", "ab_ll", "--set", "sort.layers=4", "--scene", model, "--size", "32x32", "--camera", "clip", "--out", out]);
+    let output = fragbuf(&[
+        "render",
+        "ab_ll",
+        "--set",
+        "sort.layers=4",
+        "--scene",
+        model,
+        "--size",
+        "32x32",
+        "--camera",
+        "clip",
+        "--out",
+        out,
+    ]);
     assert_eq!(output.status.code(), Some(0));
     assert!(stderr(&output).contains("8192 fragments lost: layers_exceeded"), "{}", stderr(&output));
 }
@@ -205,14 +226,30 @@ fn figures_are_json_on_stdout_and_add_up() {
     let (model, out) = (write(&folder, &quads), folder.join("o.png"));
     let covered: usize = quads.iter().map(|quad| (quad.x1 - quad.x0) * (quad.y1 - quad.y0)).sum();
     let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
-    let output = fragbuf(&["render", "kplus_array", "--set", "k=2", "--scene", model, "--size", "32x32", "--camera", "clip", "--out", out, "--json"]);
+    let output = fragbuf(&[
+        "render",
+        "kplus_array",
+        "--set",
+        "k=2",
+        "--scene",
+        model,
+        "--size",
+        "32x32",
+        "--camera",
+        "clip",
+        "--out",
+        out,
+        "--json",
+    ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let fragments = ["generated", "stored", "culled", "dropped"].map(|name| figures["fragments"][name].as_u64().unwrap());
+    let fragments =
+        ["generated", "stored", "culled", "dropped"].map(|name| figures["fragments"][name].as_u64().unwrap());
     let [generated, stored, culled, dropped] = fragments;
     assert_eq!(generated, covered as u64);
     assert_eq!(generated, stored + culled + dropped);
-    let layers = |x: usize, y: usize| quads.iter().filter(|q| (q.x0..q.x1).contains(&x) && (q.y0..q.y1).contains(&y)).count();
+    let layers =
+        |x: usize, y: usize| quads.iter().filter(|q| (q.x0..q.x1).contains(&x) && (q.y0..q.y1).contains(&y)).count();
     let kept: usize = (0..SIZE * SIZE).map(|pixel| layers(pixel % SIZE, pixel / SIZE).min(2)).sum();
     assert_eq!(stored, kept as u64);
     assert_eq!(figures["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
@@ -250,7 +287,9 @@ fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
     std::fs::write(&description, text).unwrap();
     let model = write(&folder, &[Quad { x0: 0, y0: 0, x1: SIZE, y1: SIZE, depth: 0.25, color: [9; 4] }; 2]);
     let (description, model) = (description.to_str().unwrap(), model.to_str().unwrap());
-    let with = |uniforms: &[&str]| render(&folder, &[&[description, "--scene", model, "--background", "0,0,0,1"], uniforms].concat())[0];
+    let with = |uniforms: &[&str]| {
+        render(&folder, &[&[description, "--scene", model, "--background", "0,0,0,1"], uniforms].concat())[0]
+    };
     assert_eq!(with(&[]), [0, 0, 0, 255]);
     assert_eq!(with(&["--uniform", "tint=0,1,0.2"]), [0, 255, 51, 255]);
     assert_eq!(with(&["--uniform", "tint=0,1,0", "--uniform", "cut=0.5"]), [0, 0, 0, 255]);
@@ -294,7 +333,17 @@ fn comparing_says_how_far_two_techniques_are_apart() {
     let folder = folder("compare");
     let out = folder.join("heat.png");
     let compare = |second: &str| {
-        let common = ["--scene", "builtin:slabs,n=40", "--size", "48x32", "--device", "cpu", "--json", "--out", out.to_str().unwrap()];
+        let common = [
+            "--scene",
+            "builtin:slabs,n=40",
+            "--size",
+            "48x32",
+            "--device",
+            "cpu",
+            "--json",
+            "--out",
+            out.to_str().unwrap(),
+        ];
         let output = fragbuf(&[&["compare", "ab_sb", second], &common[..]].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert_eq!(read(&out).0, 48);

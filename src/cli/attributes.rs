@@ -18,7 +18,9 @@ type Words = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
 
 /// What a scene has: names, the formats that it can be read as, how to get it.
 const HAS: [(&[&str], &[Format], Words); 4] = [
-    (&["color", "colour"], &[Format::Rgba8, Format::Vec4, Format::Vec3], |object, _, vertex| bits(&object.colors, vertex)),
+    (&["color", "colour"], &[Format::Rgba8, Format::Vec4, Format::Vec3], |object, _, vertex| {
+        bits(&object.colors, vertex)
+    }),
     (&["alpha"], &[Format::F32], |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0]),
     (&["normal"], &[Format::Octahedral, Format::Vec3], |object, _, vertex| bits(&object.normals, vertex)),
     (&["id", "object"], &[Format::U32], |_, id, _| [id, 0, 0, 0]),
@@ -42,7 +44,8 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
         indices.extend(object.triangles.iter().flatten().flat_map(|index| (first + index).to_le_bytes()));
         first += object.positions.len() as u32;
     }
-    let index_count = u32::try_from(indices.len() / 4).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
+    let index_count =
+        u32::try_from(indices.len() / 4).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
     Ok(Geometry { vertices, indices, index_count })
 }
 
@@ -50,10 +53,13 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
 fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
     let found = HAS.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format));
     let Some((_, _, read)) = found else {
-        let has: Vec<String> = HAS.iter().map(|(names, formats, _)| {
-            let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
-            format!("{} ({})", names.join(" or "), formats.join(", "))
-        }).collect();
+        let has: Vec<String> = HAS
+            .iter()
+            .map(|(names, formats, _)| {
+                let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
+                format!("{} ({})", names.join(" or "), formats.join(", "))
+            })
+            .collect();
         return Err(Failure::Input(format!(
             "the scene has no `{name}: {}` for the fragments: it has {}, and depth",
             format.keyword(),

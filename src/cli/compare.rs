@@ -43,7 +43,8 @@ impl Compare {
         drop(progress);
         let hits = [&first, &second].map(|painted| tally(painted).map(|tally| tally.hit_ratio));
         if view.json {
-            let [a, b] = [(&self.first, &first), (&self.second, &second)].map(|(key, painted)| figures(key, painted, &stage));
+            let [a, b] =
+                [(&self.first, &first), (&self.second, &second)].map(|(key, painted)| figures(key, painted, &stage));
             return output::print(&output::json(&json!({
                 "psnr": difference.psnr(),
                 "max_error": difference.greatest,
@@ -57,7 +58,10 @@ impl Compare {
         let [a, b] = hits.map(|hit| hit.map_or("not counted".to_owned(), |hit| format!("{hit:.4}")));
         output::print(&format!(
             "PSNR       {psnr}\nmax error  {:.2}/255 ({} pixels differ)\nhit ratio  {a} {}, {b} {}\n",
-            255.0 * difference.greatest, difference.count, self.first, self.second
+            255.0 * difference.greatest,
+            difference.count,
+            self.first,
+            self.second
         ))
     }
 }
@@ -74,7 +78,9 @@ struct Difference {
 
 impl Difference {
     fn of(first: &[[f32; 4]], second: &[[f32; 4]]) -> Self {
-        let apart = |(a, b): (&[f32; 4], &[f32; 4])| std::array::from_fn::<f32, 4, _>(|channel| (a[channel] - b[channel]).abs());
+        let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+            std::array::from_fn::<f32, 4, _>(|channel| (a[channel] - b[channel]).abs())
+        };
         let channels: Vec<[f32; 4]> = first.iter().zip(second).map(apart).collect();
         let pixels: Vec<f32> = channels.iter().map(|values| values.iter().copied().fold(0.0, f32::max)).collect();
         let greatest = pixels.iter().copied().fold(0.0, f32::max);

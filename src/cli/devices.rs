@@ -23,13 +23,16 @@ impl Devices {
             .iter()
             .map(|info| {
                 let driver = format!("{} {}", info.driver, info.driver_info);
-                [info.name.clone(), format!("{:?}", info.device_type), info.backend.to_string(), driver.trim().to_owned()]
+                [
+                    info.name.clone(),
+                    format!("{:?}", info.device_type),
+                    info.backend.to_string(),
+                    driver.trim().to_owned(),
+                ]
             })
             .collect();
         if self.json {
-            let row = |[name, kind, backend, driver]: &[String; 4]| {
-                json!({ "name": name, "type": kind, "backend": backend, "driver": driver })
-            };
+            let row = |[name, kind, backend, driver]: &[String; 4]| json!({ "name": name, "type": kind, "backend": backend, "driver": driver });
             return output::print(&output::json(&rows.iter().map(row).collect::<Value>()));
         }
         output::print(&rows.iter().map(|row| format!("{}\n", row.join("  "))).collect::<String>())

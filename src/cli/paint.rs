@@ -133,7 +133,8 @@ impl Painter {
             if short > 0 {
                 // Every fragment that found no room was counted: with so much more there is room for all.
                 let needed = room.map_or(automatic, u64::from) + u64::from(short);
-                let fragments = u32::try_from(needed).map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?;
+                let fragments =
+                    u32::try_from(needed).map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?;
                 *room = Some(fragments);
                 block_on(device, renderer.reserve(fragments))??;
                 continue;
@@ -141,7 +142,16 @@ impl Painter {
             let pixels = offscreen.colors(device, queue)?;
             let bytes = renderer.allocated_bytes();
             let (info, frames) = (info.clone(), *frames);
-            return Ok(Painted { pixels, counters, times, bytes, info, target: self.target, plan: self.shaders.plan, frames });
+            return Ok(Painted {
+                pixels,
+                counters,
+                times,
+                bytes,
+                info,
+                target: self.target,
+                plan: self.shaders.plan,
+                frames,
+            });
         }
     }
 }
@@ -196,11 +206,17 @@ impl Mesh {
         let buffer = |label: &str, bytes: &[u8], usage: wgpu::BufferUsages| {
             let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
             if size > limit {
-                return Err(Failure::Device(format!("the scene's {label} need {size} bytes, and the device allows {limit}")));
+                return Err(Failure::Device(format!(
+                    "the scene's {label} need {size} bytes, and the device allows {limit}"
+                )));
             }
             let usage = usage | wgpu::BufferUsages::COPY_DST;
-            let buffer =
-                device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
+            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            });
             queue.write_buffer(&buffer, 0, bytes);
             Ok(buffer)
         };

@@ -33,7 +33,12 @@ fn srgb(value: f32) -> f32 {
 }
 
 /// Writes values from 0 to 1 as 8 bits each.
-pub(crate) fn write(path: &Path, (width, height): (u32, u32), pixels: &[[f32; 4]], linear: bool) -> Result<(), Failure> {
+pub(crate) fn write(
+    path: &Path,
+    (width, height): (u32, u32),
+    pixels: &[[f32; 4]],
+    linear: bool,
+) -> Result<(), Failure> {
     let bytes: Vec<u8> = pixels.iter().flatten().map(|value| (255.0 * value).round() as u8).collect();
     let failed = |error: &dyn std::fmt::Display| Failure::Files(format!("{}: {error}", path.display()));
     let file = File::create(path).map_err(|error| Failure::files(path, &error))?;

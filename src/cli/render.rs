@@ -30,7 +30,8 @@ impl Render {
         let progress = Progress::new();
         progress.stage(format!("loading {}", view.scene));
         let stage = view.stage()?;
-        let wish = Wish { description: &self.description, set: &self.set, uniforms: &self.uniforms, count_all: view.json };
+        let wish =
+            Wish { description: &self.description, set: &self.set, uniforms: &self.uniforms, count_all: view.json };
         let painted = paint(&wish, view, &stage, &progress)?;
         progress.stage(format!("writing {}", view.out.display()));
         let pixels = picture::displayed(&painted.pixels, view.background, view.linear);

@@ -11,12 +11,15 @@ pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Ve
     let value = |(name, text): &(String, String)| {
         let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
             let names: Vec<&str> = variant.uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-            let there = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
+            let there =
+                if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
             return Err(Failure::Usage(format!("the description has no uniform `{name}`: {there}")));
         };
         let kind = uniform.kind.value;
         let value = read(text, kind);
-        value.map(|value| (name.clone(), value)).ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, and not `{text}`", wanted(kind))))
+        value
+            .map(|value| (name.clone(), value))
+            .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, and not `{text}`", wanted(kind))))
     };
     given.iter().map(value).collect()
 }

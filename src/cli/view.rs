@@ -95,7 +95,9 @@ pub(crate) fn scenes() -> String {
 
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    sides.filter(|(width, height)| *width > 0 && *height > 0).ok_or_else(|| "write WIDTHxHEIGHT in pixels, as 640x480".to_owned())
+    sides
+        .filter(|(width, height)| *width > 0 && *height > 0)
+        .ok_or_else(|| "write WIDTHxHEIGHT in pixels, as 640x480".to_owned())
 }
 
 fn color(text: &str) -> Result<[f32; 4], String> {

@@ -41,7 +41,9 @@ impl fmt::Display for Error {
         match self {
             Error::Unreadable { file, reason } => write!(f, "{file}: {reason}"),
             Error::Malformed { file, place: Place::Line(line), message } => write!(f, "{file}:{line}: {message}"),
-            Error::Malformed { file, place: Place::Byte(byte), message } => write!(f, "{file}: at byte {byte}: {message}"),
+            Error::Malformed { file, place: Place::Byte(byte), message } => {
+                write!(f, "{file}: at byte {byte}: {message}")
+            }
             Error::Malformed { file, place: Place::Whole, message } => write!(f, "{file}: {message}"),
             Error::Unknown(message) => f.write_str(message),
         }

@@ -69,10 +69,13 @@ fn buffers(model: &Gltf, path: &Path) -> Result<Vec<Vec<u8>>, Error> {
         let index = buffer.index();
         let fault = |message: String| Fault::whole(format!("buffer {index}: {message}")).of(&file);
         let bytes = match buffer.source() {
-            gltf::buffer::Source::Bin => model.blob.clone().ok_or_else(|| fault("the file has no binary part".to_owned()))?,
+            gltf::buffer::Source::Bin => {
+                model.blob.clone().ok_or_else(|| fault("the file has no binary part".to_owned()))?
+            }
             gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
                 Some(data) => {
-                    let (_, text) = data.split_once(";base64,").ok_or_else(|| fault("its data is not in base64".to_owned()))?;
+                    let (_, text) =
+                        data.split_once(";base64,").ok_or_else(|| fault("its data is not in base64".to_owned()))?;
                     STANDARD.decode(text).map_err(|error| fault(format!("its data is broken: {error}")))?
                 }
                 None => read(&path.parent().unwrap_or(Path::new("")).join(uri.replace("%20", " ")))?,
@@ -101,7 +104,8 @@ impl Reader<'_> {
             self.check(&accessor)?;
         }
         let reader = primitive.reader(|buffer| self.buffers.get(buffer.index()).map(Vec::as_slice));
-        let missing = |what: &str| Fault::whole(format!("primitive {} has no {what} that can be read", primitive.index()));
+        let missing =
+            |what: &str| Fault::whole(format!("primitive {} has no {what} that can be read", primitive.index()));
         let positions: Vec<[f32; 3]> = reader.read_positions().ok_or_else(|| missing("positions"))?.collect();
         let normals: Vec<[f32; 3]> = reader.read_normals().map_or(Vec::new(), Iterator::collect);
         let colors: Vec<[f32; 4]> = reader.read_colors(0).map_or(Vec::new(), |colors| colors.into_rgba_f32().collect());
@@ -123,10 +127,15 @@ impl Reader<'_> {
             object.vertex(position.to_array(), normal.to_array(), color);
         }
         if let Some(index) = indices.iter().find(|index| **index as usize >= positions.len()) {
-            return Err(Fault::whole(format!("no vertex {index} in primitive {}: there are {}", primitive.index(), positions.len())));
+            return Err(Fault::whole(format!(
+                "no vertex {index} in primitive {}: there are {}",
+                primitive.index(),
+                positions.len()
+            )));
         }
         let corners = triangles(primitive.mode(), &indices);
-        let corners = corners.ok_or_else(|| Fault::whole(format!("{:?}: only triangles are read", primitive.mode())))?;
+        let corners =
+            corners.ok_or_else(|| Fault::whole(format!("{:?}: only triangles are read", primitive.mode())))?;
         object.triangles.extend(corners.into_iter().map(|triangle| triangle.map(|index| first + index)));
         Ok(())
     }

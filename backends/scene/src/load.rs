@@ -28,7 +28,11 @@ pub fn load(path: &Path, color: [f32; 4]) -> Result<Scene, Error> {
         }
         Some("ply") => ply::parse(&bytes, color).map_err(|fault| fault.of(&file))?,
         Some("gltf" | "glb") => gltf::parse(&bytes, path, color)?,
-        _ => return Err(Fault::whole("no model by its name: .obj, .ply, .gltf and .glb are read, also with .gz").of(&file)),
+        _ => {
+            return Err(
+                Fault::whole("no model by its name: .obj, .ply, .gltf and .glb are read, also with .gz").of(&file)
+            );
+        }
     };
     if scene.triangles() == 0 {
         return Err(Fault::whole("there are no triangles in it").of(&file));
@@ -40,7 +44,8 @@ pub fn load(path: &Path, color: [f32; 4]) -> Result<Scene, Error> {
 /// The bytes of a file, decompressed.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| Error::Unreadable { file: file.clone(), reason: error.to_string() })?;
+    let bytes =
+        std::fs::read(path).map_err(|error| Error::Unreadable { file: file.clone(), reason: error.to_string() })?;
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(bytes);
     }

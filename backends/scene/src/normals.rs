@@ -9,7 +9,8 @@ pub(crate) fn complete(object: &mut Object) {
     let mut sums = vec![Vec3::ZERO; object.positions.len()];
     if object.normals.iter().any(|normal| Vec3::from_array(*normal) == Vec3::ZERO) {
         for triangle in &object.triangles {
-            let corners = triangle.map(|index| object.positions.get(index as usize).copied().map_or(Vec3::ZERO, Vec3::from_array));
+            let corners = triangle
+                .map(|index| object.positions.get(index as usize).copied().map_or(Vec3::ZERO, Vec3::from_array));
             let [a, b, c] = corners;
             let area = (b - a).cross(c - a);
             for index in triangle {

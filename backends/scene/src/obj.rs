@@ -12,9 +12,43 @@ use crate::{Object, Scene};
 
 /// Statements that change nothing that is drawn here.
 const PASSED_OVER: [&str; 37] = [
-    "vt", "vp", "s", "l", "p", "mg", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
-    "sp", "end", "con", "bevel", "c_interp", "d_interp", "lod", "maplib", "usemap", "shadow_obj", "trace_obj", "ctech",
-    "stech", "call", "csh", "res", "bsp", "bzp", "cdc", "cdp",
+    "vt",
+    "vp",
+    "s",
+    "l",
+    "p",
+    "mg",
+    "cstype",
+    "deg",
+    "bmat",
+    "step",
+    "curv",
+    "curv2",
+    "surf",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "maplib",
+    "usemap",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "call",
+    "csh",
+    "res",
+    "bsp",
+    "bzp",
+    "cdc",
+    "cdp",
 ];
 
 /// Reads a model. `library` gives the text of a material library by the name that the model calls it; `color` is the colour
@@ -82,7 +116,11 @@ impl Reader {
 
     fn no_material(&self, name: &str, line: usize) -> Fault {
         let names: Vec<&str> = self.materials.iter().map(|material| material.name.as_str()).collect();
-        let there = if names.is_empty() { "no `mtllib` gave any".to_owned() } else { format!("there are {}", names.join(", ")) };
+        let there = if names.is_empty() {
+            "no `mtllib` gave any".to_owned()
+        } else {
+            format!("there are {}", names.join(", "))
+        };
         Fault::line(line, format!("no material `{name}`: {there}"))
     }
 

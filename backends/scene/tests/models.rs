@@ -64,22 +64,25 @@ fn obj_without_materials() {
 
 #[test]
 fn obj_mistakes_have_their_lines() {
-    malformed_lines("m.obj", &[
-        ("v 0 0\n", 1, "2 numbers"),
-        ("\n# x\nv 0 0 x\n", 3, "`x` is no number"),
-        ("v 0 0 nan\n", 1, "not finite"),
-        ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "2 vertices"),
-        ("v 0 0 0\nf 1 1 2\nv 0 0 0\n", 2, "no position 2"),
-        ("v 0 0 0\nf 1 1 0\n", 2, "no position 0"),
-        ("v 0 0 0\nf 1 1 -2\n", 2, "no position -2"),
-        ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "no normal 1"),
-        ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "no normal 3"),
-        ("v 0 0 0\nf 1 1 a\n", 2, "`a` is no index"),
-        ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is no index"),
-        ("usemtl red\n", 1, "no material `red`"),
-        ("v 0 0 0\nnonsense\n", 2, "`nonsense`"),
-        ("\u{1}\u{2}\n", 1, "no statement"),
-    ]);
+    malformed_lines(
+        "m.obj",
+        &[
+            ("v 0 0\n", 1, "2 numbers"),
+            ("\n# x\nv 0 0 x\n", 3, "`x` is no number"),
+            ("v 0 0 nan\n", 1, "not finite"),
+            ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "2 vertices"),
+            ("v 0 0 0\nf 1 1 2\nv 0 0 0\n", 2, "no position 2"),
+            ("v 0 0 0\nf 1 1 0\n", 2, "no position 0"),
+            ("v 0 0 0\nf 1 1 -2\n", 2, "no position -2"),
+            ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "no normal 1"),
+            ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "no normal 3"),
+            ("v 0 0 0\nf 1 1 a\n", 2, "`a` is no index"),
+            ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is no index"),
+            ("usemtl red\n", 1, "no material `red`"),
+            ("v 0 0 0\nnonsense\n", 2, "`nonsense`"),
+            ("\u{1}\u{2}\n", 1, "no statement"),
+        ],
+    );
     let (_, place, message) = malformed(&[("m.obj", b"v 0 0 0\n")]);
     assert_eq!((place, message.as_str()), (Place::Whole, "there are no triangles in it"));
 }
@@ -180,7 +183,8 @@ fn ply_mistakes_have_their_lines() {
         (body("0 0 0\n1 0 0\n0 1 0\n"), 12, "ends before its last"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "after the last"),
     ];
-    let cases: Vec<(&str, usize, &str)> = cases.iter().map(|(text, line, part)| (text.as_str(), *line, *part)).collect();
+    let cases: Vec<(&str, usize, &str)> =
+        cases.iter().map(|(text, line, part)| (text.as_str(), *line, *part)).collect();
     malformed_lines("m.ply", &cases);
 }
 

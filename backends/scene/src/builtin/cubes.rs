@@ -4,7 +4,8 @@ use glam::{Quat, Vec3};
 
 use super::{Object, Row};
 
-pub(super) const ROW: Row = Row { name: "cubes", summary: "three translucent cubes, each partly in the next", parameters: &[], make };
+pub(super) const ROW: Row =
+    Row { name: "cubes", summary: "three translucent cubes, each partly in the next", parameters: &[], make };
 
 fn make(_: &[u32]) -> Vec<Object> {
     let cubes = [
@@ -12,7 +13,10 @@ fn make(_: &[u32]) -> Vec<Object> {
         ("green", Vec3::new(0.0, 0.15, -0.2), -0.2, [0.15, 0.7, 0.2, 0.45]),
         ("blue", Vec3::new(0.65, -0.15, 0.35), 0.7, [0.12, 0.25, 0.9, 0.45]),
     ];
-    cubes.into_iter().map(|(name, middle, turn, color)| cube(name, middle, Quat::from_rotation_y(turn), color)).collect()
+    cubes
+        .into_iter()
+        .map(|(name, middle, turn, color)| cube(name, middle, Quat::from_rotation_y(turn), color))
+        .collect()
 }
 
 fn cube(name: &str, middle: Vec3, turn: Quat, color: [f32; 4]) -> Object {

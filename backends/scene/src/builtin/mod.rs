@@ -79,7 +79,8 @@ impl FromStr for Builtin {
             };
             let (least, greatest) = parameter.range;
             let value = value.parse().ok().filter(|value| (least..=greatest).contains(value));
-            let value = value.ok_or_else(|| Error::Unknown(format!("`{part}`: give `{key}` from {least} to {greatest}")))?;
+            let value =
+                value.ok_or_else(|| Error::Unknown(format!("`{part}`: give `{key}` from {least} to {greatest}")))?;
             if let Some(place) = values.get_mut(index) {
                 *place = value;
             }

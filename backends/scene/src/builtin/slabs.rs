@@ -22,7 +22,8 @@ fn slab(index: u32, random: &mut Random) -> Object {
     let (width, height) = (random.between(0.15, 0.4), random.between(0.15, 0.4));
     let color = hue(random.unit(), random.between(0.3, 0.6));
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let corners = corners.map(|(a, b): (f32, f32)| object.vertex([x + a * width, y + b * height, z], [0.0, 0.0, -1.0], color));
+    let corners =
+        corners.map(|(a, b): (f32, f32)| object.vertex([x + a * width, y + b * height, z], [0.0, 0.0, -1.0], color));
     object.polygon(&corners);
     object
 }

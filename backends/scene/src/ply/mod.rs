@@ -36,7 +36,9 @@ fn vertices(element: &Element, body: &mut Body<'_>, color: [f32; 4], object: &mu
     let slots: Vec<Option<usize>> = element
         .properties
         .iter()
-        .map(|property| VALUES.iter().position(|name| property.name == *name || property.name == format!("diffuse_{name}")))
+        .map(|property| {
+            VALUES.iter().position(|name| property.name == *name || property.name == format!("diffuse_{name}"))
+        })
         .collect();
     if let Some(axis) = (0..3).find(|axis| !slots.contains(&Some(*axis))) {
         return Err(Fault::line(element.line, format!("vertices have no `{}`", VALUES[axis])));
