@@ -116,7 +116,7 @@ fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut bytes).unwrap();
     assert_eq!(info.color_type, png::ColorType::Rgba);
-    (info.width, info.height, bytes.as_chunks::<4>().0.to_vec())
+    (info.width, info.height, bytes.chunks_exact(4).map(|pixel| pixel.try_into().unwrap()).collect())
 }
 
 /// The command of the README with these arguments, and its picture.

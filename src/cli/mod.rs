@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod render;
 mod show;
+mod slice;
 mod uniforms;
 mod view;
 

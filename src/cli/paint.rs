@@ -5,12 +5,13 @@
 
 use fragbuf::{Form, Plan, Registry, Request, TARGETS, Target, Variant, generate, tier};
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
-use fragbuf_runtime::{Counters, Error, Output, PassTime, Renderer, Settings, Shaders, Sizing, block_on};
+use fragbuf_runtime::{Error, Output, Renderer, Settings, Shaders, Sizing, block_on};
 
 use super::attributes::{Geometry, geometry};
 use super::input::Input;
 use super::output::{Failure, warn};
 use super::progress::Progress;
+use super::slice::{Slice, SliceFailure};
 use super::uniforms;
 use super::view::{Stage, View};
 
@@ -28,10 +29,7 @@ pub(crate) struct Wish<'a> {
 
 /// What came of it.
 pub(crate) struct Painted {
-    pub(crate) pixels: Vec<[f32; 4]>,
-    pub(crate) counters: Option<Counters>,
-    pub(crate) times: Option<Vec<PassTime>>,
-    pub(crate) bytes: u64,
+    pub(crate) slice: Slice,
     pub(crate) info: wgpu::AdapterInfo,
     pub(crate) target: &'static Target,
     pub(crate) plan: Plan,
@@ -95,7 +93,7 @@ impl Painter {
         Err(refusal)
     }
 
-    /// Draws until nothing is lost for want of room; `room` is what was found to be needed, in fragments.
+    /// Draws the whole picture: at once, or in slices as high as the device has memory for.
     fn paint(
         self,
         wish: &Wish<'_>,
@@ -104,25 +102,75 @@ impl Painter {
         progress: &Progress,
         (frames, room): (&mut u32, &mut Option<u32>),
     ) -> Result<Painted, Failure> {
-        let Headless { device, queue, info, .. } = &self.headless;
         let (width, height) = view.size;
+        let device = &self.headless.device;
+        progress.stage(format!("{}: making pipelines", wish.description));
+        let mesh = Mesh::upload(device, &self.headless.queue, &geometry(&stage.scene, &self.shaders.plan)?)?;
         let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve { fragments });
         let settings = Settings { sizing, timestamps: view.json, ..Settings::new(BLENDED, width, height) };
-        progress.stage(format!("{}: making pipelines", wish.description));
-        let mut renderer = block_on(device, Renderer::new(device, queue, &self.shaders, &settings))??;
-        for (name, value) in uniforms::values(wish.uniforms, &self.variant)? {
+        let mut rows = Renderer::fitting_height(device, &self.shaders, &settings)?;
+        let mut whole: Option<Slice> = None;
+        let mut top = 0;
+        while top < height {
+            let sizing = if rows < height { Sizing::Auto } else { sizing };
+            let settings = Settings { sizing, height: rows.min(height - top), ..settings.clone() };
+            let mut count = || {
+                *frames += 1;
+                progress.stage(format!("{}: frame {frames}, row {top} of {height}", wish.description));
+            };
+            match self.slice(wish, &settings, (top, height), stage, &mesh, &mut count) {
+                Ok(slice) => {
+                    top += settings.height;
+                    whole = Some(match whole {
+                        Some(above) => above.with(slice),
+                        None => slice,
+                    });
+                }
+                // More fragments than a buffer may hold: half as many rows have fewer.
+                Err(SliceFailure::TooLarge(_)) if settings.height > 1 => rows = settings.height.div_ceil(2),
+                Err(SliceFailure::TooLarge(failure) | SliceFailure::Other(failure)) => return Err(failure),
+            }
+        }
+        let whole = whole.ok_or_else(|| Failure::Device("the picture has no rows".to_owned()))?;
+        *room = whole.room;
+        Ok(Painted {
+            slice: whole,
+            info: self.headless.info.clone(),
+            target: self.target,
+            plan: self.shaders.plan,
+            frames: *frames,
+        })
+    }
+
+    /// Draws one slice until nothing is lost for want of room.
+    fn slice(
+        &self,
+        wish: &Wish<'_>,
+        settings: &Settings,
+        (top, whole_height): (u32, u32),
+        stage: &Stage,
+        mesh: &Mesh,
+        count: &mut dyn FnMut(),
+    ) -> Result<Slice, SliceFailure> {
+        let Headless { device, queue, .. } = &self.headless;
+        let mut renderer = block_on(device, Renderer::new(device, queue, &self.shaders, settings))??;
+        for (name, value) in uniforms::values(wish.uniforms, &self.variant).map_err(SliceFailure::Other)? {
             renderer.set_uniform(&name, value)?;
         }
         renderer.set_camera(&stage.camera.view_projection);
-        let geometry = geometry(&stage.scene, &self.shaders.plan)?;
-        let mesh = Mesh::upload(device, queue, &geometry)?;
-        let offscreen = Offscreen::new(device, BLENDED, width, height)?;
+        let offscreen = Offscreen::new(device, BLENDED, settings.width, settings.height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        let automatic = u64::from(width) * u64::from(height) * u64::from(Sizing::AUTO_PER_PIXEL);
+        let automatic = u64::from(settings.width) * u64::from(settings.height) * u64::from(Sizing::AUTO_PER_PIXEL);
+        let mut room = match settings.sizing {
+            Sizing::Reserve { fragments } => Some(fragments),
+            Sizing::Auto | Sizing::Exact => None,
+        };
         loop {
-            *frames += 1;
-            progress.stage(format!("{}: frame {frames}", wish.description));
-            renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+            count();
+            renderer.render(&output, &mut |pass, _| {
+                pass.set_viewport(0.0, -(top as f32), settings.width as f32, whole_height as f32, 0.0, 1.0);
+                mesh.draw(pass);
+            })?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let counters = renderer.counters(&mut encoder);
             let times = renderer.pass_times(&mut encoder);
@@ -130,28 +178,16 @@ impl Painter {
             let counters = counters.map(|pending| pending.wait(device)).transpose()?;
             let times = times.map(|pending| pending.wait(device)).transpose()?;
             let short = counters.as_ref().map_or(0, |counters| counters.get("pool_exhausted"));
-            if short > 0 {
-                // Every fragment that found no room was counted: with so much more there is room for all.
-                let needed = room.map_or(automatic, u64::from) + u64::from(short);
-                let fragments =
-                    u32::try_from(needed).map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?;
-                *room = Some(fragments);
-                block_on(device, renderer.reserve(fragments))??;
-                continue;
+            if short == 0 {
+                let pixels = offscreen.colors(device, queue)?;
+                return Ok(Slice { pixels, counters, times, bytes: renderer.allocated_bytes(), room });
             }
-            let pixels = offscreen.colors(device, queue)?;
-            let bytes = renderer.allocated_bytes();
-            let (info, frames) = (info.clone(), *frames);
-            return Ok(Painted {
-                pixels,
-                counters,
-                times,
-                bytes,
-                info,
-                target: self.target,
-                plan: self.shaders.plan,
-                frames,
-            });
+            // Every fragment that found no room was counted: with so much more there is room for all.
+            let needed = room.map_or(automatic, u64::from) + u64::from(short);
+            let too_many = || SliceFailure::TooLarge(Failure::Device(format!("{needed} fragments are too many")));
+            let fragments = u32::try_from(needed).map_err(|_| too_many())?;
+            room = Some(fragments);
+            block_on(device, renderer.reserve(fragments))??;
         }
     }
 }
@@ -169,7 +205,7 @@ impl Painted {
     /// The option that makes the resolve pass hold more, and twice what it holds now, where some layers did not fit and
     /// there is more to be had.
     fn more_layers(&self) -> Option<(String, u32)> {
-        self.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
+        self.slice.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
         self.plan.selection.rows.iter().find_map(|selected| {
             let parameter = selected.row.parameters.iter().find(|parameter| parameter.name == LAYERS)?;
             let (_, now) = self.plan.constants.iter().find(|(name, _)| *name == parameter.constant)?;
@@ -185,7 +221,7 @@ impl Painted {
     }
 
     fn warn(&self, description: &str) {
-        for counter in self.counters.iter().flat_map(|counters| &counters.0) {
+        for counter in self.slice.counters.iter().flat_map(|counters| &counters.0) {
             // What better fragments displaced is what the description asked for.
             if counter.loss && counter.count > 0 && counter.name != "displaced" {
                 warn(&format!("{description}: {} fragments lost: {}", counter.count, counter.name));

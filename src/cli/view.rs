@@ -75,10 +75,10 @@ impl View {
 
     /// What is wrong with the arguments and needs no work to see.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        match self.scene.strip_prefix("builtin:") {
-            Some(name) => Ok(drop(name.parse::<fragbuf_scene::Builtin>()?)),
-            None => Ok(()),
+        if let Some(name) = self.scene.strip_prefix("builtin:") {
+            name.parse::<fragbuf_scene::Builtin>()?;
         }
+        Ok(())
     }
 }
 

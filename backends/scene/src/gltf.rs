@@ -163,7 +163,7 @@ fn triangles(mode: Mode, indices: &[u32]) -> Option<Vec<[u32; 3]>> {
         _ => None,
     };
     match mode {
-        Mode::Triangles => Some(indices.as_chunks::<3>().0.to_vec()),
+        Mode::Triangles => Some(indices.chunks_exact(3).filter_map(|corners| corners.try_into().ok()).collect()),
         Mode::TriangleStrip => Some(indices.windows(3).enumerate().filter_map(triples).collect()),
         Mode::TriangleFan => {
             let (first, rest) = indices.split_first()?;

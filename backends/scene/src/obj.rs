@@ -51,14 +51,12 @@ const PASSED_OVER: [&str; 37] = [
     "cdp",
 ];
 
+/// The name of a library's file and its text, by the name that the model calls it.
+type Library<'a> = dyn Fn(&str) -> Result<(String, String), Error> + 'a;
+
 /// Reads a model. `library` gives the text of a material library by the name that the model calls it; `color` is the colour
 /// of what has no material.
-pub(crate) fn parse(
-    text: &str,
-    file: &str,
-    color: [f32; 4],
-    library: &dyn Fn(&str) -> Result<(String, String), Error>,
-) -> Result<Scene, Error> {
+pub(crate) fn parse(text: &str, file: &str, color: [f32; 4], library: &Library<'_>) -> Result<Scene, Error> {
     let mut reader = Reader { color, ..Reader::default() };
     for (line, statement) in lines(text) {
         let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
