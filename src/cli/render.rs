@@ -71,7 +71,7 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
             "culled": tally.as_ref().map(|tally| tally.culled),
             "dropped": painted.slice.counters.as_ref().map(|counters| counters.lost()),
         },
-        "losses": losses,
+        "lost": losses,
         "hit_ratio": tally.as_ref().map(|tally| tally.hit_ratio),
         "frames": painted.frames,
     })
