@@ -195,6 +195,23 @@ fn more_layers_than_there_was_room_for_are_not_lost() {
 }
 
 #[test]
+fn a_picture_in_slices_is_the_picture() {
+    // 256² pixels of 1024 entries are 256 MiB: twice what a software driver binds.
+    let folder = folder("slices");
+    let picture = |k: &str| {
+        let out = folder.join(format!("{k}.png"));
+        let view =
+            ["--scene", "builtin:slabs,n=40", "--camera", "clip", "--size", "256x256", "--device", "cpu", "--json"];
+        let output =
+            fragbuf(&[&["render", "kplus_array", "--set", k, "--out", out.to_str().unwrap()], &view[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (read(&out).2, figures["fragments"].clone())
+    };
+    assert!(picture("k=64") == picture("k=1024"));
+}
+
+#[test]
 fn what_is_lost_all_the_same_is_said() {
     let folder = folder("lost");
     let mut quads = quads(12, 3);
