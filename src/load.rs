@@ -24,6 +24,16 @@ pub fn variant(
     set: &[(String, String)],
     registry: &Registry,
 ) -> Result<Variant, Diagnostics> {
+    variant_or(description, set, &[], registry)
+}
+
+/// The same, with the choices `unless_said` on axes of which neither the description nor `set` says anything.
+pub fn variant_or(
+    description: &Description,
+    set: &[(String, String)],
+    unless_said: &[(&str, &str)],
+    registry: &Registry,
+) -> Result<Variant, Diagnostics> {
     let (mut draft, mut diagnostics) = match description {
         Description::Technique(key) => {
             (Draft::from_technique(key, &Origin::new(key.as_str(), 1, 1)), Diagnostics::new())
@@ -45,6 +55,12 @@ pub fn variant(
                 format!("`{value}` is no value for `{name}`"),
                 format!("give {wanted}"),
             ));
+        }
+    }
+    for (axis, value) in unless_said {
+        if !draft.choices.iter().any(|choice| choice.axis.value == *axis) {
+            // A choice on an axis takes any text; the rules judge it.
+            let _ = draft.set(axis, value, &Origin::new("unless said", 1, 1));
         }
     }
     // The rules run even over a draft with mistakes in it: all that is wrong comes at once.

@@ -35,6 +35,16 @@ impl Input {
         load::variant(&self.description, set, registry).map_err(|diagnostics| self.failure(diagnostics))
     }
 
+    /// The variant, after `--set`, with `unless_said` on axes that nobody chose on.
+    pub(crate) fn variant_or(
+        &self,
+        set: &[(String, String)],
+        unless_said: &[(&str, &str)],
+        registry: &Registry,
+    ) -> Result<Variant, Failure> {
+        load::variant_or(&self.description, set, unless_said, registry).map_err(|diagnostics| self.failure(diagnostics))
+    }
+
     /// Diagnostics with this input's text beside them.
     pub(crate) fn failure(&self, diagnostics: fragbuf::Diagnostics) -> Failure {
         Failure::Description(diagnostics, self.sources.clone())

@@ -1,10 +1,20 @@
 //! Arguments in, exit code out. 0: done; 1: the description or an input is at fault; 2: usage; 3: device or file system.
 
+mod attributes;
+mod compare;
+mod devices;
 mod generate;
 mod input;
 mod list;
 mod output;
+mod paint;
+mod picture;
+mod progress;
+mod render;
 mod show;
+mod slice;
+mod uniforms;
+mod view;
 
 use std::process::ExitCode;
 
@@ -25,6 +35,12 @@ enum Command {
     Show(show::Show),
     /// Writes the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
+    /// A picture of a scene through one description
+    Render(render::Render),
+    /// Two techniques on the same scene: how far their pictures are apart
+    Compare(compare::Compare),
+    /// The adapters that can render
+    Devices(devices::Devices),
 }
 
 pub(crate) fn run() -> ExitCode {
@@ -32,6 +48,9 @@ pub(crate) fn run() -> ExitCode {
         Command::List(list) => list.run(),
         Command::Show(show) => show.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Render(render) => render.run(),
+        Command::Compare(compare) => compare.run(),
+        Command::Devices(devices) => devices.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -15,6 +15,10 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file could not be read or written.
     Files(String),
+    /// A scene is at fault.
+    Input(String),
+    /// The device cannot do it.
+    Device(String),
 }
 
 impl Failure {
@@ -28,12 +32,41 @@ impl Failure {
         let (text, code) = match self {
             Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
             Failure::Usage(text) => (format!("error: {text}\n"), 2),
-            Failure::Files(text) => (format!("error: {text}\n"), 3),
+            Failure::Input(text) => (format!("error: {text}\n"), 1),
+            Failure::Files(text) | Failure::Device(text) => (format!("error: {text}\n"), 3),
         };
         // Nobody is left to tell when stderr is gone.
         let _ = std::io::stderr().write_all(text.as_bytes());
         ExitCode::from(code)
     }
+}
+
+impl From<fragbuf_scene::Error> for Failure {
+    fn from(error: fragbuf_scene::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            fragbuf_scene::Error::Unreadable { .. } => Failure::Files(text),
+            fragbuf_scene::Error::Malformed { .. } => Failure::Input(text),
+            fragbuf_scene::Error::Unknown(_) => Failure::Usage(text),
+        }
+    }
+}
+
+impl From<fragbuf_runtime::Error> for Failure {
+    fn from(error: fragbuf_runtime::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            fragbuf_runtime::Error::Unsupported { .. } => Failure::Input(text),
+            fragbuf_runtime::Error::BadValue { .. } => Failure::Usage(text),
+            _ => Failure::Device(text),
+        }
+    }
+}
+
+/// Says something on stderr without giving up.
+pub(crate) fn warn(text: &str) {
+    // Nobody is left to tell when stderr is gone.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
 }
 
 /// Writes to stdout. A reader that has seen enough (`| head`) is no failure.

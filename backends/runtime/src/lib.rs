@@ -49,3 +49,6 @@ pub use shaders::{Code, Module, Shaders};
 pub use timing::PassTime;
 pub use uniforms::Value;
 pub use vertices::{VertexInput, VertexInputs};
+
+/// The wgpu that devices, encoders and passes must come from.
+pub use wgpu;

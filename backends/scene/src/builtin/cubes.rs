@@ -1,0 +1,33 @@
+//! Three translucent cubes, each partly in the next.
+
+use glam::{Quat, Vec3};
+
+use super::{Object, Row};
+
+pub(super) const ROW: Row =
+    Row { name: "cubes", summary: "three translucent cubes, each partly in the next", parameters: &[], make };
+
+fn make(_: &[u32]) -> Vec<Object> {
+    let cubes = [
+        ("red", Vec3::new(-0.7, -0.1, 0.3), 0.3, [0.85, 0.12, 0.1, 0.45]),
+        ("green", Vec3::new(0.0, 0.15, -0.2), -0.2, [0.15, 0.7, 0.2, 0.45]),
+        ("blue", Vec3::new(0.65, -0.15, 0.35), 0.7, [0.12, 0.25, 0.9, 0.45]),
+    ];
+    cubes
+        .into_iter()
+        .map(|(name, middle, turn, color)| cube(name, middle, Quat::from_rotation_y(turn), color))
+        .collect()
+}
+
+fn cube(name: &str, middle: Vec3, turn: Quat, color: [f32; 4]) -> Object {
+    let mut object = Object { name: name.to_owned(), ..Object::default() };
+    for normal in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
+        let (u, v) = normal.any_orthonormal_pair();
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b): (f32, f32)| {
+            let position = middle + turn * (0.5 * (normal + a * u + b * v));
+            object.vertex(position.to_array(), (turn * normal).to_array(), color)
+        });
+        object.polygon(&corners);
+    }
+    object
+}

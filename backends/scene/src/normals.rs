@@ -1,0 +1,28 @@
+//! Normals that a model does not give: the mean of the triangles around a vertex, weighted by area.
+
+use glam::Vec3;
+
+use crate::Object;
+
+/// Replaces normals of zero, and makes every normal a unit vector. A vertex of no triangle with an area looks along z.
+pub(crate) fn complete(object: &mut Object) {
+    let mut sums = vec![Vec3::ZERO; object.positions.len()];
+    if object.normals.iter().any(|normal| Vec3::from_array(*normal) == Vec3::ZERO) {
+        for triangle in &object.triangles {
+            let corners = triangle
+                .map(|index| object.positions.get(index as usize).copied().map_or(Vec3::ZERO, Vec3::from_array));
+            let [a, b, c] = corners;
+            let area = (b - a).cross(c - a);
+            for index in triangle {
+                if let Some(sum) = sums.get_mut(*index as usize) {
+                    *sum += area;
+                }
+            }
+        }
+    }
+    for (normal, sum) in object.normals.iter_mut().zip(sums) {
+        let given = Vec3::from_array(*normal);
+        let chosen = if given == Vec3::ZERO { sum } else { given };
+        *normal = chosen.normalize_or(Vec3::Z).to_array();
+    }
+}

@@ -1,0 +1,68 @@
+//! The data: indexed triangles per object.
+
+/// What is drawn, object after object, triangle after triangle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The index of an object is its id.
+    pub objects: Vec<Object>,
+}
+
+/// Triangles that belong together. The three vertex lists are of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Object {
+    /// Its name in the model; empty where it has none.
+    pub name: String,
+    /// Positions, finite.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit normals.
+    pub normals: Vec<[f32; 3]>,
+    /// Linear red, green and blue with straight alpha.
+    pub colors: Vec<[f32; 4]>,
+    /// Three vertices each, in range.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Scene {
+    /// Vertices of all objects.
+    pub fn vertices(&self) -> usize {
+        self.objects.iter().map(|object| object.positions.len()).sum()
+    }
+
+    /// Triangles of all objects.
+    pub fn triangles(&self) -> usize {
+        self.objects.iter().map(|object| object.triangles.len()).sum()
+    }
+
+    /// The least and the greatest coordinates of what triangles use; `None`: there are no triangles.
+    pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
+        let used = self.objects.iter().flat_map(Object::corners);
+        used.map(|position| (position, position)).reduce(|(least, greatest), (position, _)| {
+            let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3]| {
+                std::array::from_fn(|axis| choose(from[axis], position[axis]))
+            };
+            (pick(f32::min, least), pick(f32::max, greatest))
+        })
+    }
+}
+
+impl Object {
+    /// The positions of the triangles' corners, as often as they are used.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [f32; 3]> {
+        self.triangles.iter().flatten().filter_map(|index| self.positions.get(*index as usize).copied())
+    }
+
+    /// Adds a vertex; its index. A normal of zero is computed later from the triangles around the vertex.
+    pub(crate) fn vertex(&mut self, position: [f32; 3], normal: [f32; 3], color: [f32; 4]) -> u32 {
+        self.positions.push(position);
+        self.normals.push(normal);
+        self.colors.push(color);
+        self.positions.len() as u32 - 1
+    }
+
+    /// Adds a convex polygon as a fan.
+    pub(crate) fn polygon(&mut self, corners: &[u32]) {
+        if let [first, rest @ ..] = corners {
+            self.triangles.extend(rest.windows(2).filter_map(|pair| Some([*first, *pair.first()?, *pair.last()?])));
+        }
+    }
+}

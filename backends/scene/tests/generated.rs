@@ -1,0 +1,79 @@
+//! Generated scenes, cameras and light.
+#![allow(missing_docs, reason = "tests are read, not documented")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use fragbuf_scene::{BUILTIN, Camera, Error, Eye, Scene, light, open};
+
+fn scene(name: &str) -> Scene {
+    open(&format!("builtin:{name}"), [1.0; 4]).unwrap()
+}
+
+#[test]
+fn every_scene_is_whole_and_the_same_every_time() {
+    for row in BUILTIN {
+        let name = if row.name == "hairball" { "hairball,strands=20" } else { row.name };
+        let made = scene(name);
+        assert_eq!(made, scene(name));
+        for object in &made.objects {
+            assert!(object.normals.len() == object.positions.len() && object.colors.len() == object.positions.len());
+            assert!(object.triangles.iter().flatten().all(|index| (*index as usize) < object.positions.len()));
+            assert!(object.positions.iter().flatten().all(|value| value.is_finite()));
+            assert!(object.normals.iter().all(|[x, y, z]| (x * x + y * y + z * z - 1.0).abs() < 1.0e-4), "{name}");
+            assert!(object.colors.iter().flatten().all(|value| (0.0..=1.0).contains(value)));
+        }
+    }
+    assert_ne!(scene("slabs"), scene("slabs,seed=2"));
+    assert_eq!(scene("slabs,n=5").objects.len(), 5);
+}
+
+#[test]
+fn the_hairball_has_over_two_million_triangles() {
+    let made = scene("hairball");
+    assert!(made.triangles() > 2_000_000, "{}", made.triangles());
+}
+
+#[test]
+fn what_there_is_not_is_listed() {
+    let refused = |name: &str| match open(name, [1.0; 4]) {
+        Err(Error::Unknown(message)) => message,
+        other => format!("{other:?}"),
+    };
+    assert_eq!(refused("builtin:bunny"), "no scene `builtin:bunny`: there are cubes, slabs, marbles, hairball");
+    assert_eq!(refused("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: it takes n (16), seed (1)");
+    assert_eq!(refused("builtin:slabs,n=0"), "`n=0`: give `n` from 1 to 65536");
+    assert_eq!(refused("builtin:slabs,n"), "`n`: give `n` from 1 to 65536");
+    assert_eq!(refused("builtin:cubes,n=3"), "`builtin:cubes` has no `n`: it takes nothing");
+}
+
+fn project(matrix: &[f32; 16], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    let row = |row: usize| matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
+    [row(0) / row(3), row(1) / row(3), row(2) / row(3)]
+}
+
+#[test]
+fn the_framing_camera_sees_everything_and_is_near() {
+    for name in ["cubes", "slabs", "marbles", "hairball,strands=9"] {
+        for aspect in [0.3, 1.0, 2.5] {
+            let made = scene(name);
+            let camera = Camera::framing(&made, aspect);
+            let mut reach = 0.0_f32;
+            for position in made.objects.iter().flat_map(|object| &object.positions) {
+                let [x, y, z] = project(&camera.view_projection, *position);
+                assert!(x.abs() <= 1.0 && y.abs() <= 1.0 && (0.0..=1.0).contains(&z), "{name} {aspect}: {x} {y} {z}");
+                reach = reach.max(x.abs()).max(y.abs());
+            }
+            assert!(reach > 0.9, "{name} {aspect}: {reach}");
+        }
+    }
+}
+
+#[test]
+fn light_falls_from_the_eye_on_both_sides() {
+    let mut made = scene("slabs,n=1");
+    let bare = made.objects[0].colors[0];
+    light(&mut made, Eye::Along([0.0, 0.0, 1.0]));
+    assert_eq!(made.objects[0].colors[0], bare);
+    light(&mut made, Eye::Along([1.0, 0.0, 0.0]));
+    assert!((made.objects[0].colors[0][0] - 0.2 * bare[0]).abs() < 1.0e-6);
+    assert_eq!(made.objects[0].colors[0][3], bare[3]);
+}

@@ -1,0 +1,282 @@
+//! Small models made here, one of each format, and one of each kind of mistake with the place that it must be given.
+#![allow(missing_docs, reason = "tests are read, not documented")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use base64::Engine as _;
+use fragbuf_scene::{Error, Place, Scene, load};
+use tempfile::TempDir;
+
+const COLOR: [f32; 4] = [0.5, 0.5, 0.5, 0.25];
+
+/// Writes the files, and loads the first.
+fn loaded(files: &[(&str, &[u8])]) -> Result<Scene, Error> {
+    let folder = TempDir::new().unwrap();
+    let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
+    for (path, (_, bytes)) in paths.iter().zip(files) {
+        std::fs::write(path, bytes).unwrap();
+    }
+    load(&paths[0], COLOR)
+}
+
+/// The file's name, the place and the message of what is malformed.
+fn malformed(files: &[(&str, &[u8])]) -> (String, Place, String) {
+    match loaded(files) {
+        Err(Error::Malformed { file, place, message }) => (file.rsplit('/').next().unwrap().to_owned(), place, message),
+        other => panic!("{:?}: {other:?}", String::from_utf8_lossy(files[0].1)),
+    }
+}
+
+/// Every text is malformed at this line, and the message has this in it.
+fn malformed_lines(name: &str, cases: &[(&str, usize, &str)]) {
+    for (text, line, part) in cases {
+        let (file, place, message) = malformed(&[(name, text.as_bytes())]);
+        assert_eq!((file.as_str(), place), (name, Place::Line(*line)), "{text}: {message}");
+        assert!(message.contains(part), "{text}: {message}");
+    }
+}
+
+#[test]
+fn obj_with_materials() {
+    let model = b"# a square and a triangle\nmtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 \\\n 0\nv 0 1 0\nvt 0 0\nvn 0 0 2\no square\n\
+        usemtl glass\nf 1//1 2//1 3//1 4//1\ng tri\nusemtl red\nf -4 -3 -2\nl 1 2\n";
+    let library = b"newmtl glass\nKd 0.2 0.4 0.6\nd 0.5 # half\nNs 10\nnewmtl red\nKd 1 0 0\nTr 0.25\nmap_Kd x.png\n";
+    let scene = loaded(&[("m.obj", model), ("a b.mtl", library)]).unwrap();
+    let [square, triangle] = scene.objects.as_slice() else { panic!("{scene:?}") };
+    assert_eq!((square.name.as_str(), triangle.name.as_str()), ("square", "tri"));
+    assert_eq!(square.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(square.positions[2], [1.0, 1.0, 0.0]);
+    assert_eq!(square.colors[0], [0.2, 0.4, 0.6, 0.5]);
+    assert_eq!(square.normals[0], [0.0, 0.0, 1.0]);
+    assert_eq!(triangle.colors, [[1.0, 0.0, 0.0, 0.75]; 3]);
+    assert_eq!(triangle.normals, [[0.0, 0.0, 1.0]; 3]);
+    assert_eq!((scene.triangles(), scene.vertices()), (3, 7));
+    assert_eq!(scene.bounds(), Some(([0.0; 3], [1.0, 1.0, 0.0])));
+}
+
+#[test]
+fn obj_without_materials() {
+    let scene = loaded(&[("m.obj", b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n")]).unwrap();
+    assert_eq!(scene.objects[0].colors, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], COLOR]);
+}
+
+#[test]
+fn obj_mistakes_have_their_lines() {
+    malformed_lines(
+        "m.obj",
+        &[
+            ("v 0 0\n", 1, "2 numbers"),
+            ("\n# x\nv 0 0 x\n", 3, "`x` is no number"),
+            ("v 0 0 nan\n", 1, "not finite"),
+            ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "2 vertices"),
+            ("v 0 0 0\nf 1 1 2\nv 0 0 0\n", 2, "no position 2"),
+            ("v 0 0 0\nf 1 1 0\n", 2, "no position 0"),
+            ("v 0 0 0\nf 1 1 -2\n", 2, "no position -2"),
+            ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "no normal 1"),
+            ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "no normal 3"),
+            ("v 0 0 0\nf 1 1 a\n", 2, "`a` is no index"),
+            ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is no index"),
+            ("usemtl red\n", 1, "no material `red`"),
+            ("v 0 0 0\nnonsense\n", 2, "`nonsense`"),
+            ("\u{1}\u{2}\n", 1, "no statement"),
+        ],
+    );
+    let (_, place, message) = malformed(&[("m.obj", b"v 0 0 0\n")]);
+    assert_eq!((place, message.as_str()), (Place::Whole, "there are no triangles in it"));
+}
+
+#[test]
+fn mtl_mistakes_have_their_own_file_and_line() {
+    let cases: [(&str, usize, &str); 6] = [
+        ("Kd 1 1 1\n", 1, "before the first `newmtl`"),
+        ("newmtl\n", 1, "without a name"),
+        ("newmtl a\nKd 1 1\n", 2, "2 numbers"),
+        ("newmtl a\nKd 1 1 2\n", 2, "2 is not from 0 to 1"),
+        ("newmtl a\n\nd -0.5\n", 3, "-0.5 is not from 0 to 1"),
+        ("newmtl a\nd\n", 2, "0 numbers"),
+    ];
+    for (text, line, part) in cases {
+        let (file, place, message) = malformed(&[("m.obj", b"mtllib l.mtl\n"), ("l.mtl", text.as_bytes())]);
+        assert_eq!((file.as_str(), place), ("l.mtl", Place::Line(line)), "{text}");
+        assert!(message.contains(part), "{text}: {message}");
+    }
+    assert!(matches!(loaded(&[("m.obj", b"mtllib none.mtl\n")]), Err(Error::Unreadable { .. })));
+}
+
+fn ply(format: &str, body: &[u8]) -> Vec<u8> {
+    let head = format!(
+        "ply\nformat {format} 1.0\ncomment made here\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+         property list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n"
+    );
+    [head.as_bytes(), body].concat()
+}
+
+/// The bytes of a body; `order` turns the bytes of each number.
+fn binary(index: i32, order: fn(&mut [u8])) -> Vec<u8> {
+    let mut body = Vec::new();
+    let mut push = |mut bytes: Vec<u8>| {
+        order(&mut bytes);
+        body.extend(bytes);
+    };
+    for (vertex, color) in [([0.0_f32, 0.0, 0.0], 255), ([1.0, 0.0, 0.0], 0), ([0.0, 1.0, 0.5], 51)] {
+        vertex.iter().for_each(|value| push(value.to_le_bytes().to_vec()));
+        [color; 3].iter().for_each(|channel: &u8| push(vec![*channel]));
+    }
+    push(vec![3]);
+    [0, 1, index].iter().for_each(|index| push(index.to_le_bytes().to_vec()));
+    push(7_i32.to_le_bytes().to_vec());
+    body
+}
+
+#[test]
+fn ply_in_three_encodings_and_compressed() {
+    let ascii = ply("ascii", b"0 0 0 255 255 255\n1 0 0 0 0 0\n\n0 1 0.5 51 51 51\n3 0 1 2\n7\n");
+    let little = ply("binary_little_endian", &binary(2, |_| {}));
+    let big = ply("binary_big_endian", &binary(2, <[u8]>::reverse));
+    let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    gz.write_all(&little).unwrap();
+    let gz = gz.finish().unwrap();
+    let expected = loaded(&[("m.ply", &ascii)]).unwrap();
+    assert_eq!(expected.objects[0].positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]]);
+    assert_eq!(expected.objects[0].colors, [[1.0; 4], [0.0, 0.0, 0.0, 1.0], [0.2, 0.2, 0.2, 1.0]]);
+    assert_eq!(expected.objects[0].triangles, [[0, 1, 2]]);
+    for (name, bytes) in [("m.ply", &little), ("m.ply", &big), ("m.ply.gz", &gz)] {
+        assert_eq!(loaded(&[(name, bytes)]).unwrap(), expected);
+    }
+    let (_, _, message) = malformed(&[("m.ply.gz", &gz[..gz.len() / 2])]);
+    assert!(message.contains("compression is broken"), "{message}");
+}
+
+#[test]
+fn ply_without_colours_has_the_callers() {
+    let text = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+        property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let scene = loaded(&[("m.ply", text)]).unwrap();
+    assert_eq!((scene.objects[0].colors[0], scene.objects[0].normals[0]), (COLOR, [0.0, 0.0, 1.0]));
+}
+
+#[test]
+fn ply_mistakes_have_their_lines() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n";
+    let body = |body: &str| format!("{head}{body}");
+    let cases = [
+        ("plyx\n".to_owned(), 1, "begins with `ply`"),
+        ("ply\nformat asci 1.0\n".to_owned(), 2, "no format `asci`"),
+        ("ply\nformat ascii 1.0\nelement vertex many\n".to_owned(), 3, "`many` is no count"),
+        ("ply\nformat ascii 1.0\nproperty float x\n".to_owned(), 3, "a property of no element"),
+        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".to_owned(), 4, "no type `half`"),
+        ("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n".to_owned(), 3, "no `x`"),
+        ("ply\nend_header\n".to_owned(), 2, "no `format`"),
+        ("ply\nformat ascii 1.0\nelement face 0\nend_header\n".to_owned(), 3, "no list `vertex_indices`"),
+        (body("0 0 0\n1 0\n"), 11, "fewer numbers"),
+        (body("0 0 0\n1 0 0 4\n"), 11, "`4` is more"),
+        (body("0 0 0\n1 0 zero\n"), 11, "`zero` is no number"),
+        (body("0 0 0\n1 0 inf\n"), 11, "`z` is not finite"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), 13, "no vertex 3"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), 13, "no vertex -1"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), 13, "no integer"),
+        (body("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), 13, "a face of 2"),
+        (body("0 0 0\n1 0 0\n0 1 0\n"), 12, "ends before its last"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "after the last"),
+    ];
+    let cases: Vec<(&str, usize, &str)> =
+        cases.iter().map(|(text, line, part)| (text.as_str(), *line, *part)).collect();
+    malformed_lines("m.ply", &cases);
+}
+
+#[test]
+fn binary_mistakes_have_their_bytes() {
+    let head = ply("binary_little_endian", b"").len();
+    let whole = ply("binary_little_endian", &binary(2, |_| {}));
+    let (_, place, message) = malformed(&[("m.ply", &whole[..head + 20])]);
+    assert_eq!(place, Place::Byte(head + 19), "{message}");
+    let (_, place, message) = malformed(&[("m.ply", &ply("binary_little_endian", &binary(3, |_| {})))]);
+    assert_eq!(place, Place::Byte(head + 58), "{message}");
+    assert!(message.contains("no vertex 3"), "{message}");
+}
+
+/// A triangle moved by its node, in red glass.
+fn gltf(count: usize, buffer: &str) -> String {
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+        "nodes": [{{"mesh": 0, "name": "pane", "translation": [1, 2, 3]}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1, "material": 0}}]}}],
+        "materials": [{{"pbrMetallicRoughness": {{"baseColorFactor": [1, 0, 0, 0.5]}}, "alphaMode": "BLEND"}}],
+        "accessors": [
+            {{"bufferView": 0, "componentType": 5126, "count": {count}, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}},
+            {{"bufferView": 1, "componentType": 5125, "count": 3, "type": "SCALAR"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 12}}],
+        "buffers": [{{"byteLength": 48{buffer}}}]}}"#
+    )
+}
+
+fn buffer(last: u32) -> Vec<u8> {
+    let positions = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let positions = positions.iter().flat_map(|value| value.to_le_bytes());
+    positions.chain([0, 1, last].iter().flat_map(|index: &u32| index.to_le_bytes())).collect()
+}
+
+fn uri(bytes: &[u8]) -> String {
+    let text = base64::engine::general_purpose::STANDARD.encode(bytes);
+    format!(r#", "uri": "data:application/octet-stream;base64,{text}""#)
+}
+
+fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
+    let mut json = json.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let chunk = |kind: &[u8; 4], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), kind.as_slice(), bytes].concat();
+    let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", binary)].concat();
+    [b"glTF".as_slice(), &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes(), &chunks].concat()
+}
+
+#[test]
+fn gltf_with_its_buffer_in_three_places() {
+    let inside = gltf(3, &uri(&buffer(2)));
+    let beside = gltf(3, r#", "uri": "b.bin""#);
+    let scenes = [
+        loaded(&[("m.gltf", inside.as_bytes())]).unwrap(),
+        loaded(&[("m.gltf", beside.as_bytes()), ("b.bin", &buffer(2))]).unwrap(),
+        loaded(&[("m.glb", &glb(&gltf(3, ""), &buffer(2)))]).unwrap(),
+    ];
+    for scene in &scenes {
+        let object = &scene.objects[0];
+        assert_eq!(object.name, "pane");
+        assert_eq!(object.positions, [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0], [1.0, 3.0, 3.0]]);
+        assert_eq!((object.colors[0], object.normals[0]), ([1.0, 0.0, 0.0, 0.5], [0.0, 0.0, 1.0]));
+        assert_eq!(object.triangles, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn gltf_mistakes_are_errors() {
+    let (_, place, message) = malformed(&[("m.gltf", b"{\n\"asset\": {\"version\": }\n}")]);
+    assert_eq!(place, Place::Line(2), "{message}");
+    let cases = [
+        (gltf(3, &uri(&buffer(3))), "no vertex 3"),
+        (gltf(4, &uri(&buffer(2))), "accessor 0: it reaches beyond"),
+        (gltf(0, &uri(&buffer(2))), "accessor 0"),
+        (gltf(3, &uri(&buffer(2)[..40])), "40 bytes, and 48 are said"),
+        (gltf(3, ""), "no binary part"),
+        (gltf(3, r#", "uri": "data:;base64,!!""#), "its data is broken"),
+        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"mesh\": 7"), "nodes[0].mesh"),
+        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"children\": [0]"), "its own descendant"),
+    ];
+    for (text, part) in cases {
+        let (_, _, message) = malformed(&[("m.gltf", text.as_bytes())]);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    let whole = glb(&gltf(3, ""), &buffer(2));
+    malformed(&[("m.glb", &whole[..30])]);
+    malformed(&[("m.glb", b"glTF")]);
+}
+
+#[test]
+fn files_that_are_no_models() {
+    let (_, _, message) = malformed(&[("m.stl", b"solid")]);
+    assert!(message.contains(".obj"), "{message}");
+    assert!(matches!(load("nowhere.ply".as_ref(), COLOR), Err(Error::Unreadable { .. })));
+}

@@ -1,0 +1,82 @@
+//! The scene's vertices as a description's payload: each attribute from what the scene has under its name.
+
+use fragbuf_codegen::Plan;
+use fragbuf_model::Format;
+use fragbuf_scene::{Object, Scene};
+
+use super::output::Failure;
+
+/// Vertices, one after the other, and three indices per triangle.
+pub(crate) struct Geometry {
+    pub(crate) vertices: Vec<u8>,
+    pub(crate) indices: Vec<u8>,
+    pub(crate) index_count: u32,
+}
+
+/// The words of one attribute of a vertex.
+type Words = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
+
+/// What a scene has: names, the formats that it can be read as, how to get it.
+const HAS: [(&[&str], &[Format], Words); 4] = [
+    (&["color", "colour"], &[Format::Rgba8, Format::Vec4, Format::Vec3], |object, _, vertex| {
+        bits(&object.colors, vertex)
+    }),
+    (&["alpha"], &[Format::F32], |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0]),
+    (&["normal"], &[Format::Octahedral, Format::Vec3], |object, _, vertex| bits(&object.normals, vertex)),
+    (&["id", "object"], &[Format::U32], |_, id, _| [id, 0, 0, 0]),
+];
+
+/// The vertices as the plan's geometry passes read them: the position, then the attributes in their order, without depth.
+pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> {
+    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
+    let columns: Vec<(usize, Words)> = columns.collect::<Result<_, _>>()?;
+    let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(12 * scene.triangles()));
+    let mut first = 0;
+    for (id, object) in (0..).zip(&scene.objects) {
+        for vertex in 0..object.positions.len() {
+            let position = bits(&object.positions, vertex);
+            let attributes = columns.iter().map(|(words, read)| (*words, read(object, id, vertex)));
+            for (words, values) in std::iter::once((3, position)).chain(attributes) {
+                vertices.extend(values.iter().take(words).flat_map(|word| word.to_le_bytes()));
+            }
+        }
+        indices.extend(object.triangles.iter().flatten().flat_map(|index| (first + index).to_le_bytes()));
+        first += object.positions.len() as u32;
+    }
+    let index_count =
+        u32::try_from(indices.len() / 4).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
+    Ok(Geometry { vertices, indices, index_count })
+}
+
+/// Words in a vertex, and where they come from.
+fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
+    let found = HAS.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format));
+    let Some((_, _, read)) = found else {
+        let has: Vec<String> = HAS
+            .iter()
+            .map(|(names, formats, _)| {
+                let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
+                format!("{} ({})", names.join(" or "), formats.join(", "))
+            })
+            .collect();
+        return Err(Failure::Input(format!(
+            "the scene has no `{name}: {}` for the fragments: it has {}, and depth",
+            format.keyword(),
+            has.join(", ")
+        )));
+    };
+    let words = match format {
+        Format::F32 | Format::U32 => 1,
+        Format::Vec2 => 2,
+        Format::Vec3 | Format::Octahedral => 3,
+        Format::Vec4 | Format::Rgba8 => 4,
+    };
+    Ok((words, *read))
+}
+
+/// Bits of a vertex's values; 0 beyond.
+fn bits<const N: usize>(values: &[[f32; N]], vertex: usize) -> [u32; 4] {
+    let values = values.get(vertex);
+    std::array::from_fn(|index| values.and_then(|values| values.get(index)).map_or(0, |value| value.to_bits()))
+}

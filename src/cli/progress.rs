@@ -1,0 +1,44 @@
+//! A sign of life on stderr for whatever takes longer than a second. Nothing is shown where stderr is no terminal.
+
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+/// Shown from one second after it is made until it is dropped.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    waiting: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Progress {
+    pub(crate) fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::hidden());
+        let (sender, receiver) = channel::<()>();
+        let shown = bar.clone();
+        let thread = std::thread::spawn(move || {
+            if receiver.recv_timeout(Duration::from_secs(1)) == Err(RecvTimeoutError::Timeout) {
+                shown.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+                shown.enable_steady_tick(Duration::from_millis(100));
+            }
+        });
+        Progress { bar, waiting: Some((sender, thread)) }
+    }
+
+    /// What is being done now.
+    pub(crate) fn stage(&self, what: impl Into<String>) {
+        self.bar.set_message(what.into());
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((sender, thread)) = self.waiting.take() {
+            drop(sender);
+            // A thread that failed has shown nothing; there is nothing to mend.
+            let _ = thread.join();
+        }
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,96 @@
+//! `fragbuf render`: a picture of a scene through one description, and the figures of its frame.
+
+use serde_json::{Value, json};
+
+use super::output::{self, Failure};
+use super::paint::{Painted, Wish, paint};
+use super::picture;
+use super::progress::Progress;
+use super::view::{Stage, View, scenes};
+
+#[derive(clap::Args)]
+#[command(after_help = scenes())]
+pub(crate) struct Render {
+    /// A technique's key, or a .fragbuf file
+    description: String,
+    /// Changes the description: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    set: Vec<(String, String)>,
+    /// A uniform of the description; those that are not given are 0
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = super::assignment)]
+    uniforms: Vec<(String, String)>,
+    #[command(flatten)]
+    view: View,
+}
+
+impl Render {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        let view = &self.view;
+        view.check()?;
+        let progress = Progress::new();
+        progress.stage(format!("loading {}", view.scene));
+        let stage = view.stage()?;
+        let wish =
+            Wish { description: &self.description, set: &self.set, uniforms: &self.uniforms, count_all: view.json };
+        let painted = paint(&wish, view, &stage, &progress)?;
+        progress.stage(format!("writing {}", view.out.display()));
+        let pixels = picture::displayed(&painted.slice.pixels, view.background, view.linear);
+        picture::write(&view.out, view.size, &pixels, view.linear)?;
+        drop(progress);
+        if view.json {
+            output::print(&output::json(&figures(&self.description, &painted, &stage)))?;
+        }
+        Ok(())
+    }
+}
+
+/// What `--json` says of one frame. Counts are null where the description does not count.
+pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Value {
+    let ms: serde_json::Map<String, Value> =
+        painted.slice.times.iter().flatten().map(|time| (time.pass.clone(), time.milliseconds.into())).collect();
+    let losses: serde_json::Map<String, Value> = painted
+        .slice
+        .counters
+        .iter()
+        .flat_map(|counters| counters.0.iter().filter(|counter| counter.loss))
+        .map(|counter| (counter.name.to_owned(), counter.count.into()))
+        .collect();
+    let tally = tally(painted);
+    json!({
+        "description": description,
+        "device": painted.info.name,
+        "backend": painted.info.backend.to_string(),
+        "target": painted.target.name,
+        "triangles": stage.scene.triangles(),
+        "k": painted.plan.variant.keep,
+        "ms": if painted.slice.times.is_some() { Value::from(ms) } else { Value::Null },
+        "bytes": painted.slice.bytes,
+        "fragments": {
+            "generated": tally.as_ref().map(|tally| tally.generated),
+            "stored": tally.as_ref().map(|tally| tally.stored),
+            "culled": tally.as_ref().map(|tally| tally.culled),
+            "dropped": painted.slice.counters.as_ref().map(|counters| counters.lost()),
+        },
+        "lost": losses,
+        "hit_ratio": tally.as_ref().map(|tally| tally.hit_ratio),
+        "frames": painted.frames,
+    })
+}
+
+/// Where the fragments of a frame went.
+pub(crate) struct Tally {
+    generated: u64,
+    culled: u64,
+    stored: u64,
+    /// Kept fragments over generated ones.
+    pub(crate) hit_ratio: f64,
+}
+
+/// `None` where not every event was counted.
+pub(crate) fn tally(painted: &Painted) -> Option<Tally> {
+    let counters = painted.slice.counters.as_ref().filter(|_| painted.counts_everything())?;
+    let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
+    let stored = generated.saturating_sub(culled + counters.lost());
+    let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };
+    Some(Tally { generated, culled, stored, hit_ratio })
+}

@@ -1,0 +1,381 @@
+//! Pictures by the built command, against an oracle that needs no rasteriser: quads that cover whole pixels, in clip space.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const SIZE: usize = 32;
+
+/// Pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, `y` downwards; colour and alpha in 255ths, as fragments keep them.
+#[derive(Clone, Copy, Debug)]
+struct Quad {
+    x0: usize,
+    y0: usize,
+    x1: usize,
+    y1: usize,
+    depth: f64,
+    color: [u8; 4],
+}
+
+/// Numbers from a seed: xorshift64*.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % end
+    }
+}
+
+/// `count` quads of different depths.
+fn quads(count: usize, seed: u64) -> Vec<Quad> {
+    let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9) | 1);
+    let mut depths: Vec<usize> = (1..=count).collect();
+    for index in (1..count).rev() {
+        depths.swap(index, numbers.below(index + 1));
+    }
+    let quad = |depth: usize| {
+        let (x0, y0) = (numbers.below(SIZE), numbers.below(SIZE));
+        let (x1, y1) = (x0 + 1 + numbers.below(SIZE - x0), y0 + 1 + numbers.below(SIZE - y0));
+        let color = std::array::from_fn(|_| numbers.below(256) as u8);
+        Quad { x0, y0, x1, y1, depth: depth as f64 / (count + 1) as f64, color }
+    };
+    depths.into_iter().map(quad).collect()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render").join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Writes the quads as a model with a material each.
+fn write(folder: &Path, quads: &[Quad]) -> PathBuf {
+    let (mut model, mut library) = ("mtllib T.mtl\n".to_owned(), String::new());
+    for (index, quad) in quads.iter().enumerate() {
+        let [r, g, b, a] = quad.color.map(|channel| f64::from(channel) / 255.0);
+        library.push_str(&format!("newmtl m{index}\nKd {r} {g} {b}\nd {a}\n"));
+        let clip = |x: usize, y: usize| {
+            let half = SIZE as f64 / 2.0;
+            format!("v {} {} {}\n", x as f64 / half - 1.0, 1.0 - y as f64 / half, quad.depth)
+        };
+        for (x, y) in [(quad.x0, quad.y0), (quad.x0, quad.y1), (quad.x1, quad.y1), (quad.x1, quad.y0)] {
+            model.push_str(&clip(x, y));
+        }
+        // A quad in one, or in two triangles that refer backwards.
+        let first = 4 * index + 1;
+        let faces = if index % 2 == 0 {
+            format!("f {first} {} {} {}\n", first + 1, first + 2, first + 3)
+        } else {
+            "f -4 -3 -2\nf -4 -2 -1\n".to_owned()
+        };
+        model.push_str(&format!("o q{index}\nusemtl m{index}\n{faces}"));
+    }
+    std::fs::write(folder.join("T.mtl"), library).unwrap();
+    let path = folder.join("T.obj");
+    std::fs::write(&path, model).unwrap();
+    path
+}
+
+/// The nearest `keep` fragments over an opaque background, front to back.
+fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [f64; 3]) -> [f64; 3] {
+    let mut layers: Vec<&Quad> =
+        quads.iter().filter(|quad| (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y)).collect();
+    layers.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    let (mut sum, mut through) = ([0.0; 3], 1.0);
+    for quad in layers.iter().take(keep.unwrap_or(usize::MAX)) {
+        let [r, g, b, a] = quad.color.map(|channel| f64::from(channel) / 255.0);
+        for (sum, channel) in sum.iter_mut().zip([r, g, b]) {
+            *sum += through * a * channel;
+        }
+        through *= 1.0 - a;
+    }
+    std::array::from_fn(|channel| sum[channel] + through * background[channel])
+}
+
+fn fragbuf(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fragbuf"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Red, green, blue and alpha of every pixel.
+fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
+    let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(info.color_type, png::ColorType::Rgba);
+    (info.width, info.height, bytes.chunks_exact(4).map(|pixel| pixel.try_into().unwrap()).collect())
+}
+
+/// The command of the README with these arguments, and its picture.
+fn render(folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
+    let out = folder.join("o.png");
+    let size = format!("{SIZE}x{SIZE}");
+    let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", &size, "--out", out.to_str().unwrap()];
+    let output = fragbuf(&[&["render", "--device", "cpu"], arguments, &common].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
+    let (width, height, pixels) = read(&out);
+    assert_eq!((width as usize, height as usize), (SIZE, SIZE));
+    pixels
+}
+
+/// Within 1/255 of the oracle, everywhere.
+fn check(key: &str, k: Option<usize>, count: usize, seed: u64, background: [f64; 3]) {
+    let folder = folder(&format!("{key}-{count}-{seed}"));
+    let quads = quads(count, seed);
+    let model = write(&folder, &quads);
+    let back = background.map(|channel| channel.to_string()).join(",") + ",1";
+    let set = k.map(|k| format!("k={k}"));
+    let mut arguments = vec![key, "--scene", model.to_str().unwrap(), "--background", &back];
+    arguments.extend(set.iter().flat_map(|set| ["--set", set.as_str()]));
+    for (index, pixel) in render(&folder, &arguments).into_iter().enumerate() {
+        let (x, y) = (index % SIZE, index / SIZE);
+        let expected = oracle(&quads, k, x, y, background);
+        assert_eq!(pixel[3], 255);
+        for (seen, expected) in pixel.iter().zip(expected) {
+            let apart = (f64::from(*seen) - 255.0 * expected).abs();
+            assert!(
+                apart <= 1.0,
+                "{key}, {count} quads, seed {seed}: pixel {x}, {y} is {seen}, and not {}",
+                255.0 * expected
+            );
+        }
+    }
+}
+
+#[test]
+fn the_k_best_are_within_a_255th_of_the_oracle() {
+    for (seed, (k, count)) in (1..).zip([(8, 5), (8, 40), (1, 12), (3, 25), (16, 60)]) {
+        for key in ["kplus_array", "kb"] {
+            check(key, Some(k), count, seed, [0.0, 0.0, 0.0]);
+        }
+    }
+    check("kplus_array", Some(8), 30, 99, [0.2, 0.9, 0.5]);
+}
+
+#[test]
+fn all_fragments_are_within_a_255th_of_the_oracle() {
+    for (seed, count) in (1..).zip([1, 9, 40, 60]) {
+        for key in ["ab_ll", "ab_sb"] {
+            check(key, None, count, seed, [0.0, 0.0, 0.0]);
+        }
+    }
+}
+
+#[test]
+fn more_layers_than_there_was_room_for_are_not_lost() {
+    // More than eight per pixel, for which room is made, and more than 64, which a resolve pass holds.
+    for key in ["ab_ll", "ab_sb"] {
+        let folder = folder(&format!("deep-{key}"));
+        let mut quads = quads(150, 5);
+        for quad in &mut quads {
+            (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE);
+            quad.color[3] = 2;
+        }
+        let model = write(&folder, &quads);
+        let pixels = render(&folder, &[key, "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"]);
+        let expected = oracle(&quads, None, 0, 0, [0.0; 3]);
+        for (seen, expected) in pixels[0].iter().zip(expected) {
+            assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{key}: {:?}, and not {expected}", pixels[0]);
+        }
+    }
+}
+
+#[test]
+fn a_picture_in_slices_is_the_picture() {
+    // 256² pixels of 1024 entries are 256 MiB: twice what a software driver binds.
+    let folder = folder("slices");
+    let picture = |k: &str| {
+        let out = folder.join(format!("{k}.png"));
+        let view =
+            ["--scene", "builtin:slabs,n=40", "--camera", "clip", "--size", "256x256", "--device", "cpu", "--json"];
+        let output =
+            fragbuf(&[&["render", "kplus_array", "--set", k, "--out", out.to_str().unwrap()], &view[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (read(&out).2, figures["fragments"].clone())
+    };
+    assert!(picture("k=64") == picture("k=1024"));
+}
+
+#[test]
+fn what_is_lost_all_the_same_is_said() {
+    let folder = folder("lost");
+    let mut quads = quads(12, 3);
+    quads.iter_mut().for_each(|quad| (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE));
+    let (model, out) = (write(&folder, &quads), folder.join("o.png"));
+    let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
+    let output = fragbuf(&[
+        "render",
+        "ab_ll",
+        "--set",
+        "sort.layers=4",
+        "--scene",
+        model,
+        "--size",
+        "32x32",
+        "--camera",
+        "clip",
+        "--out",
+        out,
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("8192 fragments lost: layers_exceeded"), "{}", stderr(&output));
+}
+
+#[test]
+fn figures_are_json_on_stdout_and_add_up() {
+    let folder = folder("json");
+    let quads = quads(40, 8);
+    let (model, out) = (write(&folder, &quads), folder.join("o.png"));
+    let covered: usize = quads.iter().map(|quad| (quad.x1 - quad.x0) * (quad.y1 - quad.y0)).sum();
+    let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
+    let output = fragbuf(&[
+        "render",
+        "kplus_array",
+        "--set",
+        "k=2",
+        "--scene",
+        model,
+        "--size",
+        "32x32",
+        "--camera",
+        "clip",
+        "--out",
+        out,
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let fragments =
+        ["generated", "stored", "culled", "dropped"].map(|name| figures["fragments"][name].as_u64().unwrap());
+    let [generated, stored, culled, dropped] = fragments;
+    assert_eq!(generated, covered as u64);
+    assert_eq!(generated, stored + culled + dropped);
+    let layers =
+        |x: usize, y: usize| quads.iter().filter(|q| (q.x0..q.x1).contains(&x) && (q.y0..q.y1).contains(&y)).count();
+    let kept: usize = (0..SIZE * SIZE).map(|pixel| layers(pixel % SIZE, pixel / SIZE).min(2)).sum();
+    assert_eq!(stored, kept as u64);
+    assert_eq!(figures["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
+    // 2k + 2 words per pixel, and the counters.
+    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + 6));
+    assert!(figures["device"].is_string() && figures["ms"].is_object(), "{figures}");
+}
+
+#[test]
+fn generated_scenes_are_the_same_every_time_and_differ_by_seed() {
+    let folder = folder("builtin");
+    let picture = |scene: &str| render(&folder, &["kplus_array", "--scene", scene]);
+    let first = picture("builtin:slabs,n=16");
+    assert_eq!(first, picture("builtin:slabs"));
+    assert_ne!(first, picture("builtin:slabs,seed=2"));
+    assert!(first.iter().any(|pixel| *pixel != first[0]));
+}
+
+#[test]
+fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
+    let folder = folder("payload");
+    let text = "buffer Glass from kplus_array {
+        fragment { color: rgba8, depth: f32, normal: octahedral, id: u32 }
+        uniform { cut: f32, tint: vec3 }
+        where |f, u| f.depth > u.cut;
+        resolve |fragments, u| {
+            let mut sum = vec4(0.0, 0.0, 0.0, 0.0);
+            for f in fragments {
+                if f.id == 1 { sum = u.tint.extend(1.0); }
+            }
+            sum
+        }
+    }";
+    let description = folder.join("glass.fragbuf");
+    std::fs::write(&description, text).unwrap();
+    let model = write(&folder, &[Quad { x0: 0, y0: 0, x1: SIZE, y1: SIZE, depth: 0.25, color: [9; 4] }; 2]);
+    let (description, model) = (description.to_str().unwrap(), model.to_str().unwrap());
+    let with = |uniforms: &[&str]| {
+        render(&folder, &[&[description, "--scene", model, "--background", "0,0,0,1"], uniforms].concat())[0]
+    };
+    assert_eq!(with(&[]), [0, 0, 0, 255]);
+    assert_eq!(with(&["--uniform", "tint=0,1,0.2"]), [0, 255, 51, 255]);
+    assert_eq!(with(&["--uniform", "tint=0,1,0", "--uniform", "cut=0.5"]), [0, 0, 0, 255]);
+}
+
+#[test]
+fn failures_have_their_exit_codes_and_write_nothing() {
+    let folder = folder("failures");
+    let out = folder.join("o.png");
+    let path = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let broken = path("broken.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
+    let lacking = path("lacking.fragbuf", "buffer B from kb { fragment { color: rgba8, depth: f32, heat: f32 } }");
+    let cases: [(&[&str], i32, &str); 9] = [
+        (&["kb", "--scene", &broken], 1, "broken.obj:4: no position 4: there are 3 so far"),
+        (&[&lacking, "--scene", "builtin:cubes"], 1, "`heat: f32`"),
+        (&["no_such", "--scene", "builtin:cubes"], 1, "there is no technique"),
+        (&["kb", "--scene", "nowhere.obj"], 3, "nowhere.obj"),
+        (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, marbles, hairball"),
+        (&["kb", "--scene", "builtin:slabs,m=3"], 2, "n (16), seed (1)"),
+        (&["kb", "--scene", "builtin:cubes", "--uniform", "x=1"], 2, "no uniform `x`"),
+        (&["kb", "--scene", "builtin:cubes", "--size", "0x4"], 2, "WIDTHxHEIGHT"),
+        (&["kb", "--scene", "builtin:cubes", "--device", "no such adapter"], 3, "no adapter is named"),
+    ];
+    for (arguments, code, text) in cases {
+        let size: &[&str] = if arguments.contains(&"--size") { &[] } else { &["--size", "8x8"] };
+        let output = fragbuf(&[&["render"], arguments, size, &["--out", out.to_str().unwrap()]].concat());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(text), "{arguments:?}: {}", stderr(&output));
+        assert!(output.stdout.is_empty() && !out.exists(), "{arguments:?}");
+    }
+    let output = fragbuf(&["render", "kb", "--scene", "builtin:cubes", "--size", "8x8", "--out", "/nowhere/o.png"]);
+    assert_eq!(output.status.code(), Some(3));
+}
+
+#[test]
+fn comparing_says_how_far_two_techniques_are_apart() {
+    let folder = folder("compare");
+    let out = folder.join("heat.png");
+    let compare = |second: &str| {
+        let common = [
+            "--scene",
+            "builtin:slabs,n=40",
+            "--size",
+            "48x32",
+            "--device",
+            "cpu",
+            "--json",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        let output = fragbuf(&[&["compare", "ab_sb", second], &common[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_eq!(read(&out).0, 48);
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let same = compare("ab_ll");
+    assert!(same["psnr"].is_null() && same["max_error"] == 0.0, "{same}");
+    assert_eq!(same["hit_ratio"], serde_json::json!([1.0, 1.0]));
+    let apart = compare("kb");
+    assert!(apart["hit_ratio"][1].as_f64().unwrap() <= 1.0 && apart["max_error"].as_f64().unwrap() < 1.0, "{apart}");
+}
+
+#[test]
+fn devices_are_listed() {
+    let output = fragbuf(&["devices"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(String::from_utf8(output.stdout).unwrap().lines().any(|line| line.contains("Cpu")));
+}
