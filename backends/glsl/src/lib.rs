@@ -1,7 +1,7 @@
 //! Readable GLSL, OpenGL and Vulkan dialects, printed from naga's IR.
 //!
 //! In: a validated [`naga::Module`] with the WGSL text it was parsed from. Out: one GLSL text per entry point, or a
-//! library of functions for a shader of the user's own. The recipe is the body of [`print`]: name everything, decide for
+//! library of functions for a shader of the user's own. The recipe is the body of [`print()`]: name everything, decide for
 //! each function which expressions need a variable of their own, print bodies, then print the declarations that the
 //! bodies turned out to use. Nothing here changes the meaning of the module: what GLSL cannot say, or says differently,
 //! is either written out so that it means what WGSL means, or comes back as an [`Unprintable`].
