@@ -168,13 +168,24 @@ fn fragbuf_table() -> String {
 #[test]
 fn the_dsl_builds_without_naga_and_wgpu() {
     for package in ["fragbuf-templates", "fragbuf-model", "fragbuf-syntax"] {
-        let output = std::process::Command::new(env!("CARGO"))
-            .args(["tree", "--offline", "--edges", "all", "-p", package])
-            .current_dir(root())
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let tree = String::from_utf8(output.stdout).unwrap();
+        let tree = tree(&["--edges", "all", "-p", package]);
         assert!(!tree.contains("naga") && !tree.contains("wgpu"), "{package}:\n{tree}");
     }
+}
+
+/// Without the feature `pictures` the facade generates, and knows no device.
+#[test]
+fn generating_needs_no_wgpu() {
+    let tree = tree(&["--edges", "normal", "-p", "fragbuf", "--no-default-features"]);
+    assert!(tree.contains("naga") && !tree.contains("wgpu"), "{tree}");
+}
+
+fn tree(arguments: &[&str]) -> String {
+    let output = std::process::Command::new(env!("CARGO"))
+        .args([&["tree", "--offline"], arguments].concat())
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
 }

@@ -36,6 +36,7 @@ impl Input {
     }
 
     /// The variant, after `--set`, with `unless_said` on axes that nobody chose on.
+    #[cfg(feature = "pictures")]
     pub(crate) fn variant_or(
         &self,
         set: &[(String, String)],

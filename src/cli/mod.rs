@@ -1,19 +1,29 @@
 //! Arguments in, exit code out. 0: done; 1: the description or an input is at fault; 2: usage; 3: device or file system.
 
+#[cfg(feature = "pictures")]
 mod attributes;
+#[cfg(feature = "pictures")]
 mod compare;
+#[cfg(feature = "pictures")]
 mod devices;
 mod generate;
 mod input;
 mod list;
 mod output;
+#[cfg(feature = "pictures")]
 mod paint;
+#[cfg(feature = "pictures")]
 mod picture;
+#[cfg(feature = "pictures")]
 mod progress;
+#[cfg(feature = "pictures")]
 mod render;
 mod show;
+#[cfg(feature = "pictures")]
 mod slice;
+#[cfg(feature = "pictures")]
 mod uniforms;
+#[cfg(feature = "pictures")]
 mod view;
 
 use std::process::ExitCode;
@@ -36,10 +46,13 @@ enum Command {
     /// Writes the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
     /// A picture of a scene through one description
+    #[cfg(feature = "pictures")]
     Render(render::Render),
     /// Two techniques on the same scene: how far their pictures are apart
+    #[cfg(feature = "pictures")]
     Compare(compare::Compare),
     /// The adapters that can render
+    #[cfg(feature = "pictures")]
     Devices(devices::Devices),
 }
 
@@ -48,8 +61,11 @@ pub(crate) fn run() -> ExitCode {
         Command::List(list) => list.run(),
         Command::Show(show) => show.run(),
         Command::Generate(generate) => generate.run(),
+        #[cfg(feature = "pictures")]
         Command::Render(render) => render.run(),
+        #[cfg(feature = "pictures")]
         Command::Compare(compare) => compare.run(),
+        #[cfg(feature = "pictures")]
         Command::Devices(devices) => devices.run(),
     };
     match result {

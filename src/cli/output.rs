@@ -16,8 +16,10 @@ pub(crate) enum Failure {
     /// A file could not be read or written.
     Files(String),
     /// A scene is at fault.
+    #[cfg(feature = "pictures")]
     Input(String),
     /// The device cannot do it.
+    #[cfg(feature = "pictures")]
     Device(String),
 }
 
@@ -32,8 +34,11 @@ impl Failure {
         let (text, code) = match self {
             Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
             Failure::Usage(text) => (format!("error: {text}\n"), 2),
+            Failure::Files(text) => (format!("error: {text}\n"), 3),
+            #[cfg(feature = "pictures")]
             Failure::Input(text) => (format!("error: {text}\n"), 1),
-            Failure::Files(text) | Failure::Device(text) => (format!("error: {text}\n"), 3),
+            #[cfg(feature = "pictures")]
+            Failure::Device(text) => (format!("error: {text}\n"), 3),
         };
         // Nobody is left to tell when stderr is gone.
         let _ = std::io::stderr().write_all(text.as_bytes());
@@ -41,6 +46,7 @@ impl Failure {
     }
 }
 
+#[cfg(feature = "pictures")]
 impl From<fragbuf_scene::Error> for Failure {
     fn from(error: fragbuf_scene::Error) -> Self {
         let text = error.to_string();
@@ -52,6 +58,7 @@ impl From<fragbuf_scene::Error> for Failure {
     }
 }
 
+#[cfg(feature = "pictures")]
 impl From<fragbuf_runtime::Error> for Failure {
     fn from(error: fragbuf_runtime::Error) -> Self {
         let text = error.to_string();
@@ -64,6 +71,7 @@ impl From<fragbuf_runtime::Error> for Failure {
 }
 
 /// Says something on stderr without giving up.
+#[cfg(feature = "pictures")]
 pub(crate) fn warn(text: &str) {
     // Nobody is left to tell when stderr is gone.
     let _ = writeln!(std::io::stderr(), "warning: {text}");
