@@ -65,6 +65,9 @@ impl Generate {
         }
         for (folder, generation) in &folders {
             write(folder, generation, self.group)?;
+            for (target, refusal) in &generation.refusals {
+                output::warn(&format!("nothing written for {} in {}: {refusal}", target.name, folder.display()));
+            }
         }
         Ok(())
     }

@@ -71,7 +71,6 @@ impl From<fragbuf_runtime::Error> for Failure {
 }
 
 /// Says something on stderr without giving up.
-#[cfg(feature = "pictures")]
 pub(crate) fn warn(text: &str) {
     // Nobody is left to tell when stderr is gone.
     let _ = writeln!(std::io::stderr(), "warning: {text}");

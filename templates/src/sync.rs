@@ -54,7 +54,7 @@ fn spin_lock() -> Row {
 fn interlock() -> Row {
     Row {
         offers: vec![Fact::Critical],
-        requires: vec![Fact::FragmentAtomics, Fact::Coherent, Fact::Interlock, Fact::OwnEntryPoints],
+        requires: vec![Fact::Interlock, Fact::Coherent, Fact::FragmentAtomics, Fact::OwnEntryPoints],
         edits: vec![Edit::SetSkeleton("store".to_owned(), "store_ordered".to_owned())],
         soundness: Soundness::Interlock,
         ..Row::new(

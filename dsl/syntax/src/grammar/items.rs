@@ -91,7 +91,7 @@ impl Items {
         let criterion = if cursor.word("least") {
             Some(closures::closure(cursor, Role::Criterion, report)?)
         } else {
-            end_of_item(cursor, "keep 8;", report)?;
+            end_of_item(cursor, "keep 8;` or, to choose by a value, `keep 8 least |f| …;", report)?;
             None
         };
         if let Some((_, first)) = &self.keep {
