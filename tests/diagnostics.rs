@@ -13,6 +13,10 @@ type Expected = (&'static str, u32, u32, &'static str);
 
 /// A description, and what must be said of it: code and place of each mistake, and a part of the way out.
 const CASES: &[(&str, &[Expected])] = &[
+    (
+        "buffer B from kplus_array {\n    storage: linked_list;\n    sync: slot_counter;\n    keep 6;\n}",
+        &[("unmet", 1, 15, ""), ("keep-mismatch", 4, 10, "another choice than `cull: early`")],
+    ),
     ("buffer B from kplus_aray { }", &[("unknown-technique", 1, 15, "did you mean `kplus_array`?")]),
     ("buffer B {\n    keep 8;\n}", &[("missing-storage", 1, 8, "from kplus_array")]),
     ("buffer B from ab_ll {\n    strage: max_array;\n}", &[("unknown-axis", 2, 5, "did you mean `storage`?")]),

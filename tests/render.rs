@@ -5,6 +5,8 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
+use crate::oracle::{depth_key, kept, over};
+
 const SIZE: usize = 32;
 
 /// Pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, `y` downwards; colour and alpha in 255ths, as fragments keep them.
@@ -81,20 +83,20 @@ fn write(folder: &Path, quads: &[Quad]) -> PathBuf {
     path
 }
 
-/// The nearest `keep` fragments over an opaque background, front to back.
+/// The nearest `keep` fragments over an opaque background, by the oracle whose laws `oracle.rs` tests.
 fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [f64; 3]) -> [f64; 3] {
-    let mut layers: Vec<&Quad> =
-        quads.iter().filter(|quad| (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y)).collect();
-    layers.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-    let (mut sum, mut through) = ([0.0; 3], 1.0);
-    for quad in layers.iter().take(keep.unwrap_or(usize::MAX)) {
-        let [r, g, b, a] = quad.color.map(|channel| f64::from(channel) / 255.0);
-        for (sum, channel) in sum.iter_mut().zip([r, g, b]) {
-            *sum += through * a * channel;
-        }
-        through *= 1.0 - a;
-    }
-    std::array::from_fn(|channel| sum[channel] + through * background[channel])
+    let covers = |quad: &&Quad| (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y);
+    let fragments: Vec<Vec<u32>> = quads
+        .iter()
+        .filter(covers)
+        .map(|quad| vec![depth_key(quad.depth as f32), u32::from_le_bytes(quad.color)])
+        .collect();
+    let layers: Vec<(f32, [f32; 4])> = kept(&fragments, keep.map(|k| k as u32))
+        .iter()
+        .map(|entry| (f32::from_bits(entry[0]), entry[1].to_le_bytes().map(|byte| f32::from(byte) / 255.0)))
+        .collect();
+    let front = over(&layers).map(f64::from);
+    std::array::from_fn(|channel| front[channel] + (1.0 - front[3]) * background[channel])
 }
 
 fn fragbuf(arguments: &[&str]) -> Output {

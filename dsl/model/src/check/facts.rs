@@ -78,18 +78,22 @@ impl Situation<'_> {
     fn keep_mismatch(&self, index: usize, pick: &Pick<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
         let keep = self.draft.keep.as_ref().map_or(&chosen.origin, |keep| &keep.count.origin);
-        let (words, way) = if self.given.contains(&Fact::KeepsBest) {
-            ("the k best", "keep all")
+        let (words, way, said, other) = if self.given.contains(&Fact::KeepsBest) {
+            ("the k best", "keep all", Fact::KeepsBest, Fact::KeepsAll)
         } else {
-            ("every fragment", "keep 8")
+            ("every fragment", "keep 8", Fact::KeepsAll, Fact::KeepsBest)
         };
+        // What the other `keep` line would run into next is part of the way out.
+        let given: Vec<Fact> = self.given.iter().map(|fact| if *fact == said { other } else { *fact }).collect();
+        let also = pick.iter().find(|row| !missing(row, pick, &given).is_empty());
+        let also = also.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
         let storage = format!("`{}: {}`", chosen.axis, pick[index].key);
         let others = self.ways_out(pick).map_or(String::new(), |ways| format!(", or choose {ways}"));
         Diagnostic::new(
             codes::KEEP_MISMATCH,
             keep,
             format!("the description keeps {words}, {storage} does not"),
-            format!("write `{way};`{others}"),
+            format!("write `{way};`{also}{others}"),
         )
         .label(&chosen.origin, format!("{storage} is chosen here"))
     }
