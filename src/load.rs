@@ -27,7 +27,8 @@ pub fn variant(
     variant_or(description, set, &[], registry)
 }
 
-/// The same, with the choices `unless_said` on axes of which neither the description nor `set` says anything.
+/// The same, with `unless_said`, also names and values, where neither the description nor `set` says anything: of that
+/// axis, or for `fragment.attribute` of the payload.
 pub fn variant_or(
     description: &Description,
     set: &[(String, String)],
@@ -57,10 +58,14 @@ pub fn variant_or(
             ));
         }
     }
-    for (axis, value) in unless_said {
-        if !draft.choices.iter().any(|choice| choice.axis.value == *axis) {
+    for (name, value) in unless_said {
+        let said = match name.split_once('.') {
+            Some(("fragment", _)) => !draft.attributes.is_empty(),
+            _ => draft.choices.iter().any(|choice| choice.axis.value == *name),
+        };
+        if !said {
             // A choice on an axis takes any text; the rules judge it.
-            let _ = draft.set(axis, value, &Origin::new("unless said", 1, 1));
+            let _ = draft.set(name, value, &Origin::new("unless said", 1, 1));
         }
     }
     // The rules run even over a draft with mistakes in it: all that is wrong comes at once.

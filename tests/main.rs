@@ -16,6 +16,7 @@ mod instances;
 mod names;
 mod oracle;
 mod product;
+mod quads;
 mod render;
 mod snapshots;
 mod tidy;

@@ -5,48 +5,8 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-use crate::oracle::{depth_key, kept, over};
-
-const SIZE: usize = 32;
-
-/// Pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, `y` downwards; colour and alpha in 255ths, as fragments keep them.
-#[derive(Clone, Copy, Debug)]
-struct Quad {
-    x0: usize,
-    y0: usize,
-    x1: usize,
-    y1: usize,
-    depth: f64,
-    color: [u8; 4],
-}
-
-/// Numbers from a seed: xorshift64*.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % end
-    }
-}
-
-/// `count` quads of different depths.
-fn quads(count: usize, seed: u64) -> Vec<Quad> {
-    let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9) | 1);
-    let mut depths: Vec<usize> = (1..=count).collect();
-    for index in (1..count).rev() {
-        depths.swap(index, numbers.below(index + 1));
-    }
-    let quad = |depth: usize| {
-        let (x0, y0) = (numbers.below(SIZE), numbers.below(SIZE));
-        let (x1, y1) = (x0 + 1 + numbers.below(SIZE - x0), y0 + 1 + numbers.below(SIZE - y0));
-        let color = std::array::from_fn(|_| numbers.below(256) as u8);
-        Quad { x0, y0, x1, y1, depth: depth as f64 / (count + 1) as f64, color }
-    };
-    depths.into_iter().map(quad).collect()
-}
+use crate::oracle::over;
+use crate::quads::{Colors, Quad, SIZE, quads, write};
 
 fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render").join(name);
@@ -55,46 +15,14 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Writes the quads as a model with a material each.
-fn write(folder: &Path, quads: &[Quad]) -> PathBuf {
-    let (mut model, mut library) = ("mtllib T.mtl\n".to_owned(), String::new());
-    for (index, quad) in quads.iter().enumerate() {
-        let [r, g, b, a] = quad.color.map(|channel| f64::from(channel) / 255.0);
-        library.push_str(&format!("newmtl m{index}\nKd {r} {g} {b}\nd {a}\n"));
-        let clip = |x: usize, y: usize| {
-            let half = SIZE as f64 / 2.0;
-            format!("v {} {} {}\n", x as f64 / half - 1.0, 1.0 - y as f64 / half, quad.depth)
-        };
-        for (x, y) in [(quad.x0, quad.y0), (quad.x0, quad.y1), (quad.x1, quad.y1), (quad.x1, quad.y0)] {
-            model.push_str(&clip(x, y));
-        }
-        // A quad in one, or in two triangles that refer backwards.
-        let first = 4 * index + 1;
-        let faces = if index % 2 == 0 {
-            format!("f {first} {} {} {}\n", first + 1, first + 2, first + 3)
-        } else {
-            "f -4 -3 -2\nf -4 -2 -1\n".to_owned()
-        };
-        model.push_str(&format!("o q{index}\nusemtl m{index}\n{faces}"));
-    }
-    std::fs::write(folder.join("T.mtl"), library).unwrap();
-    let path = folder.join("T.obj");
-    std::fs::write(&path, model).unwrap();
-    path
-}
-
 /// The nearest `keep` fragments over an opaque background, by the oracle whose laws `oracle.rs` tests.
 fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [f64; 3]) -> [f64; 3] {
     let covers = |quad: &&Quad| (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y);
-    let fragments: Vec<Vec<u32>> = quads
-        .iter()
-        .filter(covers)
-        .map(|quad| vec![depth_key(quad.depth as f32), u32::from_le_bytes(quad.color)])
-        .collect();
-    let layers: Vec<(f32, [f32; 4])> = kept(&fragments, keep.map(|k| k as u32))
-        .iter()
-        .map(|entry| (f32::from_bits(entry[0]), entry[1].to_le_bytes().map(|byte| f32::from(byte) / 255.0)))
-        .collect();
+    let mut fragments: Vec<&Quad> = quads.iter().filter(covers).collect();
+    fragments.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    let nearest = fragments.iter().take(keep.unwrap_or(usize::MAX));
+    let layers: Vec<(f32, [f32; 4])> =
+        nearest.map(|quad| (quad.depth as f32, quad.color.map(|channel| channel as f32))).collect();
     let front = over(&layers).map(f64::from);
     std::array::from_fn(|channel| front[channel] + (1.0 - front[3]) * background[channel])
 }
@@ -135,9 +63,9 @@ fn render(folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
 }
 
 /// Within 1/255 of the oracle, everywhere.
-fn check(key: &str, k: Option<usize>, count: usize, seed: u64, background: [f64; 3]) {
-    let folder = folder(&format!("{key}-{count}-{seed}"));
-    let quads = quads(count, seed);
+fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, background: [f64; 3]) {
+    let folder = folder(&format!("{key}-{count}-{seed}-{colors:?}"));
+    let quads = quads(count, seed, colors);
     let model = write(&folder, &quads);
     let back = background.map(|channel| channel.to_string()).join(",") + ",1";
     let set = k.map(|k| format!("k={k}"));
@@ -162,19 +90,47 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, background: [f64;
 fn the_k_best_are_within_a_255th_of_the_oracle() {
     for (seed, (k, count)) in (1..).zip([(8, 5), (8, 40), (1, 12), (3, 25), (16, 60)]) {
         for key in ["kplus_array", "kb"] {
-            check(key, Some(k), count, seed, [0.0, 0.0, 0.0]);
+            check(key, Some(k), count, seed, Colors::Bytes, [0.0; 3]);
         }
     }
-    check("kplus_array", Some(8), 30, 99, [0.2, 0.9, 0.5]);
+    check("kplus_array", Some(8), 30, 99, Colors::Bytes, [0.2, 0.9, 0.5]);
 }
 
 #[test]
 fn all_fragments_are_within_a_255th_of_the_oracle() {
     for (seed, count) in (1..).zip([1, 9, 40, 60]) {
         for key in ["ab_ll", "ab_sb"] {
-            check(key, None, count, seed, [0.0, 0.0, 0.0]);
+            check(key, None, count, seed, Colors::Bytes, [0.0; 3]);
         }
     }
+}
+
+#[test]
+fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
+    for key in ["kplus_array", "kb"] {
+        check(key, Some(8), 60, 7, Colors::Thin, [0.0; 3]);
+    }
+    for key in ["ab_ll", "ab_sb"] {
+        check(key, None, 60, 8, Colors::Thin, [0.0; 3]);
+    }
+}
+
+#[test]
+fn the_payload_is_the_papers_where_it_rounds_nothing_or_is_asked_for() {
+    let folder = folder("payload-choice");
+    let format = |colors: Colors, more: &[&str]| {
+        let model = write(&folder, &quads(3, 1, colors));
+        let (model, out) = (model.to_str().unwrap(), folder.join("o.png"));
+        let common = ["--scene", model, "--size", "8x8", "--camera", "clip", "--device", "cpu", "--json", "--out"];
+        let output = fragbuf(&[&["render", "kplus_array"], &common[..], &[out.to_str().unwrap()], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+        figures["fragment"]["color"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(format(Colors::Bytes, &["--shading", "flat"]), "rgba8");
+    assert_eq!(format(Colors::Thin, &["--shading", "flat"]), "rgba16");
+    assert_eq!(format(Colors::Thin, &["--shading", "flat", "--set", "fragment.color=rgba8"]), "rgba8");
+    assert_eq!(format(Colors::Thin, &["--shading", "lit"]), "rgba8");
 }
 
 #[test]
@@ -182,10 +138,10 @@ fn more_layers_than_there_was_room_for_are_not_lost() {
     // More than eight per pixel, for which room is made, and more than 64, which a resolve pass holds.
     for key in ["ab_ll", "ab_sb"] {
         let folder = folder(&format!("deep-{key}"));
-        let mut quads = quads(150, 5);
+        let mut quads = quads(150, 5, Colors::Bytes);
         for quad in &mut quads {
             (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE);
-            quad.color[3] = 2;
+            quad.color[3] = 2.0 / 255.0;
         }
         let model = write(&folder, &quads);
         let pixels = render(&folder, &[key, "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"]);
@@ -216,7 +172,7 @@ fn a_picture_in_slices_is_the_picture() {
 #[test]
 fn what_is_lost_all_the_same_is_said() {
     let folder = folder("lost");
-    let mut quads = quads(12, 3);
+    let mut quads = quads(12, 3, Colors::Bytes);
     quads.iter_mut().for_each(|quad| (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE));
     let (model, out) = (write(&folder, &quads), folder.join("o.png"));
     let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
@@ -241,7 +197,7 @@ fn what_is_lost_all_the_same_is_said() {
 #[test]
 fn figures_are_json_on_stdout_and_add_up() {
     let folder = folder("json");
-    let quads = quads(40, 8);
+    let quads = quads(40, 8, Colors::Bytes);
     let (model, out) = (write(&folder, &quads), folder.join("o.png"));
     let covered: usize = quads.iter().map(|quad| (quad.x1 - quad.x0) * (quad.y1 - quad.y0)).sum();
     let (model, out) = (model.to_str().unwrap(), out.to_str().unwrap());
@@ -304,7 +260,7 @@ fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
     }";
     let description = folder.join("glass.fragbuf");
     std::fs::write(&description, text).unwrap();
-    let model = write(&folder, &[Quad { x0: 0, y0: 0, x1: SIZE, y1: SIZE, depth: 0.25, color: [9; 4] }; 2]);
+    let model = write(&folder, &[Quad { x0: 0, y0: 0, x1: SIZE, y1: SIZE, depth: 0.25, color: [0.5; 4] }; 2]);
     let (description, model) = (description.to_str().unwrap(), model.to_str().unwrap());
     let with = |uniforms: &[&str]| {
         render(&folder, &[&[description, "--scene", model, "--background", "0,0,0,1"], uniforms].concat())[0]

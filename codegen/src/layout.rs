@@ -27,8 +27,8 @@ pub struct Word {
     pub field: String,
     /// The attribute that it holds, or a part of.
     pub attribute: Attribute,
-    /// The component, for a vector that takes a word per component.
-    pub component: Option<char>,
+    /// The components that it holds, for a vector of several words.
+    pub components: Option<&'static str>,
 }
 
 impl Layout {
@@ -40,10 +40,10 @@ impl Layout {
             if key == Key::Depth && attribute.name.value == "depth" {
                 continue;
             }
-            for component in components(attribute.format.value) {
-                let suffix = component.map_or(String::new(), |letter| format!("_{letter}"));
+            for part in parts(attribute.format.value) {
+                let suffix = part.map_or(String::new(), |letters| format!("_{letters}"));
                 let name = format!("{}{suffix}", mangled(&attribute.name.value));
-                beside.push(Word { field: unused(name, &beside), attribute: attribute.clone(), component });
+                beside.push(Word { field: unused(name, &beside), attribute: attribute.clone(), components: part });
             }
         }
         Layout { key, beside }
@@ -66,11 +66,12 @@ impl Layout {
     }
 }
 
-fn components(format: Format) -> Vec<Option<char>> {
+fn parts(format: Format) -> Vec<Option<&'static str>> {
     match format {
-        Format::Vec2 => vec![Some('x'), Some('y')],
-        Format::Vec3 => vec![Some('x'), Some('y'), Some('z')],
-        Format::Vec4 => vec![Some('x'), Some('y'), Some('z'), Some('w')],
+        Format::Vec2 => vec![Some("x"), Some("y")],
+        Format::Rgba16 => vec![Some("xy"), Some("zw")],
+        Format::Vec3 => vec![Some("x"), Some("y"), Some("z")],
+        Format::Vec4 => vec![Some("x"), Some("y"), Some("z"), Some("w")],
         Format::F32 | Format::U32 | Format::Rgba8 | Format::Octahedral => vec![None],
     }
 }

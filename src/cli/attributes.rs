@@ -18,7 +18,7 @@ type Words = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
 
 /// What a scene has: names, the formats that it can be read as, how to get it.
 const HAS: [(&[&str], &[Format], Words); 4] = [
-    (&["color", "colour"], &[Format::Rgba8, Format::Vec4, Format::Vec3], |object, _, vertex| {
+    (&["color", "colour"], &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3], |object, _, vertex| {
         bits(&object.colors, vertex)
     }),
     (&["alpha"], &[Format::F32], |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0]),
@@ -70,7 +70,7 @@ fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
         Format::F32 | Format::U32 => 1,
         Format::Vec2 => 2,
         Format::Vec3 | Format::Octahedral => 3,
-        Format::Vec4 | Format::Rgba8 => 4,
+        Format::Vec4 | Format::Rgba8 | Format::Rgba16 => 4,
     };
     Ok((words, *read))
 }

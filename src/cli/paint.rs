@@ -7,6 +7,7 @@ use fragbuf::{Form, Plan, Registry, Request, TARGETS, Target, Variant, generate,
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::{Error, Output, Renderer, Settings, Shaders, Sizing, block_on};
+use fragbuf_scene::Scene;
 
 use super::attributes::{Geometry, geometry};
 use super::input::Input;
@@ -15,6 +16,9 @@ use super::progress::Progress;
 use super::slice::{Slice, SliceFailure};
 use super::uniforms;
 use super::view::{Stage, View};
+
+/// The payload that does not round what a scene's colours are. The papers' rounds each layer to 255ths.
+const UNROUNDED: (&str, &str) = ("fragment.color", "rgba16");
 
 /// The choice that counts every event.
 const EVERYTHING: (&str, &str) = ("counters", "all");
@@ -42,11 +46,14 @@ pub(crate) struct Painted {
 pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress) -> Result<Painted, Failure> {
     let registry = Registry::builtin();
     let input = Input::read(wish.description, &registry)?;
-    let unless_said: &[(&str, &str)] = if wish.count_all { &[EVERYTHING] } else { &[] };
+    let rounded = stage.exact && !in_255ths(&stage.scene);
+    let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
+    let unless_said: Vec<(&str, &str)> =
+        unless_said.into_iter().filter(|(wanted, _)| *wanted).map(|(_, set)| set).collect();
     let (mut set, mut frames) = (wish.set.to_vec(), 0);
     let (mut said, mut room) = (None, None);
     loop {
-        let variant = input.variant_or(&set, unless_said, &registry)?;
+        let variant = input.variant_or(&set, &unless_said, &registry)?;
         let said = *said.get_or_insert_with(|| says_layers(&variant));
         let painter = Painter::new(&input, &variant, view, &registry)?;
         let painted = painter.paint(wish, view, stage, progress, (&mut frames, &mut room))?;
@@ -58,6 +65,12 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
             }
         }
     }
+}
+
+/// Whether 8 bits a channel hold every colour of the scene, but for the rounding of its text.
+fn in_255ths(scene: &Scene) -> bool {
+    let whole = |channel: &f32| (255.0 * channel - (255.0 * channel).round()).abs() < 1.0e-3;
+    scene.objects.iter().all(|object| object.colors.iter().flatten().all(whole))
 }
 
 /// A device, and the shaders for it.

@@ -63,6 +63,7 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
         "target": painted.target.name,
         "triangles": stage.scene.triangles(),
         "k": painted.plan.variant.keep,
+        "fragment": payload(painted),
         "ms": if painted.slice.times.is_some() { Value::from(ms) } else { Value::Null },
         "bytes": painted.slice.bytes,
         "fragments": {
@@ -75,6 +76,15 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
         "hit_ratio": tally.as_ref().map(|tally| tally.hit_ratio),
         "frames": painted.frames,
     })
+}
+
+/// The attributes that fragments carried, each with its format.
+fn payload(painted: &Painted) -> Value {
+    let attributes = painted.plan.variant.attributes.iter();
+    attributes
+        .map(|a| (a.name.value.clone(), Value::from(a.format.value.keyword())))
+        .collect::<serde_json::Map<_, _>>()
+        .into()
 }
 
 /// Where the fragments of a frame went.

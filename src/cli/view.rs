@@ -57,6 +57,8 @@ enum Shading {
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     pub(crate) camera: Camera,
+    /// Whether the picture shall be what arithmetic over the scene's own colours says.
+    pub(crate) exact: bool,
 }
 
 impl View {
@@ -67,10 +69,14 @@ impl View {
             CameraArgument::Auto => Camera::framing(&scene, self.size.0 as f32 / self.size.1 as f32),
             CameraArgument::Clip => Camera::clip(),
         };
-        if let Shading::Lit = self.shading {
-            fragbuf_scene::light(&mut scene, camera.eye);
-        }
-        Ok(Stage { scene, camera })
+        let exact = match self.shading {
+            Shading::Flat => true,
+            Shading::Lit => {
+                fragbuf_scene::light(&mut scene, camera.eye);
+                false
+            }
+        };
+        Ok(Stage { scene, camera, exact })
     }
 
     /// What is wrong with the arguments and needs no work to see.

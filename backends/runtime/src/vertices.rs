@@ -21,7 +21,7 @@ pub struct VertexInput {
     pub name: String,
     /// Its location.
     pub location: u32,
-    /// What it is read as: an `rgba8` attribute comes in as four floats.
+    /// What it is read as: an `rgba8` or `rgba16` attribute comes in as four floats.
     pub format: wgpu::VertexFormat,
     /// Bytes before it in an interleaved vertex.
     pub offset: u64,
@@ -60,6 +60,6 @@ fn vertex_format(format: Format) -> wgpu::VertexFormat {
         Format::U32 => wgpu::VertexFormat::Uint32,
         Format::Vec2 => wgpu::VertexFormat::Float32x2,
         Format::Vec3 | Format::Octahedral => wgpu::VertexFormat::Float32x3,
-        Format::Vec4 | Format::Rgba8 => wgpu::VertexFormat::Float32x4,
+        Format::Vec4 | Format::Rgba8 | Format::Rgba16 => wgpu::VertexFormat::Float32x4,
     }
 }

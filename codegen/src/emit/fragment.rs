@@ -61,7 +61,8 @@ pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> Str
 
 fn packed(word: &Word) -> String {
     let name = mangled(&word.attribute.name.value);
-    match (word.attribute.format.value, word.component) {
+    match (word.attribute.format.value, word.components) {
+        (Format::Rgba16, Some(pair)) => format!("pack2x16unorm(fragment.{name}.{pair})"),
         (_, Some(component)) => format!("bitcast<u32>(fragment.{name}.{component})"),
         (Format::F32, None) if word.attribute.name.value == "depth" => "depth_bits(fragment.depth)".to_owned(),
         (Format::U32, None) => format!("fragment.{name}"),
@@ -87,11 +88,14 @@ fn unpack(plan: &Plan, text: &mut String) {
 }
 
 fn unpacked(format: Format, fields: &[String]) -> String {
-    let floats = || fields.iter().map(|field| format!("bitcast<f32>({field})")).collect::<Vec<_>>().join(", ");
+    let each =
+        |function: &str| fields.iter().map(|field| format!("{function}({field})")).collect::<Vec<_>>().join(", ");
+    let floats = || each("bitcast<f32>");
     match format {
         Format::F32 => floats(),
         Format::U32 => fields.join(""),
         Format::Rgba8 => format!("unpack4x8unorm({})", fields.join("")),
+        Format::Rgba16 => format!("{}({})", format.wgsl_type(), each("unpack2x16unorm")),
         Format::Octahedral => format!("octahedral_unpack({})", fields.join("")),
         Format::Vec2 | Format::Vec3 | Format::Vec4 => format!("{}({})", format.wgsl_type(), floats()),
     }

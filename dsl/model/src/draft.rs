@@ -52,14 +52,24 @@ pub enum Format {
     Vec4,
     /// 1 word: four channels of 8 bits in [0, 1], rounded to nearest (error ≤ 1/510); a closure sees `Vec4`.
     Rgba8,
+    /// 2 words: four channels of 16 bits in [0, 1], rounded to nearest (error ≤ 1/131,070); a closure sees `Vec4`.
+    Rgba16,
     /// 1 word: a unit vector as two 16-bit octahedral coordinates (Cigolle et al. 2014); a closure sees `Vec3`.
     Octahedral,
 }
 
 impl Format {
     /// Every format, in the order in which the documentation lists them.
-    pub const ALL: [Format; 7] =
-        [Format::F32, Format::U32, Format::Vec2, Format::Vec3, Format::Vec4, Format::Rgba8, Format::Octahedral];
+    pub const ALL: [Format; 8] = [
+        Format::F32,
+        Format::U32,
+        Format::Vec2,
+        Format::Vec3,
+        Format::Vec4,
+        Format::Rgba8,
+        Format::Rgba16,
+        Format::Octahedral,
+    ];
 
     /// The word of the language.
     pub fn keyword(self) -> &'static str {
@@ -70,6 +80,7 @@ impl Format {
             Format::Vec3 => "vec3",
             Format::Vec4 => "vec4",
             Format::Rgba8 => "rgba8",
+            Format::Rgba16 => "rgba16",
             Format::Octahedral => "octahedral",
         }
     }
@@ -78,7 +89,7 @@ impl Format {
     pub fn words(self) -> u32 {
         match self {
             Format::F32 | Format::U32 | Format::Rgba8 | Format::Octahedral => 1,
-            Format::Vec2 => 2,
+            Format::Vec2 | Format::Rgba16 => 2,
             Format::Vec3 => 3,
             Format::Vec4 => 4,
         }
@@ -91,7 +102,7 @@ impl Format {
             Format::U32 => "u32",
             Format::Vec2 => "vec2<f32>",
             Format::Vec3 | Format::Octahedral => "vec3<f32>",
-            Format::Vec4 | Format::Rgba8 => "vec4<f32>",
+            Format::Vec4 | Format::Rgba8 | Format::Rgba16 => "vec4<f32>",
         }
     }
 }

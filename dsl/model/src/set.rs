@@ -1,6 +1,6 @@
 //! Changes from outside the text: what `--set name=value` does to a draft.
 
-use crate::{Alternative, Choice, Draft, Keep, KeepCount, OptionValue, Origin, Spanned};
+use crate::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, Origin, Spanned};
 
 impl Draft {
     /// The draft that takes everything from a technique; its name is the technique's in UpperCamel.
@@ -25,8 +25,18 @@ impl Draft {
         }
     }
 
-    /// Sets `k`, an axis, or an option as `axis.option`, over whatever the draft says.
-    /// A value that is no number where one is needed is left to the checks, except for `k`: `Err` says what it must be.
+    /// The payload of a description that names none, the papers': `color: rgba8, depth: f32`.
+    pub fn papers_payload(&self) -> Vec<Attribute> {
+        let attribute = |name: &str, format| Attribute {
+            name: Spanned::new(name.to_owned(), self.name.origin.clone()),
+            format: Spanned::new(format, self.name.origin.clone()),
+        };
+        vec![attribute("color", Format::Rgba8), attribute("depth", Format::F32)]
+    }
+
+    /// Sets `k`, an axis, an option as `axis.option`, or the format of an attribute as `fragment.attribute`, over whatever
+    /// the draft says. What the rows of an axis make of a value is left to the checks; for `k` and formats `Err` says what
+    /// the value must be.
     pub fn set(&mut self, name: &str, value: &str, origin: &Origin) -> Result<(), String> {
         if name == "k" {
             let count = match value {
@@ -38,8 +48,24 @@ impl Draft {
             return Ok(());
         }
         match name.split_once('.') {
+            Some(("fragment", attribute)) => return self.set_format(attribute, value, origin),
             Some((axis, option)) => self.set_option(axis, option, value, origin),
             None => self.set_axis(name, value, origin),
+        }
+        Ok(())
+    }
+
+    fn set_format(&mut self, name: &str, value: &str, origin: &Origin) -> Result<(), String> {
+        let known = || Format::ALL.map(Format::keyword).join(", ");
+        let format = Format::ALL.into_iter().find(|format| format.keyword() == value);
+        let format = format.ok_or_else(|| format!("a format: {}", known()))?;
+        if self.attributes.is_empty() {
+            self.attributes = self.papers_payload();
+        }
+        let format = Spanned::new(format, origin.clone());
+        match self.attributes.iter_mut().find(|attribute| attribute.name.value == name) {
+            Some(attribute) => attribute.format = format,
+            None => self.attributes.push(Attribute { name: Spanned::new(name.to_owned(), origin.clone()), format }),
         }
         Ok(())
     }

@@ -58,7 +58,7 @@ impl Type {
             Format::U32 => Type::U32,
             Format::Vec2 => Type::Vector(2),
             Format::Vec3 | Format::Octahedral => Type::Vector(3),
-            Format::Vec4 | Format::Rgba8 => Type::Vector(4),
+            Format::Vec4 | Format::Rgba8 | Format::Rgba16 => Type::Vector(4),
         }
     }
 

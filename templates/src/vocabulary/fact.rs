@@ -37,7 +37,7 @@ facts! {
     Sorted "fragments in the order of depth";
     // What a description offers.
     DepthKey "that depth decides which fragment is worst: no criterion";
-    Color "an attribute `color` of format rgba8 or vec4";
+    Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
     // What a target offers.
     FragmentAtomics "atomic operations in fragment shaders";

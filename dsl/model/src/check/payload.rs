@@ -2,16 +2,12 @@
 
 use fragbuf_templates::vocabulary::Fact;
 
-use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, Spanned, codes};
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, codes};
 
 /// The description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
     if draft.attributes.is_empty() {
-        let attribute = |name: &str, format| Attribute {
-            name: Spanned::new(name.to_owned(), draft.name.origin.clone()),
-            format: Spanned::new(format, draft.name.origin.clone()),
-        };
-        return vec![attribute("color", Format::Rgba8), attribute("depth", Format::F32)];
+        return draft.papers_payload();
     }
     let depth = draft.attributes.iter().find(|attribute| attribute.name.value == "depth");
     match depth {
@@ -36,7 +32,7 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
 pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     let mut facts = Vec::new();
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
-    if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Vec4)) {
+    if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)) {
         facts.push(Fact::Color);
     }
     let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
