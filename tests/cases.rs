@@ -6,7 +6,7 @@ use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, Variant, gen
 /// Every attribute format, two constraints, a criterion, uniforms, options and a closure.
 pub const CUSTOM: &str = "
 buffer Custom from kplus_array {
-    fragment { color: rgba8, depth: f32, id: u32, normal: octahedral, velocity: vec3, uv: vec2, glow: vec4, heat: f32 }
+    fragment { color: rgba8, depth: f32, id: u32, normal: octahedral, velocity: vec3, uv: vec2, glow: vec4, heat: f32, tint: rgba16 }
     uniform { cut: f32, eye: vec3, steps: u32, offset: i32, scale: vec2, tint: vec4 }
     keep 5 least |f| f.depth - 0.25 * f.color.w + 0.1 * f.heat;
     where |f, u| f.depth > u.cut;

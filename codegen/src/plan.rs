@@ -222,9 +222,9 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
     Ok(constants)
 }
 
-/// The frame's fields: its size, and every symbol of a resource's size that is bound later than code.
+/// The frame's fields: its size, the row at which a slice of a picture begins (0: there are no slices), and every symbol of a resource's size that is bound later than code.
 fn frame(resources: &[Planned]) -> Vec<String> {
-    let mut fields = vec!["width".to_owned(), "height".to_owned()];
+    let mut fields = ["width", "height", "first_row"].map(str::to_owned).to_vec();
     for symbol in ["k", "fragments", "kept"] {
         if resources.iter().any(|planned| mentions(&planned.words, symbol)) {
             fields.push(symbol.to_owned());

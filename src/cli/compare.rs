@@ -37,7 +37,7 @@ impl Compare {
             paint(&wish, view, &stage, &progress)
         };
         let (first, second) = (one(&self.first)?, one(&self.second)?);
-        let shown = |painted: &Painted| picture::displayed(&painted.slice.pixels, view.background, view.linear);
+        let shown = |painted: &Painted| picture::displayed(&painted.drawn.pixels, view.background, view.linear);
         let difference = Difference::of(&shown(&first), &shown(&second));
         picture::write(&view.out, view.size, &difference.heat(), true)?;
         drop(progress);

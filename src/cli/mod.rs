@@ -20,8 +20,6 @@ mod progress;
 mod render;
 mod show;
 #[cfg(feature = "pictures")]
-mod slice;
-#[cfg(feature = "pictures")]
 mod uniforms;
 #[cfg(feature = "pictures")]
 mod view;

@@ -6,14 +6,15 @@
 use fragbuf::{Form, Plan, Registry, Request, TARGETS, Target, Variant, generate, tier};
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
 use fragbuf_runtime::wgpu;
-use fragbuf_runtime::{Error, Output, Renderer, Settings, Shaders, Sizing, block_on};
+use fragbuf_runtime::{
+    Counters, Error, Output, PassTime, Pipelines, Renderer, Room, Settings, Shaders, Sizing, block_on,
+};
 use fragbuf_scene::Scene;
 
 use super::attributes::{Geometry, geometry};
 use super::input::Input;
 use super::output::{Failure, warn};
 use super::progress::Progress;
-use super::slice::{Slice, SliceFailure};
 use super::uniforms;
 use super::view::{Stage, View};
 
@@ -34,7 +35,7 @@ pub(crate) struct Wish<'a> {
 
 /// What came of it.
 pub(crate) struct Painted {
-    pub(crate) slice: Slice,
+    pub(crate) drawn: Figures,
     pub(crate) info: wgpu::AdapterInfo,
     pub(crate) target: &'static Target,
     pub(crate) plan: Plan,
@@ -107,7 +108,7 @@ impl Painter {
         Err(refusal)
     }
 
-    /// Draws the whole picture: at once, or in slices as high as the device has memory for.
+    /// Draws the picture until nothing is lost for want of room, in slices as high as the device has memory for.
     fn paint(
         self,
         wish: &Wish<'_>,
@@ -117,38 +118,44 @@ impl Painter {
         (frames, room): (&mut u32, &mut Option<u32>),
     ) -> Result<Painted, Failure> {
         let (width, height) = view.size;
-        let device = &self.headless.device;
+        let Headless { device, queue, .. } = &self.headless;
         progress.stage(format!("{}: making pipelines", wish.description));
-        let mesh = Mesh::upload(device, &self.headless.queue, &geometry(&stage.scene, &self.shaders.plan)?)?;
-        let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve { fragments });
-        let settings = Settings { sizing, timestamps: view.json, ..Settings::new(BLENDED, width, height) };
-        let mut rows = Renderer::fitting_height(device, &self.shaders, &settings)?;
-        let mut whole: Option<Slice> = None;
-        let mut top = 0;
-        while top < height {
-            let sizing = if rows < height { Sizing::Auto } else { sizing };
-            let settings = Settings { sizing, height: rows.min(height - top), ..settings.clone() };
-            let mut count = || {
-                *frames += 1;
-                progress.stage(format!("{}: frame {frames}, row {top} of {height}", wish.description));
-            };
-            match self.slice(wish, &settings, (top, height), stage, &mesh, &mut count) {
-                Ok(slice) => {
-                    top += settings.height;
-                    whole = Some(match whole {
-                        Some(above) => above.with(slice),
-                        None => slice,
-                    });
+        let mesh = Mesh::upload(device, queue, &geometry(&stage.scene, &self.shaders.plan)?)?;
+        let settings = Settings { timestamps: view.json, ..Settings::new(BLENDED, width, height) };
+        let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
+        let uniforms = uniforms::values(wish.uniforms, &self.variant)?;
+        let (mut slice, mut rows) = (None, height);
+        let drawn = loop {
+            let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve(Room::Fragments(fragments)));
+            let settings = Settings { sizing, slice, ..settings.clone() };
+            let mut renderer = match block_on(device, Renderer::with(device, queue, &pipelines, &settings))? {
+                // Room for all fragments of so many rows is too much.
+                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if room.is_some() && rows > 1 => {
+                    rows = rows.div_ceil(2);
+                    (slice, *room) = (Some(rows), None);
+                    continue;
                 }
-                // More fragments than a buffer may hold: half as many rows have fewer.
-                Err(SliceFailure::TooLarge(_)) if settings.height > 1 => rows = settings.height.div_ceil(2),
-                Err(SliceFailure::TooLarge(failure) | SliceFailure::Other(failure)) => return Err(failure),
+                made => made?,
+            };
+            for (name, value) in &uniforms {
+                renderer.set_uniform(name, *value)?;
             }
-        }
-        let whole = whole.ok_or_else(|| Failure::Device("the picture has no rows".to_owned()))?;
-        *room = whole.room;
+            *frames += 1;
+            progress.stage(format!("{}: frame {frames}, slices: {}", wish.description, renderer.slices()));
+            rows = height.div_ceil(renderer.slices());
+            match self.frame(&mut renderer, stage, &mesh, view.size) {
+                Ok(Drawn::Short(more)) => *room = Some(more),
+                Ok(Drawn::Whole(drawn)) => break drawn,
+                // More fragments than a buffer may hold: half as many rows have fewer.
+                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if rows > 1 => {
+                    rows = rows.div_ceil(2);
+                    (slice, *room) = (Some(rows), None);
+                }
+                Err(error) => return Err(error.into()),
+            }
+        };
         Ok(Painted {
-            slice: whole,
+            drawn,
             info: self.headless.info.clone(),
             target: self.target,
             plan: self.shaders.plan,
@@ -156,54 +163,70 @@ impl Painter {
         })
     }
 
-    /// Draws one slice until nothing is lost for want of room.
-    fn slice(
+    /// Draws one frame.
+    fn frame(
         &self,
-        wish: &Wish<'_>,
-        settings: &Settings,
-        (top, whole_height): (u32, u32),
+        renderer: &mut Renderer,
         stage: &Stage,
         mesh: &Mesh,
-        count: &mut dyn FnMut(),
-    ) -> Result<Slice, SliceFailure> {
+        (width, height): (u32, u32),
+    ) -> Result<Drawn, Error> {
         let Headless { device, queue, .. } = &self.headless;
-        let mut renderer = block_on(device, Renderer::new(device, queue, &self.shaders, settings))??;
-        for (name, value) in uniforms::values(wish.uniforms, &self.variant).map_err(SliceFailure::Other)? {
-            renderer.set_uniform(&name, value)?;
-        }
         renderer.set_camera(&stage.camera.view_projection);
-        let offscreen = Offscreen::new(device, BLENDED, settings.width, settings.height)?;
+        let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        let automatic = u64::from(settings.width) * u64::from(settings.height) * u64::from(Sizing::AUTO_PER_PIXEL);
-        let mut room = match settings.sizing {
-            Sizing::Reserve { fragments } => Some(fragments),
-            Sizing::Auto | Sizing::Exact => None,
-        };
-        loop {
-            count();
-            renderer.render(&output, &mut |pass, _| {
-                pass.set_viewport(0.0, -(top as f32), settings.width as f32, whole_height as f32, 0.0, 1.0);
-                mesh.draw(pass);
-            })?;
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let counters = renderer.counters(&mut encoder);
-            let times = renderer.pass_times(&mut encoder);
-            queue.submit([encoder.finish()]);
-            let counters = counters.map(|pending| pending.wait(device)).transpose()?;
-            let times = times.map(|pending| pending.wait(device)).transpose()?;
-            let short = counters.as_ref().map_or(0, |counters| counters.get("pool_exhausted"));
-            if short == 0 {
-                let pixels = offscreen.colors(device, queue)?;
-                return Ok(Slice { pixels, counters, times, bytes: renderer.allocated_bytes(), room });
-            }
+        renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let (counters, each) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
+        let times = renderer.pass_times(&mut encoder);
+        queue.submit([encoder.finish()]);
+        let counters = counters.map(|pending| pending.wait(device)).transpose()?;
+        let each = each.map(|pending| pending.wait(device)).transpose()?;
+        let times = times.map(|pending| pending.wait(device)).transpose()?;
+        let short = each.iter().flatten().map(|slice| slice.get(EXHAUSTED)).max().unwrap_or(0);
+        if short > 0 {
             // Every fragment that found no room was counted: with so much more there is room for all.
-            let needed = room.map_or(automatic, u64::from) + u64::from(short);
-            let too_many = || SliceFailure::TooLarge(Failure::Device(format!("{needed} fragments are too many")));
-            let fragments = u32::try_from(needed).map_err(|_| too_many())?;
-            room = Some(fragments);
-            block_on(device, renderer.reserve(fragments))??;
+            let needed = renderer.symbol(POOLED).unwrap_or(0) + u64::from(short);
+            let fragments = u32::try_from(needed).map_err(|_| Error::TooLarge {
+                what: "the room for the picture's fragments".to_owned(),
+                needed,
+                limit: u32::MAX.into(),
+                limit_name: "fragments",
+                hint: "draw lower slices",
+            })?;
+            return Ok(Drawn::Short(fragments));
         }
+        let pixels = offscreen.colors(device, queue)?;
+        Ok(Drawn::Whole(Figures {
+            pixels,
+            counters,
+            times,
+            bytes: renderer.allocated_bytes(),
+            slices: renderer.slices(),
+        }))
     }
+}
+
+/// The counter of fragments that found no room in a pool, and the symbol of that room.
+const EXHAUSTED: &str = "pool_exhausted";
+const POOLED: &str = "fragments";
+
+/// What one frame came to.
+enum Drawn {
+    /// Room for so many fragments is needed.
+    Short(u32),
+    Whole(Figures),
+}
+
+/// A picture and its figures.
+pub(crate) struct Figures {
+    /// Premultiplied linear colours.
+    pub(crate) pixels: Vec<[f32; 4]>,
+    pub(crate) counters: Option<Counters>,
+    pub(crate) times: Option<Vec<PassTime>>,
+    /// Bytes held at one time.
+    pub(crate) bytes: u64,
+    pub(crate) slices: u32,
 }
 
 /// The parameter of how many layers a resolve pass holds. What exceeds it is counted as `layers_exceeded`.
@@ -219,7 +242,7 @@ impl Painted {
     /// The option that makes the resolve pass hold more, and twice what it holds now, where some layers did not fit and
     /// there is more to be had.
     fn more_layers(&self) -> Option<(String, u32)> {
-        self.slice.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
+        self.drawn.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
         self.plan.selection.rows.iter().find_map(|selected| {
             let parameter = selected.row.parameters.iter().find(|parameter| parameter.name == LAYERS)?;
             let (_, now) = self.plan.constants.iter().find(|(name, _)| *name == parameter.constant)?;
@@ -235,7 +258,12 @@ impl Painted {
     }
 
     fn warn(&self, description: &str) {
-        for counter in self.slice.counters.iter().flat_map(|counters| &counters.0) {
+        if self.drawn.pixels.iter().all(|[_, _, _, alpha]| *alpha == 0.0) {
+            warn(&format!(
+                "{description}: no fragment is seen; look at the camera, at `where`, and at uniforms, which are 0 unless given"
+            ));
+        }
+        for counter in self.drawn.counters.iter().flat_map(|counters| &counters.0) {
             // What better fragments displaced is what the description asked for.
             if counter.loss && counter.count > 0 && counter.name != "displaced" {
                 warn(&format!("{description}: {} fragments lost: {}", counter.count, counter.name));

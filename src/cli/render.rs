@@ -34,7 +34,7 @@ impl Render {
             Wish { description: &self.description, set: &self.set, uniforms: &self.uniforms, count_all: view.json };
         let painted = paint(&wish, view, &stage, &progress)?;
         progress.stage(format!("writing {}", view.out.display()));
-        let pixels = picture::displayed(&painted.slice.pixels, view.background, view.linear);
+        let pixels = picture::displayed(&painted.drawn.pixels, view.background, view.linear);
         picture::write(&view.out, view.size, &pixels, view.linear)?;
         drop(progress);
         if view.json {
@@ -47,9 +47,9 @@ impl Render {
 /// What `--json` says of one frame. Counts are null where the description does not count.
 pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Value {
     let ms: serde_json::Map<String, Value> =
-        painted.slice.times.iter().flatten().map(|time| (time.pass.clone(), time.milliseconds.into())).collect();
+        painted.drawn.times.iter().flatten().map(|time| (time.pass.clone(), time.milliseconds.into())).collect();
     let losses: serde_json::Map<String, Value> = painted
-        .slice
+        .drawn
         .counters
         .iter()
         .flat_map(|counters| counters.0.iter().filter(|counter| counter.loss))
@@ -64,17 +64,18 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
         "triangles": stage.scene.triangles(),
         "k": painted.plan.variant.keep,
         "fragment": payload(painted),
-        "ms": if painted.slice.times.is_some() { Value::from(ms) } else { Value::Null },
-        "bytes": painted.slice.bytes,
+        "ms": if painted.drawn.times.is_some() { Value::from(ms) } else { Value::Null },
+        "bytes": painted.drawn.bytes,
         "fragments": {
             "generated": tally.as_ref().map(|tally| tally.generated),
             "stored": tally.as_ref().map(|tally| tally.stored),
             "culled": tally.as_ref().map(|tally| tally.culled),
-            "dropped": painted.slice.counters.as_ref().map(|counters| counters.lost()),
+            "dropped": painted.drawn.counters.as_ref().map(|counters| counters.lost()),
         },
         "lost": losses,
         "hit_ratio": tally.as_ref().map(|tally| tally.hit_ratio),
         "frames": painted.frames,
+        "slices": painted.drawn.slices,
     })
 }
 
@@ -98,7 +99,7 @@ pub(crate) struct Tally {
 
 /// `None` where not every event was counted.
 pub(crate) fn tally(painted: &Painted) -> Option<Tally> {
-    let counters = painted.slice.counters.as_ref().filter(|_| painted.counts_everything())?;
+    let counters = painted.drawn.counters.as_ref().filter(|_| painted.counts_everything())?;
     let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
     let stored = generated.saturating_sub(culled + counters.lost());
     let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };

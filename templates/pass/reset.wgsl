@@ -5,5 +5,5 @@ fn reset(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if invocation.x >= frame.width || invocation.y >= frame.height {
         return;
     }
-    storage_reset(pixel_index(vec2<f32>(invocation.xy)));
+    storage_reset(pixel_index(vec2<f32>(invocation.xy + vec2<u32>(0u, frame.first_row))));
 }

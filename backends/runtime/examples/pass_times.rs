@@ -10,7 +10,7 @@ use fragbuf_backends::{Request, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_model::{Draft, Origin, check};
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
-use fragbuf_runtime::{Output, Renderer, Settings, Shaders, block_on};
+use fragbuf_runtime::{Output, Renderer, Room, Settings, Shaders, block_on};
 use fragbuf_templates::Registry;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let settings = Settings { timestamps: true, ..Settings::new(BLENDED, size, size) };
     let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
     if renderer.symbol("fragments").is_some_and(|room| room > 0) {
-        block_on(device, renderer.reserve(size * size * layers))??;
+        block_on(device, renderer.reserve(Room::Fragments(size * size * layers)))??;
     }
     let screen = Offscreen::new(device, BLENDED, size, size)?;
     let vertices = sheets(device, queue, layers);

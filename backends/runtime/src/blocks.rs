@@ -1,10 +1,7 @@
-//! The uniform buffers: the frame's, the description's own, the camera's.
-
-use fragbuf_codegen::Plan;
+//! The uniform buffers: the description's own and the camera's. Those of a frame's slices are made with its memory.
 
 /// The uniform buffers.
 pub(crate) struct Blocks {
-    pub(crate) frame: wgpu::Buffer,
     pub(crate) own: wgpu::Buffer,
     pub(crate) camera: wgpu::Buffer,
     /// Bound where a pass touches nothing.
@@ -12,22 +9,23 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    pub(crate) fn new(device: &wgpu::Device, plan: &Plan, uniforms: &[u32]) -> Self {
-        let block = |label: &str, words: usize| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: 4 * words.max(1).next_multiple_of(4) as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+    pub(crate) fn new(device: &wgpu::Device, uniforms: &[u32]) -> Self {
         Blocks {
-            frame: block("fragbuf frame", plan.frame.len()),
-            own: block("fragbuf uniforms", uniforms.len()),
-            camera: block("fragbuf camera", IDENTITY.len()),
-            filler: block("fragbuf nothing", 0),
+            own: block(device, "fragbuf uniforms", uniforms.len()),
+            camera: block(device, "fragbuf camera", IDENTITY.len()),
+            filler: block(device, "fragbuf nothing", 0),
         }
     }
+}
+
+/// A uniform buffer of so many words.
+pub(crate) fn block(device: &wgpu::Device, label: &str, words: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: 4 * words.max(1).next_multiple_of(4) as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// The camera before any is set: positions are clip space.

@@ -21,7 +21,23 @@ pub struct Counter {
 }
 
 impl Counters {
-    pub(crate) fn from_words(words: &[u32]) -> Self {
+    /// Those of one slice after the other.
+    pub(crate) fn each(words: &[u32]) -> Vec<Self> {
+        words.chunks(COUNTERS.len()).map(Counters::from_words).collect()
+    }
+
+    /// Those of all slices together.
+    pub(crate) fn sum(words: &[u32]) -> Self {
+        let mut sums = vec![0_u32; COUNTERS.len()];
+        for slice in words.chunks(COUNTERS.len()) {
+            for (sum, count) in sums.iter_mut().zip(slice) {
+                *sum = sum.saturating_add(*count);
+            }
+        }
+        Counters::from_words(&sums)
+    }
+
+    fn from_words(words: &[u32]) -> Self {
         let counters = COUNTERS.iter().zip(words);
         Counters(counters.map(|(&(name, loss, _), &count)| Counter { name, loss, count }).collect())
     }

@@ -14,7 +14,7 @@ use crate::host::Decision;
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
-use crate::{Error, Pending, Renderer};
+use crate::{Error, Pending, Renderer, counters};
 
 /// A frame, somewhere between its first and its last step.
 #[derive(Debug)]
@@ -52,7 +52,8 @@ pub struct Output<'a> {
     pub load: wgpu::LoadOp<wgpu::Color>,
 }
 
-/// The caller's draw function: called once for each geometry pass, with the pipeline and the bind group set.
+/// The caller's draw function: called for each geometry pass of each slice, with the pipeline, the bind group and the
+/// scissor rectangle set, which is the slice.
 pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Pass) + 'a;
 
 impl Frame {
@@ -71,26 +72,29 @@ impl Frame {
         if self.id != renderer.frame_id {
             return Err(Error::StaleFrame);
         }
-        let rest = renderer.actions.get(self.at..).unwrap_or_default();
-        let end = rest.iter().position(|action| renderer.exact && matches!(action, Action::Host(_)));
+        let all = steps(renderer);
+        let rest = all.get(self.at..).unwrap_or_default();
+        let end = rest.iter().position(|step| renderer.exact && matches!(step.action, Action::Host(_)));
         let segment = rest.get(..end.unwrap_or(rest.len())).unwrap_or_default();
         // Whatever can fail does so before anything is recorded.
-        let groups = segment.iter().map(|action| groups(renderer, action)).collect::<Result<Vec<_>, _>>()?;
-        let decision = end.and_then(|end| rest.get(end));
-        let places = match decision {
-            Some(Action::Host(decision)) => places(renderer, decision)?,
-            _ => Vec::new(),
+        let groups = segment.iter().map(|step| groups(renderer, step.action)).collect::<Result<Vec<_>, _>>()?;
+        let decision = match end.and_then(|end| rest.get(end)) {
+            Some(Step { action: Action::Host(decision), .. }) => Some((decision, places(renderer, decision)?)),
+            _ => None,
         };
-        for (action, groups) in segment.iter().zip(groups) {
-            match action {
+        for (step, groups) in segment.iter().zip(groups) {
+            match step.action {
                 Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
                 Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
-                Action::Pass(index) => self.pass(renderer, encoder, *index, groups, output, draw),
+                Action::Pass(index) => self.pass(renderer, encoder, (*index, step.slice), groups, output, draw),
                 Action::Host(_) => {}
             }
+            if let Ends::Slice = step.ends {
+                tally(renderer, encoder, step.slice);
+            }
         }
-        let Some(Action::Host(decision)) = decision else {
-            if let Some(timing) = &renderer.timing {
+        let Some((decision, places)) = decision else {
+            if let Some(timing) = &renderer.sized.timing {
                 timing.resolve(encoder);
             }
             return Ok(Recorded::Finished);
@@ -106,15 +110,15 @@ impl Frame {
         &mut self,
         renderer: &Renderer,
         encoder: &mut wgpu::CommandEncoder,
-        index: usize,
+        (index, slice): (usize, u32),
         groups: [u32; 3],
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
-        let (Some(prepared), Some(group)) = (renderer.passes.get(index), renderer.sized.groups.get(index)) else {
-            return;
-        };
-        let times = renderer.timing.as_ref().map(|timing| timing.of(index));
+        let sized = &renderer.sized;
+        let group = sized.slices.get(slice as usize).and_then(|slice| slice.groups.get(index));
+        let (Some(prepared), Some(group)) = (renderer.made().passes.get(index), group) else { return };
+        let times = sized.timing.as_ref().map(|timing| timing.of(index, slice));
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
             let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
@@ -124,7 +128,7 @@ impl Frame {
             });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(renderer.group, group, &[]);
+            pass.set_bind_group(renderer.made().group, group, &[]);
             let [x, y, z] = groups;
             pass.dispatch_workgroups(x, y, z);
             return;
@@ -138,7 +142,7 @@ impl Frame {
             // WebGPU refuses a pass without attachments.
             let ops =
                 wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
-            color(&renderer.sized.dummy, ops)
+            color(&sized.dummy, ops)
         } else {
             let load = if self.written { wgpu::LoadOp::Load } else { output.load };
             self.written = true;
@@ -153,9 +157,11 @@ impl Frame {
         if let Pipeline::Render(pipeline) = &prepared.pipeline {
             pass.set_pipeline(pipeline);
         }
-        pass.set_bind_group(renderer.group, group, &[]);
-        // Beyond the frame there is no memory to read: a greater output is left as it is, a smaller one refused.
-        pass.set_scissor_rect(0, 0, renderer.sized.symbols.width, renderer.sized.symbols.height);
+        pass.set_bind_group(renderer.made().group, group, &[]);
+        // Beyond the slice there is no memory: a greater output is left as it is, a smaller one refused.
+        let symbols = &sized.symbols;
+        let first_row = slice * symbols.rows;
+        pass.set_scissor_rect(0, first_row, symbols.width, symbols.rows.min(symbols.height - first_row));
         match prepared.pass.kind {
             Kind::Geometry => draw(&mut pass, &prepared.pass),
             _ => pass.draw(0..3, 0..1),
@@ -183,9 +189,7 @@ impl Cut {
         // Room for a little more than is needed is kept; room for more than twice as much is given back.
         for (name, needed) in &mut symbols.counted {
             let room = renderer.sized.symbols.counted(name).unwrap_or(0);
-            if *needed <= room && room <= 2 * *needed {
-                *needed = room;
-            }
+            *needed = needed.map(|needed| if needed <= room && room <= 2 * needed { room } else { needed });
         }
         renderer.reallocate(symbols).await?;
         renderer.write_frame()?;
@@ -213,16 +217,48 @@ impl Renderer {
     }
 }
 
+/// One action in one slice.
+struct Step<'a> {
+    slice: u32,
+    action: &'a Action,
+    ends: Ends,
+}
+
+/// What is over after a step.
+enum Ends {
+    Nothing,
+    Slice,
+}
+
+/// All that a frame does: the plan's actions for each slice.
+fn steps(renderer: &Renderer) -> Vec<Step<'_>> {
+    let actions = &renderer.made().actions;
+    let slice = |slice: u32| {
+        (1..).zip(actions).map(move |(count, action)| {
+            let ends = if count == actions.len() { Ends::Slice } else { Ends::Nothing };
+            Step { slice, action, ends }
+        })
+    };
+    (0..renderer.slices()).flat_map(slice).collect()
+}
+
+/// Keeps what a slice has counted before the next one counts anew.
+fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
+    if let (Some(tally), Some(counters)) = (&renderer.sized.tally, renderer.buffer(counters::RESOURCE)) {
+        encoder.copy_buffer_to_buffer(counters, 0, tally, u64::from(slice) * counters.size(), counters.size());
+    }
+}
+
 /// Workgroups of a compute pass; nothing for any other action.
 fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {
     let Action::Pass(index) = action else { return Ok([0; 3]) };
-    let Some(prepared) = renderer.passes.get(*index) else { return Ok([0; 3]) };
+    let Some(prepared) = renderer.made().passes.get(*index) else { return Ok([0; 3]) };
     let Kind::Compute { groups } = &prepared.pass.kind else { return Ok([0; 3]) };
     let what = format!("pass `{}`", prepared.pass.anchor);
     let limit = renderer.device.limits().max_compute_workgroups_per_dimension;
     let mut counts = [0; 3];
     for (count, formula) in counts.iter_mut().zip(groups) {
-        let needed = renderer.sized.symbols.evaluate(&renderer.plan, formula, &what)?;
+        let needed = renderer.sized.symbols.evaluate(renderer.plan(), formula, &what)?;
         *count = u32::try_from(needed).ok().filter(|count| *count <= limit).ok_or_else(|| Error::TooLarge {
             what: format!("{what}, in workgroups,"),
             needed,
@@ -238,8 +274,8 @@ fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {
 fn places<'a>(renderer: &'a Renderer, decision: &Decision) -> Result<Vec<(&'a wgpu::Buffer, u64)>, Error> {
     let places = decision.reads.iter().filter_map(|(resource, place)| {
         let buffer = renderer.sized.memory.filled(*resource)?;
-        let name = || renderer.plan.resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
-        let word = renderer.sized.symbols.evaluate(&renderer.plan, place, &format!("the index into `{}`", name()));
+        let name = || renderer.plan().resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
+        let word = renderer.sized.symbols.evaluate(renderer.plan(), place, &format!("the index into `{}`", name()));
         Some(word.map(|word| (buffer, 4 * word)))
     });
     places.collect()
@@ -247,7 +283,7 @@ fn places<'a>(renderer: &'a Renderer, decision: &Decision) -> Result<Vec<(&'a wg
 
 fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usize, value: u32) {
     let Some(buffer) = renderer.sized.memory.filled(resource) else { return };
-    let Some((_, pattern)) = renderer.patterns.iter().find(|(known, _)| *known == value) else {
+    let Some((_, pattern)) = renderer.made().patterns.iter().find(|(known, _)| *known == value) else {
         encoder.clear_buffer(buffer, 0, None);
         return;
     };

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! `examples/embed.rs` is a host that owns its device and the order of its passes. Whole frames, where blocking is
-//! possible, are [`Renderer::render`]; frames beyond a limit are made in slices ([`Renderer::fitting_height`]).
+//! possible, are [`Renderer::render`]. Frames beyond a limit are made of slices ([`Settings::slice`]); a k beyond the
+//! capacity of the pipelines takes others ([`Buckets`]).
 //!
 //! Nothing here knows a technique by name, and nothing blocks, apart from [`Renderer::render`], [`block_on`] and
 //! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
@@ -16,6 +17,7 @@
 mod action;
 mod blocking;
 mod blocks;
+mod buckets;
 mod counters;
 mod error;
 mod frame;
@@ -25,6 +27,7 @@ mod layout;
 mod memory;
 mod pattern;
 mod pipeline;
+mod pipelines;
 mod readback;
 mod renderer;
 mod room;
@@ -39,12 +42,14 @@ mod vertices;
 mod words;
 
 pub use blocking::block_on;
+pub use buckets::Buckets;
 pub use counters::{Counter, Counters};
 pub use error::Error;
 pub use frame::{Cut, Draw, Frame, Output, Recorded};
+pub use pipelines::Pipelines;
 pub use readback::Pending;
 pub use renderer::Renderer;
-pub use settings::{Checks, Settings, Sizing, VertexBuffer};
+pub use settings::{Checks, Room, Settings, Sizing, VertexBuffer};
 pub use shaders::{Code, Module, Shaders};
 pub use timing::PassTime;
 pub use uniforms::Value;

@@ -67,14 +67,18 @@ fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
 }
 
-/// Bytes of every resource, each within the limits. What is counted later has no room yet.
-pub(crate) fn checked_sizes(plan: &Plan, symbols: &Symbols, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
+/// Name and bytes of every resource. What is counted later has no room yet.
+pub(crate) fn bytes<'a>(plan: &'a Plan, symbols: &Symbols) -> Result<Vec<(&'a str, u64)>, Error> {
     let sizes = plan.resources.iter().map(|planned| {
         let name = &planned.resource.name;
-        let bytes = symbols.evaluate(plan, &planned.words, &format!("`{name}`"))?.saturating_mul(4);
-        check(limits, name, bytes).map(|()| bytes)
+        Ok((name.as_str(), symbols.evaluate(plan, &planned.words, &format!("`{name}`"))?.saturating_mul(4)))
     });
     sizes.collect()
+}
+
+/// Bytes of every resource, each within the limits.
+pub(crate) fn checked_sizes(plan: &Plan, symbols: &Symbols, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
+    bytes(plan, symbols)?.into_iter().map(|(name, bytes)| check(limits, name, bytes).map(|()| bytes)).collect()
 }
 
 fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {
@@ -89,6 +93,6 @@ fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {
         needed,
         limit,
         limit_name,
-        hint: "take a smaller frame or slices of it, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
+        hint: "take a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
     })
 }

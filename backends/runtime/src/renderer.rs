@@ -4,51 +4,36 @@
 //! and took. Nothing here submits anything, apart from [`Renderer::render`].
 
 use fragbuf_codegen::Plan;
-use fragbuf_templates::vocabulary::Pass;
 
-use crate::action::{Action, actions, index};
+use crate::action::index;
 use crate::blocks::{Blocks, IDENTITY};
-use crate::layout::{Slot, bind_group_layout, check, slots};
-use crate::pattern::patterns;
-use crate::pipeline::{Maker, Pipeline, no_target};
-use crate::room::{automatic_room, fitting_height, symbols};
+use crate::pipeline::no_target;
+use crate::pipelines::Made;
+use crate::room::{reserve, rows, symbols};
 use crate::scope::{is_lost, scoped};
-use crate::sized::Sized;
+use crate::sized::{Fixed, Sized, Timed};
 use crate::symbols::Symbols;
-use crate::timing::Timing;
 use crate::uniforms::{set, zeros};
 use crate::words::to_bytes;
-use crate::{Counters, Error, Frame, PassTime, Pending, Settings, Shaders, Sizing, Value, VertexInputs, counters};
+use crate::{
+    Counters, Error, Frame, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs, counters,
+};
 
 /// Runs one plan on one device.
 pub struct Renderer {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
-    pub(crate) plan: Plan,
-    pub(crate) group: u32,
-    pub(crate) actions: Vec<Action>,
-    pub(crate) passes: Vec<Prepared>,
-    pub(crate) timing: Option<Timing>,
+    pub(crate) pipelines: Pipelines,
     /// Whether host steps are carried out; else what they set has been reserved.
     pub(crate) exact: bool,
-    /// Whether what is reserved follows the size of the frame.
-    follows_size: bool,
     pub(crate) sized: Sized,
-    /// Words of 64 KiB each, for clears to something else than zero.
-    pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
     pub(crate) frame_id: u64,
-    inputs: VertexInputs,
+    /// Rows of a slice as the caller wants them.
+    slice: Option<u32>,
+    timed: Timed,
     blocks: Blocks,
     uniforms: Vec<u32>,
     k: Option<u32>,
-}
-
-/// A pass and what it runs with.
-pub(crate) struct Prepared {
-    pub(crate) pass: Pass,
-    pub(crate) slots: Vec<Slot>,
-    pub(crate) layout: wgpu::BindGroupLayout,
-    pub(crate) pipeline: Pipeline,
 }
 
 impl Renderer {
@@ -60,48 +45,37 @@ impl Renderer {
         shaders: &Shaders,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let plan = shaders.plan.clone();
-        let actions = actions(&plan)?;
-        let missing = shaders.features() - device.features();
-        if !missing.is_empty() {
-            return Err(Error::MissingFeatures(missing));
-        }
-        let inputs = VertexInputs::of(&plan);
-        let own = settings.vertices.clone();
-        let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
-        let maker = Maker { device, shaders, settings, vertices: &vertices };
-        let mut passes = Vec::new();
-        for pass in plan.passes() {
-            let slots = slots(&plan, pass);
-            check(device, pass, &slots)?;
-            let what = format!("the bind group layout of pass `{}`", pass.anchor);
-            let layout = scoped(device, &what, 0, || bind_group_layout(device, pass, &slots)).await?;
-            let pipeline = maker.make(pass, &layout).await?;
-            passes.push(Prepared { pass: pass.clone(), slots, layout, pipeline });
-        }
+        let pipelines = Pipelines::new(device, shaders, settings).await?;
+        Renderer::with(device, queue, &pipelines, settings).await
+    }
+
+    /// Makes buffers for pipelines that there are already. They must be of the same device, and of settings that differ in
+    /// sizes alone.
+    pub async fn with(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        pipelines: &Pipelines,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let made = &pipelines.0;
         let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let names = passes.iter().map(|prepared| prepared.pass.anchor.clone()).collect();
-        let timing = if timed { Some(Timing::new(device, queue, names).await?) } else { None };
-        let (symbols, exact) = symbols(&plan, &actions, settings)?;
+        let timed = if timed { Timed::Yes } else { Timed::No };
+        let (mut symbols, exact) = symbols(&made.plan, &made.actions, settings)?;
+        symbols.rows = rows(&made.plan, &symbols, settings.slice, &device.limits())?;
         let k = symbols.k;
-        let uniforms = zeros(&plan.variant.uniforms);
-        let make = || (Blocks::new(device, &plan, &uniforms), patterns(device, &actions));
-        let (blocks, patterns) = scoped(device, "the uniform buffers", 0, make).await?;
-        let sized = Sized::new(device, &plan, &passes, &blocks, symbols, None).await?;
+        let uniforms = zeros(&made.plan.variant.uniforms);
+        let blocks = scoped(device, "the uniform buffers", 0, || Blocks::new(device, &uniforms)).await?;
+        let fixed = Fixed { device, queue, made, blocks: &blocks, timed };
+        let sized = Sized::new(&fixed, symbols, None).await?;
         let renderer = Renderer {
             device: device.clone(),
             queue: queue.clone(),
-            group: shaders.group,
-            plan,
-            actions,
-            passes,
-            timing,
+            pipelines: pipelines.clone(),
             exact,
-            follows_size: !exact && settings.sizing == Sizing::Auto,
             sized,
-            patterns,
             frame_id: 0,
-            inputs,
+            slice: settings.slice,
+            timed,
             blocks,
             uniforms,
             k,
@@ -109,14 +83,6 @@ impl Renderer {
         renderer.set_camera(&IDENTITY);
         renderer.write_uniforms();
         Ok(renderer)
-    }
-
-    /// The greatest height, up to that of `settings`, at which every buffer is within the device's limits: the rows of a
-    /// slice. A frame beyond the limits can be made of slices, by a renderer of that height and a draw function that moves
-    /// each to the top, with `set_viewport(0, -first_row, width, whole_height, 0, 1)`. A pool that is counted exactly is
-    /// not known yet, and may still be too large.
-    pub fn fitting_height(device: &wgpu::Device, shaders: &Shaders, settings: &Settings) -> Result<u32, Error> {
-        fitting_height(&shaders.plan, settings, &device.limits())
     }
 
     /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:
@@ -132,12 +98,7 @@ impl Renderer {
 
     /// Resizes the frame to `width` × `height` pixels. On an error the old size stays.
     pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        let mut symbols = Symbols { width, height, ..self.sized.symbols.clone() };
-        if self.follows_size {
-            let room = automatic_room(width, height);
-            symbols.counted.iter_mut().for_each(|(_, value)| *value = room);
-        }
-        self.reallocate(symbols).await
+        self.resized(Symbols { width, height, ..self.sized.symbols.clone() }).await
     }
 
     /// Keeps `k` fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers are
@@ -157,21 +118,40 @@ impl Renderer {
             });
         }
         if k > room {
-            self.reallocate(Symbols { k: Some(k), ..self.sized.symbols.clone() }).await?;
+            self.resized(Symbols { k: Some(k), ..self.sized.symbols.clone() }).await?;
         }
         self.frame_id += 1;
         self.k = Some(k);
         Ok(())
     }
 
-    /// Makes room for `fragments` fragments in the whole frame, where the plan needs room and no host step makes it.
-    pub async fn reserve(&mut self, fragments: u32) -> Result<(), Error> {
-        let mut symbols = self.sized.symbols.clone();
-        for (_, value) in &mut symbols.counted {
-            *value = fragments.into();
+    /// Serves another k with other pipelines of the same description, of a capacity of at least `k`. Camera and uniforms
+    /// stay, and so does everything on an error.
+    pub(crate) async fn switch(&mut self, pipelines: &Pipelines, k: u32) -> Result<(), Error> {
+        let before = std::mem::replace(&mut self.pipelines, pipelines.clone());
+        let mut symbols = Symbols { k: Some(k), ..self.sized.symbols.clone() };
+        let fits = rows(self.plan(), &symbols, self.slice, &self.device.limits());
+        let replaced = match fits {
+            Ok(rows) => {
+                symbols.rows = rows;
+                self.replace(symbols).await
+            }
+            Err(error) => Err(error),
+        };
+        if let Err(error) = replaced {
+            self.pipelines = before;
+            return Err(error);
         }
-        self.reallocate(symbols).await?;
-        (self.exact, self.follows_size) = (false, false);
+        self.k = Some(k);
+        Ok(())
+    }
+
+    /// Makes room, where the plan needs it, and no host step does from now on.
+    pub async fn reserve(&mut self, room: Room) -> Result<(), Error> {
+        let mut symbols = self.sized.symbols.clone();
+        reserve(self.plan(), &mut symbols, room)?;
+        self.resized(symbols).await?;
+        self.exact = false;
         Ok(())
     }
 
@@ -182,25 +162,30 @@ impl Renderer {
 
     /// One of the description's own uniforms, from the next submission on.
     pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
-        set(&mut self.uniforms, &self.plan.variant.uniforms, name, value)?;
+        set(&mut self.uniforms, &self.pipelines.0.plan.variant.uniforms, name, value)?;
         self.write_uniforms();
         Ok(())
     }
 
-    /// Bytes of all buffers of the plan's resources, as wgpu has them: what the plan's formulas say for this size, for the
+    /// Slices that the frame is made of, one after the other.
+    pub fn slices(&self) -> u32 {
+        self.sized.symbols.slices()
+    }
+
+    /// Bytes of all buffers of the plan's resources, as wgpu has them: what the plan's formulas say for a slice, for the
     /// greatest k so far and for the room there is ([`Renderer::symbol`]).
     pub fn allocated_bytes(&self) -> u64 {
         self.sized.memory.bytes()
     }
 
-    /// The value of a symbol of the plan's formulas that the buffers were sized with.
+    /// The value of a symbol of the plan's formulas that the buffers were sized with; `height` is that of a slice.
     pub fn symbol(&self, name: &str) -> Option<u64> {
-        self.sized.symbols.value(&self.plan, name)
+        self.sized.symbols.value(self.plan(), name)
     }
 
     /// The greatest k that needs no new pipelines.
     pub fn capacity(&self) -> u32 {
-        self.plan.bound.value("capacity").and_then(|capacity| u32::try_from(capacity).ok()).unwrap_or(0)
+        self.pipelines.capacity()
     }
 
     /// Fragments that a pixel keeps; `None`: all.
@@ -215,17 +200,17 @@ impl Renderer {
 
     /// What is run.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        &self.made().plan
     }
 
     /// What a vertex of a geometry pass carries.
     pub fn vertex_inputs(&self) -> &VertexInputs {
-        &self.inputs
+        &self.made().inputs
     }
 
     /// The bind group layout of the pass `anchor`, for a pipeline of the caller's own around its shader functions.
     pub fn bind_group_layout(&self, anchor: &str) -> Option<&wgpu::BindGroupLayout> {
-        self.passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
+        self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
     }
 
     /// The colour target that a pipeline of the caller's own must have in a geometry pass: nothing is written to it.
@@ -233,19 +218,31 @@ impl Renderer {
         no_target()
     }
 
-    /// Records the readback of what the frame counted. `None`: the plan counts nothing.
+    /// Records the readback of what the frame counted, over all slices. `None`: the plan counts nothing.
     pub fn counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Counters>> {
-        let buffer = self.buffer(counters::RESOURCE)?;
-        let decode = |words: Vec<u32>| Counters::from_words(&words);
+        self.counted(encoder, |words| Counters::sum(&words))
+    }
+
+    /// Records the readback of what each slice of the frame counted. `None`: the plan counts nothing.
+    pub fn slice_counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<Counters>>> {
+        self.counted(encoder, |words| Counters::each(&words))
+    }
+
+    fn counted<T>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        decode: impl FnOnce(Vec<u32>) -> T + Send + 'static,
+    ) -> Option<Pending<T>> {
+        let buffer = self.sized.tally.as_ref().or_else(|| self.buffer(counters::RESOURCE))?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), decode))
     }
 
     /// Records the readback of the time that each pass of the finished frame took. `None`: passes are not timed.
     pub fn pass_times(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<PassTime>>> {
-        self.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
+        self.sized.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
     }
 
-    /// Records the readback of a resource, all its words. `None`: the plan does not have it, or it is empty.
+    /// Records the readback of a resource, all its words: those of the last slice. `None`: the plan does not have it, or it is empty.
     pub fn words(&self, resource: &str, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<u32>>> {
         let buffer = self.buffer(resource)?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), |words| words))
@@ -253,23 +250,47 @@ impl Renderer {
 
     /// The buffer of a resource. `None`: the plan does not have it, or it is empty.
     pub fn buffer(&self, resource: &str) -> Option<&wgpu::Buffer> {
-        self.sized.memory.filled(index(&self.plan, resource).ok()?)
+        self.sized.memory.filled(index(self.plan(), resource).ok()?)
+    }
+
+    pub(crate) fn made(&self) -> &Made {
+        &self.pipelines.0
+    }
+
+    /// Gives the frame the size of `symbols` and slices that fit, or leaves everything as it is.
+    async fn resized(&mut self, mut symbols: Symbols) -> Result<(), Error> {
+        symbols.rows = rows(self.plan(), &symbols, self.slice, &self.device.limits())?;
+        self.reallocate(symbols).await
     }
 
     /// Gives the buffers the sizes of `symbols`, or leaves everything as it is.
     pub(crate) async fn reallocate(&mut self, symbols: Symbols) -> Result<(), Error> {
         if symbols != self.sized.symbols {
-            let old = Some(&self.sized);
-            self.sized = Sized::new(&self.device, &self.plan, &self.passes, &self.blocks, symbols, old).await?;
+            self.replace(symbols).await?;
         }
         self.frame_id += 1;
         Ok(())
     }
 
-    /// Writes the frame's uniform buffer, ahead of the next submission.
+    async fn replace(&mut self, symbols: Symbols) -> Result<(), Error> {
+        let fixed = Fixed {
+            device: &self.device,
+            queue: &self.queue,
+            made: self.made(),
+            blocks: &self.blocks,
+            timed: self.timed,
+        };
+        self.sized = Sized::new(&fixed, symbols, Some(&self.sized)).await?;
+        self.frame_id += 1;
+        Ok(())
+    }
+
+    /// Writes the uniform buffers of the slices, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
         let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
-        self.queue.write_buffer(&self.blocks.frame, 0, &to_bytes(&live.frame_words(&self.plan)?));
+        for (number, slice) in (0..).zip(&self.sized.slices) {
+            self.queue.write_buffer(&slice.frame, 0, &to_bytes(&live.frame_words(self.plan(), number)?));
+        }
         Ok(())
     }
 

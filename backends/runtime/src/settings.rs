@@ -11,6 +11,9 @@ pub struct Settings {
     pub height: u32,
     /// How much room is made for fragments whose number no one knows beforehand.
     pub sizing: Sizing,
+    /// Rows that are drawn at once; the frame is made of so many slices, one after the other, each of which draws the
+    /// whole scene. `None`: as many as the device's limits allow, which is the whole frame unless a buffer is too large.
+    pub slice: Option<u32>,
     /// Whether shaders check bounds and bound loops at run time.
     pub checks: Checks,
     /// The vertex buffers of geometry passes; `None`: one, interleaved, as [`crate::VertexInputs`] says.
@@ -28,11 +31,17 @@ pub enum Sizing {
     Auto,
     /// Exactly what the frame has: it is cut where the host reads the number back and makes room.
     Exact,
-    /// Room for this many fragments in the whole frame. The frame is never cut; fragments beyond are counted as lost.
-    Reserve {
-        /// Fragments in the whole frame.
-        fragments: u32,
-    },
+    /// What the caller says. The frame is never cut; fragments beyond are counted as lost.
+    Reserve(Room),
+}
+
+/// Room for the fragments of a frame, or of each slice of a frame that has several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// For this many fragments.
+    Fragments(u32),
+    /// For as many as this many bytes hold, over all buffers whose size follows the number of fragments.
+    Bytes(u64),
 }
 
 impl Sizing {
@@ -71,6 +80,7 @@ impl Settings {
             width,
             height,
             sizing: Sizing::Auto,
+            slice: None,
             checks: Checks::Auto,
             vertices: None,
             primitive: wgpu::PrimitiveState::default(),

@@ -1,49 +1,109 @@
-//! Everything that depends on the size of the frame: buffers, bind groups, and the attachment of passes without a target.
+//! Everything that depends on the size of the frame: its slices, buffers, bind groups, queries, and the attachment of
+//! passes without a target.
 //! It is made whole and replaced as one, so that a failure leaves the old one standing.
 
-use fragbuf_codegen::Plan;
-
-use crate::Error;
-use crate::blocks::Blocks;
+use crate::action::index;
+use crate::blocks::{Blocks, block};
 use crate::layout::Slot;
 use crate::memory::Memory;
 use crate::pipeline::DUMMY_FORMAT;
-use crate::renderer::Prepared;
+use crate::pipelines::{Made, Prepared};
 use crate::scope::scoped;
 use crate::symbols::Symbols;
+use crate::timing::Timing;
+use crate::{Error, counters};
 
 /// Everything that depends on the size of the frame, replaced as one.
 pub(crate) struct Sized {
     pub(crate) symbols: Symbols,
     pub(crate) memory: Memory,
-    pub(crate) groups: Vec<wgpu::BindGroup>,
+    pub(crate) slices: Vec<Slice>,
     /// The attachment of passes without a target.
     pub(crate) dummy: wgpu::TextureView,
+    pub(crate) timing: Option<Timing>,
+    /// The counters of every slice, one after the other; `None` where one slice is the frame, or nothing counts.
+    pub(crate) tally: Option<wgpu::Buffer>,
+}
+
+/// What a slice's passes see.
+pub(crate) struct Slice {
+    /// The uniform buffer with its first row.
+    pub(crate) frame: wgpu::Buffer,
+    /// One bind group per pass.
+    pub(crate) groups: Vec<wgpu::BindGroup>,
+}
+
+/// What does not change with the size.
+pub(crate) struct Fixed<'a> {
+    pub(crate) device: &'a wgpu::Device,
+    pub(crate) queue: &'a wgpu::Queue,
+    pub(crate) made: &'a Made,
+    pub(crate) blocks: &'a Blocks,
+    pub(crate) timed: Timed,
+}
+
+/// Whether passes are timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Timed {
+    Yes,
+    No,
 }
 
 impl Sized {
-    pub(crate) async fn new(
-        device: &wgpu::Device,
-        plan: &Plan,
-        passes: &[Prepared],
-        blocks: &Blocks,
-        symbols: Symbols,
-        old: Option<&Sized>,
-    ) -> Result<Self, Error> {
+    /// For `symbols`, whose slices have their height already. What has the right size is taken over from `old`.
+    pub(crate) async fn new(fixed: &Fixed<'_>, symbols: Symbols, old: Option<&Sized>) -> Result<Self, Error> {
+        let Fixed { device, queue, made, blocks, timed } = fixed;
         check_size(device, &symbols)?;
-        let memory = Memory::allocate(device, plan, &symbols, old.map(|old| &old.memory)).await?;
-        let groups = || passes.iter().map(|prepared| bind_group(device, prepared, blocks, &memory)).collect();
-        let groups = scoped(device, "the bind groups", 0, groups).await?;
+        let memory = Memory::allocate(device, &made.plan, &symbols, old.map(|old| &old.memory)).await?;
+        let slice = || {
+            let frame = block(device, "fragbuf frame", made.plan.frame.len());
+            let group = |prepared| bind_group(device, prepared, &frame, blocks, &memory);
+            Slice { groups: made.passes.iter().map(group).collect(), frame }
+        };
+        let slices = || (0..symbols.slices()).map(|_| slice()).collect();
+        let slices = scoped(device, "the bind groups", 0, slices).await?;
         let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
         let dummy = match same {
             Some(old) => old.dummy.clone(),
             None => {
-                scoped(device, "the attachment of geometry passes", symbols.pixels(), || dummy(device, &symbols))
-                    .await?
+                let bytes = u64::from(symbols.width) * u64::from(symbols.height);
+                scoped(device, "the attachment of geometry passes", bytes, || dummy(device, &symbols)).await?
             }
         };
-        Ok(Sized { symbols, memory, groups, dummy })
+        // What earlier slices of a frame that was cut have counted and taken must not be lost.
+        let same = old.filter(|old| old.symbols.slices() == symbols.slices());
+        let (timing, tally) = match same {
+            Some(old) => (old.timing.clone(), old.tally.clone()),
+            None => {
+                let names = || made.passes.iter().map(|prepared| prepared.pass.anchor.clone()).collect();
+                let timing = match timed {
+                    Timed::Yes => Some(Timing::new(device, queue, names(), symbols.slices()).await?),
+                    Timed::No => None,
+                };
+                (timing, tally(device, made, &memory, symbols.slices()).await?)
+            }
+        };
+        Ok(Sized { symbols, memory, slices, dummy, timing, tally })
     }
+}
+
+/// Room for the counters of every slice.
+async fn tally(
+    device: &wgpu::Device,
+    made: &Made,
+    memory: &Memory,
+    slices: u32,
+) -> Result<Option<wgpu::Buffer>, Error> {
+    let counters = index(&made.plan, counters::RESOURCE).ok().and_then(|index| memory.filled(index));
+    let Some(counters) = counters.filter(|_| slices > 1) else { return Ok(None) };
+    let descriptor = wgpu::BufferDescriptor {
+        label: Some("fragbuf counters of all slices"),
+        size: u64::from(slices) * counters.size(),
+        usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    };
+    let make = || device.create_buffer(&descriptor);
+    scoped(device, "the counters of all slices", descriptor.size, make).await.map(Some)
 }
 
 /// What passes without a target are attached to. Nothing is ever written to it, and tilers give it no memory.
@@ -80,10 +140,16 @@ fn check_size(device: &wgpu::Device, symbols: &Symbols) -> Result<(), Error> {
     Ok(())
 }
 
-fn bind_group(device: &wgpu::Device, prepared: &Prepared, blocks: &Blocks, memory: &Memory) -> wgpu::BindGroup {
+fn bind_group(
+    device: &wgpu::Device,
+    prepared: &Prepared,
+    frame: &wgpu::Buffer,
+    blocks: &Blocks,
+    memory: &Memory,
+) -> wgpu::BindGroup {
     let buffer = |slot: &Slot| match *slot {
         Slot::Filler => &blocks.filler,
-        Slot::Frame => &blocks.frame,
+        Slot::Frame => frame,
         Slot::Uniforms => &blocks.own,
         Slot::Camera => &blocks.camera,
         Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),

@@ -4,27 +4,30 @@
 use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::Formula;
 
-use crate::Error;
+use crate::{Error, Sizing};
 
 /// The values at one moment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Symbols {
     pub(crate) width: u32,
+    /// Rows of the whole frame.
     pub(crate) height: u32,
+    /// Rows of a slice: `height` in formulas and shaders, which see one slice at a time.
+    pub(crate) rows: u32,
     /// Fragments that a pixel keeps; `None` where it keeps all.
     pub(crate) k: Option<u32>,
-    /// What host steps set, or what was reserved.
-    pub(crate) counted: Vec<(String, u64)>,
+    /// What host steps set, or what was reserved; `None`: [`Sizing::AUTO_PER_PIXEL`].
+    pub(crate) counted: Vec<(String, Option<u64>)>,
 }
 
 /// Symbols that are bound when the frame is allocated or later, other than the counted ones.
-const KNOWN: [&str; 5] = ["width", "height", "pixels", "k", "iteration"];
+const KNOWN: [&str; 6] = ["width", "height", "first_row", "pixels", "k", "iteration"];
 
 impl Symbols {
     pub(crate) fn value(&self, plan: &Plan, symbol: &str) -> Option<u64> {
         match symbol {
             "width" => Some(self.width.into()),
-            "height" => Some(self.height.into()),
+            "height" => Some(self.rows.into()),
             "pixels" => Some(self.pixels()),
             "k" => self.k.map(u64::from),
             _ => plan.bound.value(symbol).or_else(|| self.counted(symbol)),
@@ -32,16 +35,17 @@ impl Symbols {
     }
 
     pub(crate) fn pixels(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height)
+        u64::from(self.width) * u64::from(self.rows)
     }
 
     pub(crate) fn counted(&self, symbol: &str) -> Option<u64> {
-        self.counted.iter().find(|(name, _)| name == symbol).map(|(_, value)| *value)
+        let (_, value) = self.counted.iter().find(|(name, _)| name == symbol)?;
+        Some(value.unwrap_or(self.pixels() * u64::from(Sizing::AUTO_PER_PIXEL)))
     }
 
     pub(crate) fn set(&mut self, symbol: &str, value: u64) {
         self.counted.retain(|(name, _)| name != symbol);
-        self.counted.push((symbol.to_owned(), value));
+        self.counted.push((symbol.to_owned(), Some(value)));
     }
 
     pub(crate) fn evaluate(&self, plan: &Plan, formula: &Formula, what: &str) -> Result<u64, Error> {
@@ -49,10 +53,18 @@ impl Symbols {
         value.map_err(|error| Error::Formula { what: what.to_owned(), error })
     }
 
-    /// The frame's uniform buffer: one word per field of the plan.
-    pub(crate) fn frame_words(&self, plan: &Plan) -> Result<Vec<u32>, Error> {
+    /// Slices of the frame, from the top.
+    pub(crate) fn slices(&self) -> u32 {
+        self.height.div_ceil(self.rows.max(1))
+    }
+
+    /// The uniform buffer of one slice: one word per field of the plan.
+    pub(crate) fn frame_words(&self, plan: &Plan, slice: u32) -> Result<Vec<u32>, Error> {
         let words = plan.frame.iter().map(|field| {
-            let value = self.value(plan, field).unwrap_or(0);
+            let value = match field.as_str() {
+                "first_row" => u64::from(slice) * u64::from(self.rows),
+                _ => self.value(plan, field).unwrap_or(0),
+            };
             u32::try_from(value).map_err(|_| Error::TooLarge {
                 what: format!("`{field}`"),
                 needed: value,

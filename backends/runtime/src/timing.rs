@@ -8,15 +8,17 @@ use crate::{Error, Pending};
 pub struct PassTime {
     /// The pass.
     pub pass: String,
-    /// In milliseconds.
+    /// In milliseconds, over all slices.
     pub milliseconds: f64,
 }
 
-/// Two queries per pass, and where they are resolved to.
+/// Two queries per pass of every slice, and where they are resolved to.
+#[derive(Clone)]
 pub(crate) struct Timing {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     passes: Vec<String>,
+    slices: u32,
     nanoseconds: f64,
 }
 
@@ -24,8 +26,22 @@ pub(crate) struct Timing {
 const TIMESTAMP: u64 = 8;
 
 impl Timing {
-    pub(crate) async fn new(device: &wgpu::Device, queue: &wgpu::Queue, passes: Vec<String>) -> Result<Self, Error> {
-        let count = 2 * passes.len() as u32;
+    pub(crate) async fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        passes: Vec<String>,
+        slices: u32,
+    ) -> Result<Self, Error> {
+        let count = 2 * passes.len() as u32 * slices;
+        if count > wgpu::QUERY_SET_MAX_QUERIES {
+            return Err(Error::TooLarge {
+                what: format!("timing {} passes of {slices} slices, in queries,", passes.len()),
+                needed: count.into(),
+                limit: wgpu::QUERY_SET_MAX_QUERIES.into(),
+                limit_name: "QUERY_SET_MAX_QUERIES",
+                hint: "take no times, or a smaller frame",
+            });
+        }
         let make = || {
             let queries = device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("fragbuf pass times"),
@@ -41,18 +57,18 @@ impl Timing {
             (queries, resolved)
         };
         let (queries, resolved) = scoped(device, "the timestamps", u64::from(count) * TIMESTAMP, make).await?;
-        Ok(Timing { queries, resolved, passes, nanoseconds: f64::from(queue.get_timestamp_period()) })
+        Ok(Timing { queries, resolved, passes, slices, nanoseconds: f64::from(queue.get_timestamp_period()) })
     }
 
-    /// The queries of a pass: those of its begin and end.
-    pub(crate) fn of(&self, pass: usize) -> (&wgpu::QuerySet, u32, u32) {
-        let first = 2 * pass as u32;
+    /// The queries of a pass in a slice: those of its begin and end.
+    pub(crate) fn of(&self, pass: usize, slice: u32) -> (&wgpu::QuerySet, u32, u32) {
+        let first = 2 * (pass as u32 + slice * self.passes.len() as u32);
         (&self.queries, first, first + 1)
     }
 
     /// Recorded after the last pass of a frame: every query has been written by then.
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..2 * self.passes.len() as u32, &self.resolved, 0);
+        encoder.resolve_query_set(&self.queries, 0..2 * self.passes.len() as u32 * self.slices, &self.resolved, 0);
     }
 
     pub(crate) fn read(&self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) -> Pending<Vec<PassTime>> {
@@ -61,8 +77,12 @@ impl Timing {
             let ticks: Vec<u64> =
                 words.chunks_exact(2).map(|half| u64::from(half[1]) << 32 | u64::from(half[0])).collect();
             let milliseconds = |ticks: &[u64]| ticks[1].saturating_sub(ticks[0]) as f64 * nanoseconds / 1.0e6;
-            let times = passes.into_iter().zip(ticks.chunks_exact(2));
-            times.map(|(pass, ticks)| PassTime { pass, milliseconds: milliseconds(ticks) }).collect()
+            let (times, count) = (ticks.chunks_exact(2), passes.len());
+            let mut sums: Vec<PassTime> = passes.into_iter().map(|pass| PassTime { pass, milliseconds: 0.0 }).collect();
+            for (index, ticks) in times.enumerate() {
+                sums[index % count].milliseconds += milliseconds(ticks);
+            }
+            sums
         })
     }
 }

@@ -5,7 +5,7 @@
 //! here too; nothing in this file says anything about races.
 
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Renderer, Settings, Sizing, Value, block_on};
+use fragbuf_runtime::{Renderer, Room, Settings, Sizing, Value, block_on};
 
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
@@ -132,7 +132,7 @@ fn exact_regions_cut_at_the_host_step() {
 
 #[test]
 fn exact_regions_reserved() {
-    let reserved = Sizing::Reserve { fragments: 8 * SIZE * SIZE };
+    let reserved = Sizing::Reserve(Room::Fragments(8 * SIZE * SIZE));
     check(&technique("ab_sb", &[]), &Settings { sizing: reserved, ..settings() }, &PLAIN, |_| {});
 }
 

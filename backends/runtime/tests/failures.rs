@@ -1,7 +1,7 @@
 //! What goes wrong is a value that says what, how much and what to do; the renderer stays as it was.
 
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
-use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Settings, Sizing, Value, block_on};
+use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Room, Settings, Sizing, Value, block_on};
 use fragbuf_templates::vocabulary::{Host, Step};
 
 use crate::quads::{Quad, SIZE};
@@ -18,8 +18,8 @@ fn message<T>(result: Result<T, Error>) -> String {
 #[test]
 fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     let stage = device();
-    let mut renderer =
-        renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &settings()).unwrap();
+    let whole = Settings { slice: Some(u32::MAX), ..settings() };
+    let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &whole).unwrap();
     let before = (renderer.allocated_bytes(), renderer.symbol("width"));
     let limit = stage.device.limits().max_storage_buffer_binding_size.min(stage.device.limits().max_buffer_size);
     let side = stage.device.limits().max_texture_dimension_2d;
@@ -31,11 +31,6 @@ fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     assert_eq!((renderer.allocated_bytes(), renderer.symbol("width")), before);
     let quads = [Quad::whole(0.5, [1, 2, 3, 4])];
     assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
-    // The way out: as many rows as fit, and not one more.
-    let shaders = shaders(&technique("kplus_array", &[("k", "64")]), "wgsl");
-    let whole = Settings { width: side, height: side, ..settings() };
-    let rows = Renderer::fitting_height(&stage.device, &shaders, &whole).unwrap();
-    assert_eq!(u64::from(rows), (limit / (4 * 64 * u64::from(side))).min(u64::from(side)));
     let error = block_on(&stage.device, renderer.resize(side + 1, 1)).unwrap().unwrap_err();
     assert!(error.to_string().contains("max_texture_dimension_2d"), "{error}");
 }
@@ -43,7 +38,7 @@ fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
 #[test]
 fn a_pool_beyond_the_limit_is_refused_before_anything_is_made() {
     let stage = device();
-    let settings = Settings { sizing: Sizing::Reserve { fragments: u32::MAX }, ..settings() };
+    let settings = Settings { sizing: Sizing::Reserve(Room::Fragments(u32::MAX)), ..settings() };
     let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
     assert!(error.contains("`links`") && error.contains("reserve less"), "{error}");
 }

@@ -1,13 +1,16 @@
 //! Frames of more pixels than one workgroup, or one round of the prefix sums, goes over; and frames in slices. The quads
 //! are the same as everywhere, on a grid of 16 × 16 cells of many pixels each.
 
-use fragbuf_runtime::headless::Offscreen;
-use fragbuf_runtime::{Output, Renderer, Settings};
+use fragbuf_runtime::headless::{Headless, Offscreen};
+use fragbuf_runtime::{PassTime, Renderer, Settings};
+use fragbuf_templates::vocabulary::Step;
 
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, fragments, picture};
-use crate::quads::{Quad, SIZE, vertices};
-use crate::stage::{BACKGROUND, FORMAT, device, draw_over, read_buffers, renderer, settings, shaders, technique};
+use crate::quads::{Quad, SIZE};
+use crate::stage::{
+    BACKGROUND, FORMAT, device, draw_over, read_buffers, read_counters, renderer, settings, shaders, technique,
+};
 
 /// Blocks of 1024 pixels: some more than one, and more than the 256 that a workgroup sums up at once.
 const SIZES: [(u32, u32); 2] = [(80, 48), (640, 480)];
@@ -59,41 +62,69 @@ fn regions_follow_each_other_without_a_gap() {
     }
 }
 
-/// A frame whose buffers are beyond a limit can be made in slices: a renderer of a slice's size, and a viewport in the
-/// draw function that moves the slice to the top. Rasterisation is the same, to the bit.
+/// Rasterisation is the same in every slice, and so is the picture, to the bit; memory is that of one slice, counts and
+/// times are of all. Sixteen rows make three slices of five and one of one.
 #[test]
 fn slices_make_the_same_picture() {
     let stage = device();
-    let quads: Vec<Quad> = scattered(8, 79);
-    let shaders = shaders(&technique("kplus_array", &[("k", "4")]), "wgsl");
-    let mut whole = renderer(&stage, &shaders, &settings()).unwrap();
-    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
-    draw_over(&stage, &mut whole, &quads, &offscreen).unwrap();
-    let expected = offscreen.colors(&stage.device, &stage.queue).unwrap();
-
-    let rows = 4;
-    let mut slice: Renderer = renderer(&stage, &shaders, &Settings { height: rows, ..settings() }).unwrap();
-    assert_eq!(slice.allocated_bytes() - 24, (whole.allocated_bytes() - 24) / 4);
-    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, rows).unwrap();
-    let bytes = vertices(&quads, slice.vertex_inputs());
-    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("quads"),
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    stage.queue.write_buffer(&buffer, 0, &bytes);
-    let [r, g, b] = BACKGROUND;
-    let mut seen = Vec::new();
-    for first in (0..SIZE).step_by(rows as usize) {
-        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-        let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {
-            pass.set_viewport(0.0, -(first as f32), SIZE as f32, SIZE as f32, 0.0, 1.0);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..6 * quads.len() as u32, 0..1);
+    let quads: Vec<Quad> = scattered(12, 79);
+    for (key, k) in [("kplus_array", "4"), ("kb", "4"), ("ab_ll", "all"), ("ab_sb", "all")] {
+        let shaders = shaders(&technique(key, &[("k", k), ("counters", "all")]), "wgsl");
+        let see = |slice: Option<u32>| {
+            let settings = Settings { slice, timestamps: true, ..settings() };
+            let mut renderer = renderer(&stage, &shaders, &settings).unwrap();
+            let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+            draw_over(&stage, &mut renderer, &quads, &offscreen).unwrap();
+            let colors = offscreen.colors(&stage.device, &stage.queue).unwrap();
+            (colors, read_counters(&stage, &renderer), read_times(&stage, &renderer), renderer)
         };
-        slice.render(&output, draw).unwrap();
-        seen.extend(offscreen.colors(&stage.device, &stage.queue).unwrap());
+        let (whole, counted, _, one) = see(None);
+        let (sliced, counted_in_slices, times, four) = see(Some(5));
+        assert_eq!((one.slices(), four.slices()), (1, 4), "{key}");
+        assert!(whole == sliced, "{key}: slices are seen");
+        assert_eq!(counted, counted_in_slices, "{key}");
+        assert_eq!(times.len(), four.plan().passes().len(), "{key}");
+        assert_eq!((one.symbol("pixels"), four.symbol("pixels")), (Some(16 * 16), Some(5 * 16)));
     }
-    assert_eq!(seen, expected);
+}
+
+#[test]
+fn what_no_buffer_can_hold_is_sliced_unasked() {
+    let stage = device();
+    let limit = stage.device.limits().max_storage_buffer_binding_size.min(stage.device.limits().max_buffer_size);
+    // One row more than a binding holds: 4 bytes a key, 1024 keys a pixel.
+    let width = 1024;
+    let rows = (limit / (4 * 1024 * u64::from(width))) as u32;
+    let shaders = shaders(&technique("kplus_array", &[("k", "1024")]), "wgsl");
+    let settings = Settings { width, height: rows + 1, ..settings() };
+    let mut renderer = renderer(&stage, &shaders, &settings).unwrap();
+    assert_eq!((renderer.slices(), renderer.symbol("height")), (2, Some(rows.into())));
+    let offscreen = Offscreen::new(&stage.device, FORMAT, width, rows + 1).unwrap();
+    draw_over(&stage, &mut renderer, &[Quad::whole(0.5, [10, 20, 30, 255])], &offscreen).unwrap();
+    let colors = offscreen.colors(&stage.device, &stage.queue).unwrap();
+    assert!(colors.iter().all(|color| *color == colors[0]), "both slices are drawn");
+    assert!((255.0 * colors[0][1] - 20.0).abs() < 0.1, "{:?}", colors[0]);
+}
+
+/// WebGPU clears to zero alone: other words are copied in, 64 KiB at a time.
+#[test]
+fn every_word_of_a_resource_is_cleared_to_what_a_step_says() {
+    let stage = device();
+    let mut shaders = shaders(&technique("kplus_array", &[("k", "2")]), "wgsl");
+    shaders.plan.steps.push(Step::Clear { resource: "locks".to_owned(), value: 0x0123_4567 });
+    for (width, height) in [(1, 1), (128, 128), (150, 301)] {
+        let mut renderer = renderer(&stage, &shaders, &Settings { width, height, ..settings() }).unwrap();
+        let offscreen = Offscreen::new(&stage.device, FORMAT, width, height).unwrap();
+        draw_over(&stage, &mut renderer, &[], &offscreen).unwrap();
+        let words = &read_buffers(&stage, &renderer)["locks"];
+        assert_eq!(words.len() as u32, width * height);
+        assert!(words.iter().all(|word| *word == 0x0123_4567));
+    }
+}
+
+fn read_times(stage: &Headless, renderer: &Renderer) -> Vec<PassTime> {
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let times = renderer.pass_times(&mut encoder).unwrap();
+    stage.queue.submit([encoder.finish()]);
+    times.wait(&stage.device).unwrap()
 }

@@ -1,7 +1,7 @@
 //! Room: how much is made, when a frame is cut for it, and what happens when it runs out.
 
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Output, Recorded, Renderer, Settings, Sizing, block_on};
+use fragbuf_runtime::{Buckets, Error, Output, Recorded, Renderer, Room, Settings, Sizing, block_on};
 
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, kept_words, total};
@@ -21,7 +21,7 @@ fn allocated_bytes_are_what_the_papers_say() {
     let stage = device();
     let quads = scattered(8, 3);
     let fragments = total(&PLAIN, &quads) as u64;
-    let reserve = Sizing::Reserve { fragments: 1000 };
+    let reserve = Sizing::Reserve(Room::Fragments(1000));
     // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1 and 2f + 2 words per pixel.
     let expected = [
         ("kplus_array", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
@@ -49,13 +49,50 @@ fn allocated_bytes_are_what_the_papers_say() {
 }
 
 #[test]
+fn room_in_bytes_is_what_the_pools_take() {
+    let stage = device();
+    // An entry of ab_ll is three words: key, colour, link; one of ab_sb two.
+    for (key, bytes, fragments) in [("ab_ll", 1200, 100), ("ab_ll", 1211, 100), ("ab_ll", 11, 0), ("ab_sb", 1200, 150)]
+    {
+        let room = |room| open(&stage, key, &[], Sizing::Reserve(room)).unwrap();
+        let (with, without) = (room(Room::Bytes(bytes)), room(Room::Fragments(0)));
+        assert_eq!(with.symbol("fragments"), Some(fragments), "{key}, {bytes} bytes");
+        let more = with.allocated_bytes() - without.allocated_bytes();
+        assert!(more <= bytes && bytes - more < 12, "{key}: {more} of {bytes} bytes");
+    }
+}
+
+#[test]
+fn every_k_is_served_by_one_bucket_made_once() {
+    let stage = device();
+    let quads = scattered(24, 4);
+    let mut generated = Vec::new();
+    let make = |capacity: u32| {
+        generated.push(capacity);
+        Ok(shaders(&technique("kplus_array", &[("k", &capacity.to_string())]), "wgsl"))
+    };
+    let settings = settings();
+    let buckets = Buckets::new(&stage.device, &stage.queue, &settings, 3, make);
+    let mut buckets = block_on(&stage.device, buckets).unwrap().unwrap();
+    for k in [3, 4, 2, 9, 16, 1, 3, 10, 2] {
+        block_on(&stage.device, buckets.set_k(k)).unwrap().unwrap();
+        let renderer = buckets.renderer();
+        assert_eq!((renderer.k(), renderer.capacity()), (Some(k), k.next_power_of_two()));
+        assert_eq!(see(&stage, renderer, &quads).kept, kept_words(&PLAIN, &quads, Some(k)), "k = {k}");
+    }
+    assert!(block_on(&stage.device, buckets.set_k(0)).unwrap().is_err());
+    drop(buckets);
+    assert_eq!(generated, [4, 2, 16, 1]);
+}
+
+#[test]
 fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
     let stage = device();
     let quads = scattered(8, 5);
     let fragments = total(&PLAIN, &quads);
     for room in [0, 1, fragments / 2, fragments - 1, fragments, fragments + 1] {
         for key in ["ab_ll", "ab_sb"] {
-            let sizing = Sizing::Reserve { fragments: room as u32 };
+            let sizing = Sizing::Reserve(Room::Fragments(room as u32));
             let mut renderer = open(&stage, key, &[("counters", "all")], sizing).unwrap();
             let seen = see(&stage, &mut renderer, &quads);
             let lost = fragments.saturating_sub(room);
@@ -102,7 +139,7 @@ fn a_frame_is_cut_only_where_the_host_must_read() {
     let stage = device();
     let cuts = [
         ("ab_sb", Sizing::Auto, 1),
-        ("ab_sb", Sizing::Reserve { fragments: 99 }, 0),
+        ("ab_sb", Sizing::Reserve(Room::Fragments(99)), 0),
         ("ab_ll", Sizing::Auto, 0),
         ("kplus_array", Sizing::Exact, 0),
     ];
