@@ -2,8 +2,10 @@
 //! covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by definition.
 
 use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Mutex;
 
-use fragbuf::{File, Registry, check};
+use fragbuf::{File, Registry, Variant, check};
 use fragbuf_codegen::verify;
 use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Spanned};
 
@@ -51,10 +53,7 @@ fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft
 fn every_combination_generates_or_is_refused_with_a_way_out() {
     let registry = Registry::builtin();
     let combinations = combinations(&registry);
-    let (mut accepted, mut refused) = (0, 0);
-    let mut texts: BTreeSet<Vec<u8>> = BTreeSet::new();
-    let mut covering: Vec<File> = Vec::new();
-    let mut covered: BTreeSet<(usize, Vec<String>)> = BTreeSet::new();
+    let (mut accepted, mut refused): (Vec<Accepted>, usize) = (Vec::new(), 0);
     for (payload, description) in descriptions().iter().enumerate() {
         for choices in &combinations {
             for keep in [KeepCount::AtMost(8), KeepCount::All] {
@@ -63,43 +62,69 @@ fn every_combination_generates_or_is_refused_with_a_way_out() {
                         refused += 1;
                         assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
                     }
-                    Ok(variant) => {
-                        accepted += 1;
-                        let generation = generated(&variant);
-                        assert!(!generation.plans.is_empty(), "some target can express whatever is accepted");
-                        let files = generation.files;
-                        if covers_more(payload, choices, &mut covered) {
-                            covering.extend(files.iter().cloned());
-                        }
-                        texts.extend(files.into_iter().map(|file| file.bytes));
-                    }
+                    Ok(variant) => accepted.push(Accepted { payload, choices, variant }),
                 }
             }
         }
     }
-    assert!(accepted > 100 && refused > accepted, "{accepted} accepted, {refused} refused");
+    assert!(accepted.len() > 100 && refused > accepted.len(), "{} accepted, {refused} refused", accepted.len());
+    let texts = Mutex::new(BTreeSet::new());
+    let queue = Mutex::new(accepted.iter());
+    let work = || {
+        while let Some(one) = { queue.lock().unwrap().next() } {
+            let generation = generated(&one.variant);
+            assert!(!generation.plans.is_empty(), "some target can express whatever is accepted");
+            let hashes = generation.files.iter().map(|file| {
+                let mut hasher = DefaultHasher::new();
+                (file.target, &file.bytes).hash(&mut hasher);
+                hasher.finish()
+            });
+            texts.lock().unwrap().extend(hashes);
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        scope.spawn(work);
+    });
+    let covering: Vec<File> =
+        covering(&accepted).into_iter().flat_map(|accepted| generated(&accepted.variant).files).collect();
     let external = validate(covering.iter());
     assert!(external > 100);
     println!(
-        "product: {} combinations, {accepted} accepted, {refused} refused; {} distinct files through naga and the \
+        "product: {} combinations, {} accepted, {refused} refused; {} distinct files through naga and the \
          printers; {external} of a covering set through glslang and spirv-val",
-        accepted + refused,
-        texts.len()
+        accepted.len() + refused,
+        accepted.len(),
+        texts.into_inner().unwrap().len()
     );
 }
 
-/// Whether a combination has three values of three axes together (the payload counts as one) that none before had.
-fn covers_more(payload: usize, choices: &[(String, String)], covered: &mut BTreeSet<(usize, Vec<String>)>) -> bool {
-    let values: Vec<&String> = choices.iter().map(|(_, value)| value).collect();
-    let mut more = false;
-    for first in 0..values.len() {
-        for second in first + 1..values.len() {
-            let names =
-                [choices[first].0.clone(), values[first].clone(), choices[second].0.clone(), values[second].clone()];
-            more |= covered.insert((payload, names.to_vec()));
-        }
+/// A combination that the rules accept.
+struct Accepted<'a> {
+    payload: usize,
+    choices: &'a [(String, String)],
+    variant: Variant,
+}
+
+/// Few of them, in which every two values of two axes stand together with every payload that they are accepted with. They
+/// are gone through in a shuffled order: neighbours have almost everything in common.
+fn covering<'a, 'b>(accepted: &'b [Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
+    let mut order: Vec<&Accepted<'_>> = accepted.iter().collect();
+    let mut random = Random(11);
+    for index in (1..order.len()).rev() {
+        order.swap(index, random.below(index + 1));
     }
-    more
+    let mut covered: BTreeSet<(usize, [&String; 4])> = BTreeSet::new();
+    order.retain(|accepted| {
+        let mut more = false;
+        for (first, (axis, value)) in accepted.choices.iter().enumerate() {
+            for (other_axis, other) in &accepted.choices[first + 1..] {
+                more |= covered.insert((accepted.payload, [axis, value, other_axis, other]));
+            }
+        }
+        more
+    });
+    order
 }
 
 #[test]

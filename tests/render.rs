@@ -267,7 +267,24 @@ fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
     };
     assert_eq!(with(&[]), [0, 0, 0, 255]);
     assert_eq!(with(&["--uniform", "tint=0,1,0.2"]), [0, 255, 51, 255]);
-    assert_eq!(with(&["--uniform", "tint=0,1,0", "--uniform", "cut=0.5"]), [0, 0, 0, 255]);
+    let out = folder.join("none.png");
+    let output = fragbuf(&[
+        "render",
+        description,
+        "--scene",
+        model,
+        "--uniform",
+        "cut=0.5",
+        "--size",
+        "8x8",
+        "--camera",
+        "clip",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("warning") && stderr(&output).contains("uniforms"), "{}", stderr(&output));
+    assert!(read(&out).2.iter().all(|pixel| *pixel == [255; 4]), "only the background is seen");
 }
 
 #[test]

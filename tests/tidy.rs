@@ -132,6 +132,22 @@ fn the_readme_has_the_computed_table() {
     assert!(readme.contains(&table), "put this into README.md:\n{table}");
 }
 
+/// Every technique has a page and a picture. The pages follow the rows: `INSTA_UPDATE=always` writes them anew.
+#[test]
+fn every_technique_has_its_page() {
+    let techniques = fragbuf_templates::Registry::builtin().techniques().to_vec();
+    for technique in &techniques {
+        let path = root().join(format!("examples/techniques/{}.md", technique.key));
+        let page = fragbuf(&["show", &technique.key, "--page"], root());
+        if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+            std::fs::write(&path, &page).unwrap();
+        }
+        assert_eq!(read(&path), page, "{} is out of date", path.display());
+        assert!(root().join(format!("examples/gallery/{}.png", technique.key)).exists(), "no picture of {}", technique.key);
+    }
+    assert_eq!(files("examples/techniques", "md").len(), techniques.len(), "a page of no technique");
+}
+
 /// Every block of code in the README is what a person would get.
 #[test]
 fn the_readme_shows_what_is_generated() {

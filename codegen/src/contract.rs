@@ -23,6 +23,7 @@ pub const CONTRACTS: &[Contract] = &[
     row("storage", "storage_reset", "(pixel: u32)", "brings the pixel to its empty state"),
     row("storage", "storage_count", "(pixel: u32)", "counts a fragment that a later pass will store"),
     row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment or hands one to on_lost"),
+    row("storage", "storage_settle", "(pixel: u32, entry: Packed)", "settles more of a fragment that was stored"),
     row(
         "storage",
         "storage_bound",

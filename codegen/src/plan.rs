@@ -87,7 +87,8 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         ("entry_words", u64::from(layout.entry_words())),
         ("beside_words", u64::from(layout.beside_words())),
     ]);
-    let built = build(selection, registry, &bound).map_err(|problem| {
+    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
+    let built = build(selection, limit, registry, &bound).map_err(|problem| {
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     })?;
@@ -125,7 +126,7 @@ struct Built {
     words_per_pixel: String,
 }
 
-fn build(selection: &Selection, registry: &Registry, bound: &Bound) -> Result<Built, String> {
+fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound) -> Result<Built, String> {
     let mut resources: Vec<Resource> =
         selection.rows.iter().flat_map(|selected| selected.row.resources.iter().cloned()).collect();
     let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
@@ -139,7 +140,7 @@ fn build(selection: &Selection, registry: &Registry, bound: &Bound) -> Result<Bu
         let Init::Clear(value) = resource.init else { return None };
         Some(Step::Clear { resource: resource.name.clone(), value })
     });
-    let steps = clears.chain(steps).collect();
+    let steps: Vec<Step> = clears.chain(steps).collect();
     let mut planned = Vec::with_capacity(resources.len());
     let mut total = Polynomial::default();
     for (binding, resource) in (FIRST_BINDING..).zip(resources) {
@@ -149,7 +150,7 @@ fn build(selection: &Selection, registry: &Registry, bound: &Bound) -> Result<Bu
     }
     Ok(Built {
         constants: constants(selection, bound).map_err(|error| error.to_string())?,
-        frame: frame(&planned),
+        frame: frame(limit, &planned, &steps),
         words_per_pixel: words_per_pixel(&total).to_string(),
         resources: planned,
         steps,
@@ -208,7 +209,9 @@ fn geometry_passes(steps: &[Step], bound: &Bound) -> Polynomial {
 
 /// The parameters of the chosen rows, as set or by default.
 fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>, FormulaError> {
-    let mut constants = vec![("CAPACITY".to_owned(), bound.value("capacity").unwrap_or(0) as u32)];
+    let number = |symbol| bound.value(symbol).unwrap_or(0) as u32;
+    let mut constants =
+        vec![("CAPACITY".to_owned(), number("capacity")), ("BESIDE_WORDS".to_owned(), number("beside_words"))];
     for selected in &selection.rows {
         for parameter in &selected.row.parameters {
             let set = selected.options.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
@@ -222,13 +225,27 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
     Ok(constants)
 }
 
-/// The frame's fields: its size, the row at which a slice of a picture begins (0: there are no slices), and every symbol of a resource's size that is bound later than code.
-fn frame(resources: &[Planned]) -> Vec<String> {
+/// Whether a description keeps no more than k.
+#[derive(Clone, Copy)]
+enum Limit {
+    K,
+    None,
+}
+
+/// The frame's fields: its size, the row at which a slice of a picture begins (0: there are no slices), the round of a loop,
+/// and every symbol of a resource's size that is bound later than code.
+fn frame(limit: Limit, resources: &[Planned], steps: &[Step]) -> Vec<String> {
     let mut fields = ["width", "height", "first_row"].map(str::to_owned).to_vec();
-    for symbol in ["k", "fragments", "kept"] {
+    if let Limit::K = limit {
+        fields.push("k".to_owned());
+    }
+    for symbol in ["n", "fragments", "kept"] {
         if resources.iter().any(|planned| mentions(&planned.words, symbol)) {
             fields.push(symbol.to_owned());
         }
+    }
+    if steps.iter().any(|step| matches!(step, Step::Repeat(_))) {
+        fields.push("iteration".to_owned());
     }
     fields
 }

@@ -1,6 +1,6 @@
 //! `fragbuf list`: what there is, computed from the rows.
 
-use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, tier};
+use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, tier};
 use fragbuf_templates::vocabulary::Technique;
 use serde_json::{Map, Value, json};
 
@@ -52,10 +52,21 @@ fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
         "paper": technique.paper,
         "summary": technique.summary,
         "axes": axes,
-        "words_per_pixel": first.map(|plan| plan.words_per_pixel.clone()),
+        "words_per_pixel": words(&generation),
         "geometry_passes": passes,
         "targets": tiers,
     }))
+}
+
+/// Those of the first target's plan, and what they are on targets that follow another.
+fn words(generation: &Generation) -> String {
+    let mut words: Vec<&str> = Vec::new();
+    for planned in &generation.plans {
+        if !words.contains(&planned.plan.words_per_pixel.as_str()) {
+            words.push(&planned.plan.words_per_pixel);
+        }
+    }
+    words.join(" or ")
 }
 
 /// The same as a table for people: one line per technique.

@@ -10,6 +10,7 @@ mod generate;
 mod input;
 mod list;
 mod output;
+mod page;
 #[cfg(feature = "pictures")]
 mod paint;
 #[cfg(feature = "pictures")]

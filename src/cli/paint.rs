@@ -99,6 +99,10 @@ impl Painter {
         candidates.sort_by_key(|(tier, _, _)| *tier);
         let mut refusal = Failure::Input("no language that runs here can express the description".to_owned());
         for (_, target, shaders) in candidates {
+            if let Err(error) = shaders.check() {
+                refusal = error.into();
+                continue;
+            }
             match Headless::open(&view.device, shaders.features()) {
                 Ok(headless) => return Ok(Painter { headless, shaders, target, variant: variant.clone() }),
                 Err(error @ Error::MissingFeatures(_)) => refusal = error.into(),
@@ -185,8 +189,8 @@ impl Painter {
         let times = times.map(|pending| pending.wait(device)).transpose()?;
         let short = each.iter().flatten().map(|slice| slice.get(EXHAUSTED)).max().unwrap_or(0);
         if short > 0 {
-            // Every fragment that found no room was counted: with so much more there is room for all.
-            let needed = renderer.symbol(POOLED).unwrap_or(0) + u64::from(short);
+            // Every fragment that found no room was counted.
+            let needed = renderer.room_after(short);
             let fragments = u32::try_from(needed).map_err(|_| Error::TooLarge {
                 what: "the room for the picture's fragments".to_owned(),
                 needed,
@@ -207,9 +211,8 @@ impl Painter {
     }
 }
 
-/// The counter of fragments that found no room in a pool, and the symbol of that room.
+/// The counter of fragments that found no room.
 const EXHAUSTED: &str = "pool_exhausted";
-const POOLED: &str = "fragments";
 
 /// What one frame came to.
 enum Drawn {

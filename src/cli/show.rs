@@ -4,6 +4,7 @@ use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, ma
 
 use super::input::Input;
 use super::output::{self, Failure};
+use super::page;
 
 #[derive(clap::Args)]
 pub(crate) struct Show {
@@ -15,6 +16,9 @@ pub(crate) struct Show {
     /// The manifest, as JSON
     #[arg(long)]
     json: bool,
+    /// The page of a technique, as Markdown
+    #[arg(long, conflicts_with_all = ["json", "dump"])]
+    page: bool,
     /// A stage: plan, manifest, or a target whose files are text
     #[arg(long, value_name = "STAGE", conflicts_with = "json")]
     dump: Option<String>,
@@ -23,10 +27,15 @@ pub(crate) struct Show {
 impl Show {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let registry = Registry::builtin();
-        let stage = self.dump.as_deref().unwrap_or(if self.json { "manifest" } else { "summary" });
+        let whole = match (self.json, self.page) {
+            (true, _) => "manifest",
+            (_, true) => "page",
+            _ => "summary",
+        };
+        let stage = self.dump.as_deref().unwrap_or(whole);
         let one: Vec<&'static Target> = target(stage).into_iter().collect();
         let all: Vec<&'static Target> = TARGETS.iter().collect();
-        if one.is_empty() && !["plan", "manifest", "summary"].contains(&stage) {
+        if one.is_empty() && !["plan", "manifest", "summary", "page"].contains(&stage) {
             let names: Vec<&str> = all.iter().map(|target| target.name).collect();
             return Err(Failure::Usage(format!("no stage `{stage}`: give plan, manifest, {}", names.join(", "))));
         }
@@ -42,6 +51,7 @@ impl Show {
             "manifest" => output::json(&manifest(&generation, 0)),
             "plan" => plans(&generation),
             "summary" => summary(&generation),
+            "page" => page::page(&generation, &registry),
             _ => files(&generation),
         })
     }

@@ -23,6 +23,7 @@ mod overflow;
 mod pass;
 mod registry;
 mod resolve;
+mod select;
 mod shared;
 mod sort;
 mod storage;

@@ -35,6 +35,18 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/resolve"),
             vec!["addressing", "storage", "sort", "resolve"],
         ),
+        row(
+            "resolve_selected",
+            "chooses the k best of each pixel's fragments and makes one colour of them",
+            template!("pass/resolve_selected"),
+            vec!["addressing", "storage", "overflow", "sort", "resolve"],
+        ),
+        row(
+            "settle",
+            "draws the scene again for what a storage could not settle in one pass",
+            template!("pass/settle"),
+            vec!["addressing", "storage"],
+        ),
     ]
 }
 

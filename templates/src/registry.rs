@@ -2,7 +2,9 @@
 //! everything that is printed.
 
 use crate::vocabulary::{Axis, Fact, Row, Technique, Template};
-use crate::{addressing, counters, cull, overflow, pass, resolve, shared, sort, storage, sync, technique, ties};
+use crate::{
+    addressing, counters, cull, overflow, pass, resolve, select, shared, sort, storage, sync, technique, ties,
+};
 
 /// Rows by axis, techniques, and shared texts.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,10 +16,11 @@ pub struct Registry {
 }
 
 /// The axes, in the order in which their edits apply.
-const AXES: [Axis; 11] = [
+const AXES: [Axis; 12] = [
     axis("storage", "where the fragments of a pixel are kept", None),
     axis("sync", "how writers of the same pixel are kept apart", Some("none")),
     axis("cull", "which fragments are turned away before they reach the storage", Some("none")),
+    axis("select", "when the k best are chosen", Some("on_store")),
     axis("overflow", "what becomes of a fragment that finds no place", Some("drop")),
     axis("ties", "which of two fragments with equal keys is better", Some("payload")),
     axis("addressing", "where a pixel's words lie in memory", Some("linear")),
@@ -45,6 +48,7 @@ impl Registry {
             storage::rows(),
             sync::rows(),
             cull::rows(),
+            select::rows(),
             overflow::rows(),
             ties::rows(),
             addressing::rows(),

@@ -1,9 +1,9 @@
 //! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Host, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Host, Pass, Repeat, Resource, Row, Step, Until};
 
 pub(crate) fn rows() -> Vec<Row> {
-    vec![linked_list(), exact_regions(), sorted_array(), max_array()]
+    vec![linked_list(), exact_regions(), fixed_array(), sorted_array(), max_array(), max_heap(), cascade()]
 }
 
 fn linked_list() -> Row {
@@ -157,10 +157,24 @@ fn sorted_array() -> Row {
 }
 
 fn max_array() -> Row {
+    Row {
+        template: Some(template!("storage/max_array")),
+        ..worst_first(Row::new("storage", "max_array", "k entries per pixel, the worst at slot 0", "K15 §3.2"))
+    }
+}
+
+fn max_heap() -> Row {
+    Row {
+        template: Some(template!("storage/max_heap")),
+        ..worst_first(Row::new("storage", "max_heap", "k entries per pixel in a heap, the worst at slot 0", "K15 §3.2"))
+    }
+}
+
+/// What storages share that keep the worst entry at slot 0 and are written inside a critical section.
+fn worst_first(row: Row) -> Row {
     let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are in");
     resources.push(Resource::new("filled", Element::Word, "fragments kept, at most k").by("pixel", "pixels"));
     Row {
-        template: Some(template!("storage/max_array")),
         resources,
         steps: vec![
             Step::Pass(reset_pass().uses("keys", Access::Plain).uses("filled", Access::Plain)),
@@ -182,7 +196,82 @@ fn max_array() -> Row {
         offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync", "spin_lock"), ("cull", "early")],
-        ..Row::new("storage", "max_array", "k entries per pixel, the worst at slot 0", "K15 §3.2")
+        ..row
+    }
+}
+
+fn fixed_array() -> Row {
+    Row {
+        template: Some(template!("storage/fixed_array")),
+        resources: vec![
+            Resource::new("counts", Element::Word, "fragments of the pixel, those included that found no slot")
+                .by("pixel", "pixels")
+                .cleared(0),
+            Resource::new("entries", Element::Entry, "the fragments, in the order of arrival")
+                .by("slot", "n")
+                .by("pixel", "pixels"),
+        ],
+        steps: vec![
+            Step::Pass(Pass::geometry("store", "store").uses("counts", Access::Atomic).uses("entries", Access::Plain)),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("counts", Access::Read)
+                    .uses("entries", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow"],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed],
+        requires: vec![Fact::FragmentAtomics],
+        defaults: vec![("sync", "slot_counter")],
+        ..Row::new(
+            "storage",
+            "fixed_array",
+            "n slots per pixel, filled by a counter",
+            "Liu et al. 2010 (FreePipe); K15 §2",
+        )
+    }
+}
+
+fn cascade() -> Row {
+    let mut resources = array_resources("the k least keys in ascending order, equal ones each; EMPTY past the last");
+    resources.truncate(1);
+    resources.push(
+        Resource::new("tails", Element::Word, "what the fragments carry beside their keys, word by word")
+            .by("slot", "k")
+            .by("pixel", "pixels")
+            .by("word", "beside_words"),
+    );
+    let settle = Pass::geometry("settle", "settle").uses("keys", Access::Read).uses("tails", Access::Atomic);
+    Row {
+        template: Some(template!("storage/cascade")),
+        resources,
+        steps: vec![
+            Step::Pass(reset_pass().uses("keys", Access::Plain).uses("tails", Access::Plain)),
+            Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic)),
+            Step::Repeat(Repeat {
+                body: vec![Step::Pass(settle)],
+                until: Until::Times("beside_words".into()),
+                at_most: "beside_words".into(),
+            }),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("keys", Access::Read)
+                    .uses("tails", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["counters"],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BoundAnyInstant],
+        implies: vec![(Fact::DepthKey, Fact::Sorted)],
+        requires: vec![Fact::FragmentAtomics],
+        defaults: vec![("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
+        ..Row::new(
+            "storage",
+            "cascade",
+            "k entries per pixel in order, settled word by word by cascades of atomic minima",
+            "after Liu et al. 2010 (multidepth); K15 §2",
+        )
     }
 }
 

@@ -2,7 +2,7 @@
 //! anything is made.
 
 use fragbuf_codegen::Plan;
-use fragbuf_templates::vocabulary::{Access, Element, Objects, Pass, Step};
+use fragbuf_templates::vocabulary::{Access, Element, Fact, Objects, Pass, Repeat, Step, Until};
 
 use crate::{Error, host};
 
@@ -13,35 +13,97 @@ pub(crate) enum Action {
     Clear { resource: usize, value: u32 },
     /// One resource over another.
     Copy { from: usize, to: usize },
-    /// The pass of this number, in the order of the plan.
-    Pass(usize),
+    /// A pass.
+    Pass(Run),
     /// The host decides; the frame is cut here unless room has been reserved.
     Host(host::Decision),
 }
 
-/// The actions of a plan.
+/// One run of a pass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    /// The pass, in the order of the plan.
+    pub(crate) pass: usize,
+    /// The run's own number in a frame.
+    pub(crate) number: usize,
+    /// The round of the loop that it is in; 0 outside of any.
+    pub(crate) round: u32,
+}
+
+/// The actions of a plan, loops unrolled.
 pub(crate) fn actions(plan: &Plan) -> Result<Vec<Action>, Error> {
     for planned in &plan.resources {
         if let Element::Texture(_) = planned.resource.element {
             return Err(unsupported(format!("`{}`, a texture", planned.resource.name)));
         }
     }
-    let mut passes = 0..;
-    plan.steps.iter().map(|step| action(plan, step, &mut passes)).collect()
+    if plan.requires.contains(&Fact::Interlock) {
+        return Err(unsupported("fragment shader interlock, which wgpu does not know".to_owned()));
+    }
+    let mut unrolled = Unrolled { plan, passes: 0, runs: 0, actions: Vec::new() };
+    unrolled.steps(&plan.steps, 0)?;
+    Ok(unrolled.actions)
 }
 
-fn action(plan: &Plan, step: &Step, passes: &mut impl Iterator<Item = usize>) -> Result<Action, Error> {
-    Ok(match step {
-        Step::Pass(pass) => {
-            check_pass(pass)?;
-            Action::Pass(passes.next().unwrap_or_default())
+struct Unrolled<'a> {
+    plan: &'a Plan,
+    passes: usize,
+    runs: usize,
+    actions: Vec<Action>,
+}
+
+impl Unrolled<'_> {
+    fn steps(&mut self, steps: &[Step], round: u32) -> Result<(), Error> {
+        let plan = self.plan;
+        for step in steps {
+            let action = match step {
+                Step::Pass(pass) => {
+                    check_pass(pass)?;
+                    let run = Run { pass: self.passes, number: self.runs, round };
+                    self.passes += 1;
+                    self.runs += 1;
+                    Action::Pass(run)
+                }
+                Step::Clear { resource, value } => Action::Clear { resource: index(plan, resource)?, value: *value },
+                Step::Copy { from, to } => Action::Copy { from: index(plan, from)?, to: index(plan, to)? },
+                Step::Host(host) => Action::Host(host::Decision::of(host, plan)?),
+                Step::Swap(a, b) => return Err(unsupported(format!("the exchange of `{a}` and `{b}`"))),
+                Step::Repeat(repeat) => {
+                    self.rounds(repeat)?;
+                    continue;
+                }
+            };
+            self.actions.push(action);
         }
-        Step::Clear { resource, value } => Action::Clear { resource: index(plan, resource)?, value: *value },
-        Step::Copy { from, to } => Action::Copy { from: index(plan, from)?, to: index(plan, to)? },
-        Step::Host(host) => Action::Host(host::Decision::of(host, plan)?),
-        Step::Swap(a, b) => return Err(unsupported(format!("the exchange of `{a}` and `{b}`"))),
-        Step::Repeat(repeat) => return Err(unsupported(format!("a loop of at most {} rounds", repeat.at_most))),
-    })
+        Ok(())
+    }
+
+    /// The body once for every round. Its passes keep their numbers in the plan.
+    fn rounds(&mut self, repeat: &Repeat) -> Result<(), Error> {
+        let Until::Times(times) = &repeat.until else {
+            return Err(unsupported("a loop whose end is found out on the device".to_owned()));
+        };
+        let rounds = times.evaluate(&|symbol| self.plan.bound.value(symbol));
+        let rounds = rounds.map_err(|error| Error::Formula { what: "the rounds of a loop".to_owned(), error })?;
+        let rounds = u32::try_from(rounds).map_err(|_| unsupported(format!("a loop of {rounds} rounds")))?;
+        let first = self.passes;
+        for round in 0..rounds {
+            self.passes = first;
+            self.steps(&repeat.body, round)?;
+        }
+        self.passes = first + count(&repeat.body);
+        Ok(())
+    }
+}
+
+/// Passes among steps, those inside loops included.
+fn count(steps: &[Step]) -> usize {
+    let passes = steps.iter().map(|step| match step {
+        Step::Pass(_) => 1,
+        Step::Repeat(repeat) => count(&repeat.body),
+        _ => 0,
+    });
+    passes.sum()
 }
 
 fn check_pass(pass: &Pass) -> Result<(), Error> {

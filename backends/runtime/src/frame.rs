@@ -9,7 +9,7 @@
 
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
-use crate::action::Action;
+use crate::action::{Action, Run};
 use crate::host::Decision;
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
@@ -86,7 +86,7 @@ impl Frame {
             match step.action {
                 Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
                 Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
-                Action::Pass(index) => self.pass(renderer, encoder, (*index, step.slice), groups, output, draw),
+                Action::Pass(run) => self.pass(renderer, encoder, (*run, step.slice), groups, output, draw),
                 Action::Host(_) => {}
             }
             if let Ends::Slice = step.ends {
@@ -110,15 +110,17 @@ impl Frame {
         &mut self,
         renderer: &Renderer,
         encoder: &mut wgpu::CommandEncoder,
-        (index, slice): (usize, u32),
+        (run, slice): (Run, u32),
         groups: [u32; 3],
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
         let sized = &renderer.sized;
-        let group = sized.slices.get(slice as usize).and_then(|slice| slice.groups.get(index));
-        let (Some(prepared), Some(group)) = (renderer.made().passes.get(index), group) else { return };
-        let times = sized.timing.as_ref().map(|timing| timing.of(index, slice));
+        let rounds = sized.slices.get(slice as usize);
+        let group =
+            rounds.and_then(|rounds| rounds.get(run.round as usize)).and_then(|round| round.groups.get(run.pass));
+        let (Some(prepared), Some(group)) = (renderer.made().passes.get(run.pass), group) else { return };
+        let times = sized.timing.as_ref().map(|timing| timing.of(run.number, slice));
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
             let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
@@ -251,8 +253,8 @@ fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
 
 /// Workgroups of a compute pass; nothing for any other action.
 fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {
-    let Action::Pass(index) = action else { return Ok([0; 3]) };
-    let Some(prepared) = renderer.made().passes.get(*index) else { return Ok([0; 3]) };
+    let Action::Pass(run) = action else { return Ok([0; 3]) };
+    let Some(prepared) = renderer.made().passes.get(run.pass) else { return Ok([0; 3]) };
     let Kind::Compute { groups } = &prepared.pass.kind else { return Ok([0; 3]) };
     let what = format!("pass `{}`", prepared.pass.anchor);
     let limit = renderer.device.limits().max_compute_workgroups_per_dimension;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::Pass;
 
-use crate::action::{Action, actions};
+use crate::action::{Action, Run, actions};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::pattern::patterns;
 use crate::pipeline::{Maker, Pipeline};
@@ -25,6 +25,16 @@ pub(crate) struct Made {
     /// Words of 64 KiB each, for clears to something else than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
     pub(crate) inputs: VertexInputs,
+}
+
+impl Made {
+    /// Every run of a pass, in order.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = &Run> {
+        self.actions.iter().filter_map(|action| match action {
+            Action::Pass(run) => Some(run),
+            _ => None,
+        })
+    }
 }
 
 /// A pass and what it runs with.

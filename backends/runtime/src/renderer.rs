@@ -155,6 +155,17 @@ impl Renderer {
         Ok(())
     }
 
+    /// Room, in fragments, after a frame that lost `short` of them for want of it: exactly enough where a pool was too small,
+    /// twice as much where every pixel has slots of its own and only the deepest ran out.
+    pub fn room_after(&self, short: u32) -> u64 {
+        let now = self.symbol("fragments").unwrap_or(0);
+        if self.plan().frame.iter().any(|field| field == "n") {
+            (2 * now).max(self.sized.symbols.pixels())
+        } else {
+            now + u64::from(short)
+        }
+    }
+
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&self, view_projection: &[f32; 16]) {
         self.queue.write_buffer(&self.blocks.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
@@ -288,8 +299,10 @@ impl Renderer {
     /// Writes the uniform buffers of the slices, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
         let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
-        for (number, slice) in (0..).zip(&self.sized.slices) {
-            self.queue.write_buffer(&slice.frame, 0, &to_bytes(&live.frame_words(self.plan(), number)?));
+        for (slice, rounds) in (0..).zip(&self.sized.slices) {
+            for (number, round) in (0..).zip(rounds) {
+                self.queue.write_buffer(&round.frame, 0, &to_bytes(&live.frame_words(self.plan(), slice, number)?));
+            }
         }
         Ok(())
     }

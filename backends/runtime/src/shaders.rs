@@ -8,6 +8,7 @@ use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
 use fragbuf_templates::vocabulary::{Access, Fact};
 
 use crate::Error;
+use crate::action::actions;
 use crate::words::from_bytes;
 
 /// The code of one plan.
@@ -102,6 +103,11 @@ impl Shaders {
             };
         }
         features
+    }
+
+    /// Whether the runtime runs such plans on some device: `Err` names the step or the resource that it does not know.
+    pub fn check(&self) -> Result<(), Error> {
+        actions(&self.plan).map(|_| ())
     }
 
     /// Whether functions of the description's author are in the code: they run with wgpu's runtime checks.

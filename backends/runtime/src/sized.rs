@@ -2,7 +2,7 @@
 //! passes without a target.
 //! It is made whole and replaced as one, so that a failure leaves the old one standing.
 
-use crate::action::index;
+use crate::action::{Run, index};
 use crate::blocks::{Blocks, block};
 use crate::layout::Slot;
 use crate::memory::Memory;
@@ -17,7 +17,8 @@ use crate::{Error, counters};
 pub(crate) struct Sized {
     pub(crate) symbols: Symbols,
     pub(crate) memory: Memory,
-    pub(crate) slices: Vec<Slice>,
+    /// By slice and round.
+    pub(crate) slices: Vec<Vec<Round>>,
     /// The attachment of passes without a target.
     pub(crate) dummy: wgpu::TextureView,
     pub(crate) timing: Option<Timing>,
@@ -25,9 +26,9 @@ pub(crate) struct Sized {
     pub(crate) tally: Option<wgpu::Buffer>,
 }
 
-/// What a slice's passes see.
-pub(crate) struct Slice {
-    /// The uniform buffer with its first row.
+/// What passes see in one round of a slice.
+pub(crate) struct Round {
+    /// The uniform buffer with the slice's first row and the round's number.
     pub(crate) frame: wgpu::Buffer,
     /// One bind group per pass.
     pub(crate) groups: Vec<wgpu::BindGroup>,
@@ -55,12 +56,13 @@ impl Sized {
         let Fixed { device, queue, made, blocks, timed } = fixed;
         check_size(device, &symbols)?;
         let memory = Memory::allocate(device, &made.plan, &symbols, old.map(|old| &old.memory)).await?;
-        let slice = || {
+        let round = || {
             let frame = block(device, "fragbuf frame", made.plan.frame.len());
             let group = |prepared| bind_group(device, prepared, &frame, blocks, &memory);
-            Slice { groups: made.passes.iter().map(group).collect(), frame }
+            Round { groups: made.passes.iter().map(group).collect(), frame }
         };
-        let slices = || (0..symbols.slices()).map(|_| slice()).collect();
+        let rounds = made.runs().map(|run| run.round).max().unwrap_or(0) + 1;
+        let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
         let slices = scoped(device, "the bind groups", 0, slices).await?;
         let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
         let dummy = match same {
@@ -75,7 +77,8 @@ impl Sized {
         let (timing, tally) = match same {
             Some(old) => (old.timing.clone(), old.tally.clone()),
             None => {
-                let names = || made.passes.iter().map(|prepared| prepared.pass.anchor.clone()).collect();
+                let name = |run: &Run| made.passes.get(run.pass).map_or(String::new(), |made| made.pass.anchor.clone());
+                let names = || made.runs().map(name).collect();
                 let timing = match timed {
                     Timed::Yes => Some(Timing::new(device, queue, names(), symbols.slices()).await?),
                     Timed::No => None,

@@ -21,7 +21,7 @@ pub(crate) struct Symbols {
 }
 
 /// Symbols that are bound when the frame is allocated or later, other than the counted ones.
-const KNOWN: [&str; 6] = ["width", "height", "first_row", "pixels", "k", "iteration"];
+const KNOWN: [&str; 7] = ["width", "height", "first_row", "pixels", "k", "n", "iteration"];
 
 impl Symbols {
     pub(crate) fn value(&self, plan: &Plan, symbol: &str) -> Option<u64> {
@@ -30,6 +30,8 @@ impl Symbols {
             "height" => Some(self.rows.into()),
             "pixels" => Some(self.pixels()),
             "k" => self.k.map(u64::from),
+            // Slots of a pixel where every pixel has as many: the room for fragments, shared out.
+            "n" => self.counted(FRAGMENTS).map(|fragments| fragments.div_ceil(self.pixels().max(1))),
             _ => plan.bound.value(symbol).or_else(|| self.counted(symbol)),
         }
     }
@@ -58,10 +60,11 @@ impl Symbols {
         self.height.div_ceil(self.rows.max(1))
     }
 
-    /// The uniform buffer of one slice: one word per field of the plan.
-    pub(crate) fn frame_words(&self, plan: &Plan, slice: u32) -> Result<Vec<u32>, Error> {
+    /// The uniform buffer of one slice and round: one word per field of the plan.
+    pub(crate) fn frame_words(&self, plan: &Plan, slice: u32, round: u32) -> Result<Vec<u32>, Error> {
         let words = plan.frame.iter().map(|field| {
             let value = match field.as_str() {
+                "iteration" => u64::from(round),
                 "first_row" => u64::from(slice) * u64::from(self.rows),
                 _ => self.value(plan, field).unwrap_or(0),
             };
@@ -77,7 +80,13 @@ impl Symbols {
     }
 }
 
-/// The counted symbols of a plan: fields of the frame that neither the size nor the caller binds.
+/// The symbol of the fragments that there is room for.
+const FRAGMENTS: &str = "fragments";
+
+/// The counted symbols of a plan: fields of the frame that neither the size nor the caller binds. Slots per pixel stand for
+/// the fragments of the frame.
 pub(crate) fn counted_symbols(plan: &Plan) -> Vec<String> {
-    plan.frame.iter().filter(|field| !KNOWN.contains(&field.as_str())).cloned().collect()
+    let named = plan.frame.iter().filter(|field| !KNOWN.contains(&field.as_str())).cloned();
+    let slots = plan.frame.iter().any(|field| field == "n").then(|| FRAGMENTS.to_owned());
+    named.chain(slots).collect()
 }

@@ -8,15 +8,16 @@ use crate::{Error, Pending};
 pub struct PassTime {
     /// The pass.
     pub pass: String,
-    /// In milliseconds, over all slices.
+    /// In milliseconds, over all slices and rounds.
     pub milliseconds: f64,
 }
 
-/// Two queries per pass of every slice, and where they are resolved to.
+/// Two queries per run of a pass in every slice, and where they are resolved to.
 #[derive(Clone)]
 pub(crate) struct Timing {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
+    /// The pass of each run.
     passes: Vec<String>,
     slices: u32,
     nanoseconds: f64,
@@ -35,7 +36,7 @@ impl Timing {
         let count = 2 * passes.len() as u32 * slices;
         if count > wgpu::QUERY_SET_MAX_QUERIES {
             return Err(Error::TooLarge {
-                what: format!("timing {} passes of {slices} slices, in queries,", passes.len()),
+                what: format!("timing {} runs of passes in {slices} slices, in queries,", passes.len()),
                 needed: count.into(),
                 limit: wgpu::QUERY_SET_MAX_QUERIES.into(),
                 limit_name: "QUERY_SET_MAX_QUERIES",
@@ -60,9 +61,9 @@ impl Timing {
         Ok(Timing { queries, resolved, passes, slices, nanoseconds: f64::from(queue.get_timestamp_period()) })
     }
 
-    /// The queries of a pass in a slice: those of its begin and end.
-    pub(crate) fn of(&self, pass: usize, slice: u32) -> (&wgpu::QuerySet, u32, u32) {
-        let first = 2 * (pass as u32 + slice * self.passes.len() as u32);
+    /// The queries of a run in a slice: those of its begin and end.
+    pub(crate) fn of(&self, run: usize, slice: u32) -> (&wgpu::QuerySet, u32, u32) {
+        let first = 2 * (run as u32 + slice * self.passes.len() as u32);
         (&self.queries, first, first + 1)
     }
 

@@ -6,6 +6,7 @@
 
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Renderer, Room, Settings, Sizing, Value, block_on};
+use fragbuf_templates::vocabulary::Fact;
 
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
@@ -64,8 +65,14 @@ pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
     (0..count).map(quad).collect()
 }
 
-pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], k: Option<u32>) {
-    let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, k);
+/// What a storage keeps of k fragments: all where the best are chosen afterwards.
+fn stored(renderer: &Renderer) -> Option<u32> {
+    let all = renderer.plan().selection.offers().contains(&Fact::KeepsAll);
+    renderer.k().filter(|_| !all)
+}
+
+pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, k): (Option<u32>, Option<u32>)) {
+    let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, stored);
     for (pixel, (seen, expected)) in seen.kept.iter().zip(&expected).enumerate() {
         assert_eq!(
             seen,
@@ -93,7 +100,7 @@ fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn
         let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
         for quads in orders(&quads) {
             let seen = see(&stage, &mut renderer, &quads);
-            compare(name, &seen, rules, &quads, renderer.k());
+            compare(name, &seen, rules, &quads, (stored(&renderer), renderer.k()));
             let lost = ["pool_exhausted", "spin_exhausted", "layers_exceeded"];
             assert!(lost.iter().all(|counter| seen.counters.get(counter) == 0), "{name}: {:?}", seen.counters);
         }
@@ -118,6 +125,42 @@ fn the_sorted_array() {
 #[test]
 fn the_sorted_array_keeps_one() {
     check(&technique("kb", &[("k", "1")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_sorted_array_under_a_lock() {
+    check(&technique("kb_ps", &[("k", "4")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_heap() {
+    check(&technique("kplus_heap", &[("k", "4")]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn heaps_of_few_and_many() {
+    for k in ["1", "2", "3", "5", "7"] {
+        check(&technique("kplus_heap", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+#[test]
+fn the_cascade() {
+    for k in ["1", "4"] {
+        check(&technique("mdt32_coplanar", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+#[test]
+fn the_fixed_array() {
+    check(&technique("ab_array", &[]), &settings(), &PLAIN, |_| {});
+}
+
+#[test]
+fn the_best_of_all_are_chosen_on_resolve() {
+    for key in ["kb_ab_array", "kb_ab_ll", "kb_ab_sb"] {
+        check(&technique(key, &[("k", "3")]), &settings(), &PLAIN, |_| {});
+    }
 }
 
 #[test]
@@ -213,7 +256,11 @@ fn a_description_with_a_criterion_of_its_own() {
         resolve: glass_resolve,
     };
     let keep = GLASS_KEEPS;
-    check(&glass("kplus_array", keep), &settings(), &rules, set_uniforms);
+    for key in ["kplus_array", "kplus_heap", "kb_ab_ll"] {
+        check(&glass(key, keep), &settings(), &rules, set_uniforms);
+    }
+    // Three words beside the key are settled by three passes, and come in the order of the criterion.
+    check(&glass("mdt32_coplanar", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
     // The sorted array is in the order of the criterion, which is not the order of depth.
     check(&glass("kb", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
 }
@@ -226,7 +273,7 @@ fn a_description_that_keeps_all() {
         nearer: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id],
         resolve: glass_resolve,
     };
-    for key in ["ab_ll", "ab_sb"] {
+    for key in ["ab_ll", "ab_sb", "ab_array"] {
         check(&glass(key, ""), &settings(), &rules, set_uniforms);
     }
 }

@@ -25,11 +25,25 @@ pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Ve
     let entry = |name: &str, at: usize| buffer(name)[at * words..][..words].to_vec();
     let of_pixel = |pixel: usize| -> Vec<Words> {
         match storage.as_str() {
-            "max_array" => {
+            "max_array" | "max_heap" => {
                 let filled = buffer("filled")[pixel] as usize;
                 assert!(filled <= k, "pixel {pixel} holds {filled} of {k}");
                 assert!(filled == k || buffer("keys")[pixel] == EMPTY, "slot 0 of pixel {pixel} is taken too early");
+                let parents_first = |index: usize| slot((index - 1) / 2, pixel) >= slot(index, pixel);
+                let is_heap = storage != "max_heap" || filled < k || (1..k).all(parents_first);
+                assert!(is_heap, "pixel {pixel} is no heap");
                 (k - filled..k).map(|index| slot(index, pixel)).collect()
+            }
+            "cascade" => {
+                let tail = |index: usize| &buffer("tails")[(index * PIXELS + pixel) * beside..][..beside];
+                let slots = (0..k).map(|index| [&[buffer("keys")[index * PIXELS + pixel]], tail(index)].concat());
+                let kept: Vec<Words> = slots.filter(|words| words[0] != EMPTY).collect();
+                assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
+                kept
+            }
+            "fixed_array" => {
+                let slots = (buffer("counts")[pixel] as usize).min(renderer.symbol("n").unwrap() as usize);
+                (0..slots).map(|index| entry("entries", index * PIXELS + pixel)).collect()
             }
             "sorted_array" => {
                 let kept: Vec<Words> =

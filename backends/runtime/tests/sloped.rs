@@ -145,7 +145,7 @@ fn every_technique_keeps_the_best_of_what_was_captured() {
             let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer));
             let pixels = offscreen.colors(&stage.device, &stage.queue).unwrap();
             let seen = Seen { pixels, kept, counters: read_counters(&stage, &renderer) };
-            compare(key, &seen, &PLAIN, &fragments, renderer.k());
+            compare(key, &seen, &PLAIN, &fragments, (renderer.k(), renderer.k()));
         }
     }
 }

@@ -213,10 +213,36 @@ impl Accessors<'_> {
         for (position, extent) in self.planned.resource.extents.iter().enumerate() {
             index = match position {
                 0 => extent.name.clone(),
-                _ => format!("{} * {} + {}", parenthesised(&index), length(&extent.length), extent.name),
+                _ => format!("{} * {} + {}", parenthesised(&index), self.length(&extent.length), extent.name),
             };
         }
         index
+    }
+
+    /// A length as WGSL. Symbols that are bound by now are numbers, the others the frame's fields.
+    fn length(&self, formula: &Formula) -> String {
+        // A formula that cannot be read has been refused when the plan was made.
+        formula.read().map_or_else(|_| "1u".to_owned(), |expression| self.written(&expression))
+    }
+
+    fn written(&self, expression: &Expression) -> String {
+        match expression {
+            Expression::Number(number) => format!("{number}u"),
+            Expression::Symbol(symbol) if symbol == "pixels" => "pixel_count()".to_owned(),
+            Expression::Symbol(symbol) => match self.plan.bound.value(symbol) {
+                Some(value) => format!("{value}u"),
+                None => format!("frame.{symbol}"),
+            },
+            Expression::Apply(operator, arguments) => {
+                let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
+                match (*operator, parts.as_slice()) {
+                    ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),
+                    ("pow2", [a]) => format!("(1u << {a})"),
+                    ("+" | "-" | "*" | "/", [a, b]) => format!("({a} {operator} {b})"),
+                    (function, parts) => format!("{function}({})", parts.join(", ")),
+                }
+            }
+        }
     }
 
     fn read(&self, place: &str) -> String {
@@ -233,28 +259,6 @@ impl Accessors<'_> {
 
 fn parenthesised(index: &str) -> String {
     if index.contains(' ') { format!("({index})") } else { index.to_owned() }
-}
-
-/// A length as WGSL. Symbols bound after generation are the frame's fields.
-fn length(formula: &Formula) -> String {
-    fn written(expression: &Expression) -> String {
-        match expression {
-            Expression::Number(number) => format!("{number}u"),
-            Expression::Symbol(symbol) if symbol == "pixels" => "pixel_count()".to_owned(),
-            Expression::Symbol(symbol) => format!("frame.{symbol}"),
-            Expression::Apply(operator, arguments) => {
-                let parts: Vec<String> = arguments.iter().map(written).collect();
-                match (*operator, parts.as_slice()) {
-                    ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),
-                    ("pow2", [a]) => format!("(1u << {a})"),
-                    ("+" | "-" | "*" | "/", [a, b]) => format!("({a} {operator} {b})"),
-                    (function, parts) => format!("{function}({})", parts.join(", ")),
-                }
-            }
-        }
-    }
-    // A formula that cannot be read has been refused when the plan was made.
-    formula.read().map_or_else(|_| "1u".to_owned(), |expression| written(&expression))
 }
 
 fn capitalised(summary: &str) -> String {

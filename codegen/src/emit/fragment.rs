@@ -14,6 +14,7 @@ pub(super) fn text(plan: &Plan) -> String {
     structs(plan, &mut text);
     pack(plan, &mut text);
     unpack(plan, &mut text);
+    words(plan, &mut text);
     orders(plan, &mut text);
     admit(plan, &mut text);
     if plan.variant.resolve.is_some() {
@@ -99,6 +100,29 @@ fn unpacked(format: Format, fields: &[String]) -> String {
         Format::Octahedral => format!("octahedral_unpack({})", fields.join("")),
         Format::Vec2 | Format::Vec3 | Format::Vec4 => format!("{}({})", format.wgsl_type(), floats()),
     }
+}
+
+/// Access to the words of an entry by number, for storages that handle them one by one.
+fn words(plan: &Plan, text: &mut String) {
+    let fields: Vec<&str> = plan.layout.beside.iter().map(|word| word.field.as_str()).collect();
+    let cases = |case: &dyn Fn(&str) -> String| -> String {
+        (0..)
+            .zip(&fields)
+            .map(|(number, field)| format!("        case {number}u: {{\n            {}\n        }}\n", case(field)))
+            .collect()
+    };
+    let read = cases(&|field| format!("return entry.{field};"));
+    let _ = writeln!(
+        text,
+        "/// A word beside the key, by its number.\nfn packed_word(entry: Packed, word: u32) -> u32 {{\n    switch word {{\n{read}        default: {{\n            return 0u;\n        }}\n    }}\n}}\n"
+    );
+    let written = cases(&|field| format!("changed.{field} = value;"));
+    let _ = writeln!(
+        text,
+        "fn packed_with(entry: Packed, word: u32, value: u32) -> Packed {{\n    var changed = entry;\n    switch word {{\n{written}        default: {{}}\n    }}\n    return changed;\n}}\n"
+    );
+    let zeros = std::iter::once("key".to_owned()).chain(fields.iter().map(|_| "0u".to_owned()));
+    let _ = writeln!(text, "fn packed_of_key(key: u32) -> Packed {{\n    return {};\n}}\n", construct("Packed", zeros));
 }
 
 fn orders(plan: &Plan, text: &mut String) {

@@ -28,6 +28,7 @@ facts! {
     // What a storage can be asked.
     KeepsAll "a storage that keeps every fragment";
     KeepsBest "a storage that keeps the k best";
+    SelectsBest "that the k best are chosen among all";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
     CanReplace "that a kept fragment can be replaced";
     Counted "the number of fragments of each pixel, known before they are stored";
@@ -36,6 +37,7 @@ facts! {
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
     // What a description offers.
+    Limited "a limit on what is kept: `keep 8`";
     DepthKey "that depth decides which fragment is worst: no criterion";
     Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";

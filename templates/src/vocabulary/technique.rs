@@ -13,7 +13,7 @@ pub struct Technique {
     pub summary: &'static str,
     /// How many fragments it keeps when nothing is said.
     pub keep: KeepDefault,
-    /// Its choices, as (axis, value).
+    /// Its choices, as (axis, value); the value may be `a else b`.
     pub choices: Vec<(&'static str, &'static str)>,
 }
 

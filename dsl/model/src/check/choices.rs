@@ -106,9 +106,15 @@ fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnost
 /// The options of a choice that names no value belong to the value that is taken anyway.
 fn with_options(mut chosen: Chosen, choice: &Choice, diagnostics: &mut Diagnostics) -> Chosen {
     let options = choice.alternatives.iter().flat_map(|alternative| &alternative.options);
-    if let Some(selected) = chosen.alternatives.first_mut() {
-        selected.options =
-            options.filter_map(|(name, value)| option(&selected.row, name, value, diagnostics)).collect();
+    for (name, value) in options {
+        // An option belongs to every alternative that has it; where none has, the first says what it has.
+        let knows = |selected: &Selected| selected.row.parameters.iter().any(|parameter| parameter.name == name.value);
+        let known = chosen.alternatives.iter().any(knows);
+        for (index, selected) in chosen.alternatives.iter_mut().enumerate() {
+            if knows(selected) || (!known && index == 0) {
+                selected.options.extend(option(&selected.row, name, value, diagnostics));
+            }
+        }
     }
     chosen
 }
@@ -142,7 +148,9 @@ fn unsaid(
         .map(|(_, value)| *value);
     let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suited).or(axis.default);
     let origin = draft.preset.as_ref().map_or(&draft.name.origin, |preset| &preset.origin);
-    let Some(row) = value.and_then(|value| registry.row(axis.key, value)) else {
+    let rows: Option<Vec<&Row>> =
+        value.and_then(|value| value.split(" else ").map(|value| registry.row(axis.key, value)).collect());
+    let Some(rows) = rows else {
         let known: Vec<&str> = registry.rows_of(axis.key).map(|row| row.key.as_str()).collect();
         diagnostics.push(Diagnostic::new(
             codes::MISSING_STORAGE,
@@ -157,8 +165,9 @@ fn unsaid(
         ));
         return None;
     };
-    let selected = Selected { row: Arc::new(row.clone()), options: Vec::new() };
-    Some(Chosen { axis: axis.key.to_owned(), origin: origin.clone(), alternatives: vec![selected] })
+    let selected = |row: &Row| Selected { row: Arc::new(row.clone()), options: Vec::new() };
+    let alternatives = rows.into_iter().map(selected).collect();
+    Some(Chosen { axis: axis.key.to_owned(), origin: origin.clone(), alternatives })
 }
 
 fn selected(

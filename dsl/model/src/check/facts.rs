@@ -18,7 +18,7 @@ pub(super) fn check(
     for pick in picks(choices) {
         let situation = Situation { draft, choices, given, registry };
         for (index, row) in pick.iter().enumerate() {
-            if !keeps_what_is_said(row, given) {
+            if !keeps_what_is_said(row, &pick, given) {
                 diagnostics.push(situation.keep_mismatch(index, &pick));
             }
             for fact in missing(row, &pick, given) {
@@ -53,18 +53,20 @@ fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {
     row.offers.contains(&fact) || row.implies.iter().any(|(if_given, then)| *then == fact && given.contains(if_given))
 }
 
-/// A storage that keeps the k best needs a k, one that keeps all must have none.
-fn keeps_what_is_said(row: &Row, given: &[Fact]) -> bool {
+/// A storage that keeps the k best needs a k; one that keeps all must have none, unless the k best are chosen afterwards.
+fn keeps_what_is_said(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> bool {
     let keeps = |fact: Fact| row.offers.contains(&fact);
     match (keeps(Fact::KeepsBest), keeps(Fact::KeepsAll)) {
         (true, false) => given.contains(&Fact::KeepsBest),
-        (false, true) => given.contains(&Fact::KeepsAll),
+        (false, true) => {
+            given.contains(&Fact::KeepsAll) || pick.iter().any(|other| other.offers.contains(&Fact::SelectsBest))
+        }
         _ => true,
     }
 }
 
 fn is_legal(pick: &Pick<'_>, given: &[Fact]) -> bool {
-    pick.iter().all(|row| keeps_what_is_said(row, given) && missing(row, pick, given).is_empty())
+    pick.iter().all(|row| keeps_what_is_said(row, pick, given) && missing(row, pick, given).is_empty())
 }
 
 struct Situation<'a> {

@@ -1,0 +1,158 @@
+//! A technique's page: everything that its rows say, as Markdown. Nothing on it is written by hand.
+
+use std::fmt::Write;
+
+use fragbuf::vocabulary::{Kind, Pass, Step, Until};
+use fragbuf::{Generation, Plan, Registry, tier};
+
+/// The page of what was generated from a preset for every target.
+pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
+    let Some(first) = generation.plans.first().map(|planned| &planned.plan) else { return String::new() };
+    let mut text = String::new();
+    head(first, registry, &mut text);
+    axes(first, &mut text);
+    memory(first, &mut text);
+    text.push_str("\n## A frame\n\n");
+    steps(&first.steps, "", &mut text);
+    let _ = writeln!(text, "\nGeometry is drawn {} time(s).", first.geometry_passes);
+    targets(generation, &mut text);
+    hazards(first, &mut text);
+    text
+}
+
+fn head(plan: &Plan, registry: &Registry, text: &mut String) {
+    let technique = plan.variant.technique.as_deref().and_then(|key| registry.technique(key));
+    match technique {
+        Some(technique) => {
+            let _ = writeln!(
+                text,
+                "# `{0}`: {1}\n\n{2}.\n\nSource: {3}.\n\n![{0}](../gallery/{0}.png)\n",
+                technique.key,
+                technique.title,
+                sentence(technique.summary),
+                technique.paper
+            );
+            let _ = writeln!(
+                text,
+                "```text\nbuffer Mine from {0} {{ … }}                                  # a description of your own\n\
+                 fragbuf generate {0} --target all --out {0}    # its passes\n\
+                 fragbuf render {0} --scene builtin:marbles --size 320x240 --out {0}.png\n```",
+                technique.key
+            );
+        }
+        None => {
+            let _ = writeln!(text, "# {}", plan.variant.name.value);
+        }
+    }
+}
+
+/// With a capital letter.
+fn sentence(summary: &str) -> String {
+    let mut letters = summary.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+fn axes(plan: &Plan, text: &mut String) {
+    text.push_str("\n## Axes\n\n| axis | value | what | source |\n|---|---|---|---|\n");
+    for selected in &plan.selection.rows {
+        let row = &selected.row;
+        let _ = writeln!(text, "| {} | `{}` | {} | {} |", row.axis, row.key, row.summary, row.paper);
+        for parameter in &row.parameters {
+            let value = plan.constants.iter().find(|(name, _)| *name == parameter.constant).map(|(_, value)| value);
+            let value = value.map_or(String::new(), |value| format!(" = {value}"));
+            let (least, most) = parameter.range;
+            let _ = writeln!(
+                text,
+                "| | `{}.{}`{value} | {} ({least} to {most}) | |",
+                row.axis, parameter.name, parameter.summary
+            );
+        }
+    }
+}
+
+fn memory(plan: &Plan, text: &mut String) {
+    let _ = writeln!(text, "\n## Memory\n\n**{} words per pixel** for the papers' payload.\n", plan.words_per_pixel);
+    text.push_str("| buffer | words | what |\n|---|---|---|\n");
+    for planned in &plan.resources {
+        let _ =
+            writeln!(text, "| `{}` | `{}` | {} |", planned.resource.name, planned.words.0, planned.resource.summary);
+    }
+}
+
+fn steps(steps: &[Step], indent: &str, text: &mut String) {
+    for step in steps {
+        let line = match step {
+            Step::Pass(pass) => self::pass(pass),
+            Step::Clear { resource, value } => format!("clear `{resource}` to {value:#x}"),
+            Step::Copy { from, to } => format!("copy `{from}` to `{to}`"),
+            Step::Swap(a, b) => format!("exchange `{a}` and `{b}`"),
+            Step::Host(host) => {
+                format!("host: `{}` reads {} and sets {}", host.function, host.reads.join(", "), host.sets.join(", "))
+            }
+            Step::Repeat(repeat) => format!("repeat, at most {} times, {}", repeat.at_most, until(&repeat.until)),
+        };
+        let _ = writeln!(text, "{indent}* {line}");
+        if let Step::Repeat(repeat) = step {
+            self::steps(&repeat.body, &format!("{indent}  "), text);
+        }
+    }
+}
+
+fn pass(pass: &Pass) -> String {
+    let kind = match &pass.kind {
+        Kind::Geometry => "draws the scene".to_owned(),
+        Kind::Fullscreen => "draws one triangle over the frame".to_owned(),
+        Kind::Compute { groups } => {
+            let groups: Vec<String> = groups.iter().map(|formula| formula.0.to_string()).collect();
+            format!("dispatches {} workgroups", groups.join(" × "))
+        }
+    };
+    let uses: Vec<String> = pass.uses.iter().map(|usage| format!("`{}`", usage.resource)).collect();
+    let uses = if uses.is_empty() { String::new() } else { format!(", over {}", uses.join(", ")) };
+    format!("pass **{}** {kind}{uses}", pass.anchor)
+}
+
+fn until(until: &Until) -> String {
+    match until {
+        Until::Times(times) => format!("{times} times"),
+        Until::Zero(counter) => format!("until `{counter}` is 0"),
+        Until::NoSamples(query) => format!("until `{query}` sees nothing"),
+    }
+}
+
+fn targets(generation: &Generation, text: &mut String) {
+    text.push_str("\n## Targets\n\n| target | tier | axes that differ |\n|---|---|---|\n");
+    let first = generation.plans.first().map(|planned| &planned.plan);
+    for planned in &generation.plans {
+        let differs: Vec<String> = planned
+            .plan
+            .selection
+            .rows
+            .iter()
+            .filter(|selected| first.is_some_and(|first| !first.selection.rows.contains(selected)))
+            .map(|selected| format!("{}: `{}`", selected.row.axis, selected.row.key))
+            .collect();
+        for target in &planned.targets {
+            let _ = writeln!(
+                text,
+                "| `{}` | {} | {} |",
+                target.name,
+                tier(planned.plan.soundness, target),
+                differs.join(", ")
+            );
+        }
+    }
+    for (target, refusal) in &generation.refusals {
+        let _ = writeln!(text, "| `{}` | no | {refusal} |", target.name);
+    }
+}
+
+fn hazards(plan: &Plan, text: &mut String) {
+    if plan.hazards.is_empty() {
+        return;
+    }
+    text.push_str("\n## What can go wrong by design\n\n");
+    for hazard in &plan.hazards {
+        let _ = writeln!(text, "* **{}**: {}", hazard.name, hazard.what);
+    }
+}

@@ -1,0 +1,52 @@
+// Makes one colour of the k best of each pixel's fragments, which are chosen here: the storage kept them all. Pixels
+// without any keep what the target held.
+
+var<private> selected: array<Packed, CAPACITY>;
+var<private> selected_count: u32;
+/// The slot of the worst, once there are k.
+var<private> worst_slot: u32;
+
+@fragment
+fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = pixel_index(position.xy);
+    var cursor = storage_first(pixel);
+    while cursor != END {
+        select_fragment(storage_read(pixel, cursor));
+        cursor = storage_next(pixel, cursor);
+    }
+    for (var slot = 0u; slot < selected_count; slot++) {
+        sort_gather(selected[slot]);
+    }
+    sort_finish();
+    if layer_count() == 0u {
+        discard;
+    }
+    return resolve_layers();
+}
+
+fn select_fragment(entry: Packed) {
+    if selected_count < frame.k {
+        selected[selected_count] = entry;
+        selected_count += 1u;
+        if selected_count == frame.k {
+            find_worst();
+        }
+        return;
+    }
+    if !better(entry, selected[worst_slot]) {
+        on_lost(entry, DISPLACED);
+        return;
+    }
+    on_lost(selected[worst_slot], DISPLACED);
+    selected[worst_slot] = entry;
+    find_worst();
+}
+
+fn find_worst() {
+    worst_slot = 0u;
+    for (var slot = 1u; slot < selected_count; slot++) {
+        if better(selected[worst_slot], selected[slot]) {
+            worst_slot = slot;
+        }
+    }
+}
