@@ -65,6 +65,13 @@ macro_rules! fragment_buffer {
     ($($description:tt)*) => { $crate::macros::fragment_buffer! { [$crate] $($description)* } };
 }
 
+/// These items, as they are.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! as_written {
+    ($($items:tt)*) => { $($items)* };
+}
+
 /// A closure for the [`builder`], captured with its places: `closure!(|f| f.depth - 0.25 * f.color.w)`.
 #[macro_export]
 macro_rules! closure {

@@ -20,16 +20,9 @@ pub(crate) fn all(source: &Source) -> TokenStream {
     let written = || source.written.iter().enumerate().filter(|(index, one)| first_of_role(*index, one));
     let outer = written().map(|(_, one)| outer(one, source));
     let inner = written().map(|(_, one)| inner(one, source));
-    let condition = match source.bodies {
-        Bodies::Compiled => None,
-        Bodies::ForEditors => Some(quote! { #[cfg(rust_analyzer)] }),
-    };
     let serving = &source.front.serving;
-    quote! {
-        #(#outer)*
-
+    let functions = quote! {
         /// The functions in the user's own words: values go in and out as in the language.
-        #condition
         pub mod functions {
             use super::{Fragment, Uniforms};
             use #serving::glam::swizzles::{Vec2Swizzles as _, Vec3Swizzles as _, Vec4Swizzles as _};
@@ -39,7 +32,13 @@ pub(crate) fn all(source: &Source) -> TokenStream {
 
             #(#inner)*
         }
-    }
+    };
+    let functions = match source.bodies {
+        Bodies::Compiled => functions,
+        // Inside a macro call, tokens that are no Rust do not disturb the compiler.
+        Bodies::ForEditors => quote! { #[cfg(rust_analyzer)] #serving::as_written! { #functions } },
+    };
+    quote! { #(#outer)* #functions }
 }
 
 /// What a role's function is called, what it takes and gives.

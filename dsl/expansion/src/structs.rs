@@ -16,7 +16,8 @@ pub(crate) fn fragment(source: &Source) -> TokenStream {
     let fields = attributes(source.draft).into_iter().map(|(name, format)| {
         let field = field(name, source);
         let kind = attribute_type(format, &source.front.serving);
-        let about = format!("`{}`: {} 32-bit words in memory.", format.keyword(), format.words());
+        let words = if format.words() == 1 { "word" } else { "words" };
+        let about = format!("`{}`: {} {words} of 32 bits in memory.", format.keyword(), format.words());
         quote! { #[doc = #about] pub #field: #kind }
     });
     quote! {
@@ -67,9 +68,10 @@ pub(crate) fn uniforms(source: &Source) -> TokenStream {
 
         impl Uniforms {
             /// Bytes of the uniform block.
-            pub const SIZE: usize = #size;
+            pub const SIZE: ::core::primitive::usize = #size;
 
             /// The block as it goes into a uniform buffer.
+            #[allow(unused_mut)]
             pub fn bytes(&self) -> [::core::primitive::u8; #size] {
                 let mut bytes = [0; #size];
                 #(#writes)*

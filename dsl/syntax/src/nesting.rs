@@ -1,6 +1,6 @@
 //! Bounds on nesting, so that no description can exhaust the stack of whoever reads it.
 //!
-//! In: tokens. Out: the same tokens without documentation comments and needless invisible groups, or a mistake. Brackets may nest [`DEPTH`] deep; a
+//! In: tokens. Out: the same tokens without documentation comments, invisible groups made visible, or a mistake. Brackets may nest [`DEPTH`] deep; a
 //! statement may have [`LENGTH`] tokens, counted together with the statements around it, because operators nest too.
 
 use fragbuf_model::codes;
@@ -57,6 +57,7 @@ fn without_docs(tokens: TokenStream) -> TokenStream {
             TokenTree::Group(group) => match (group.delimiter(), single(group)) {
                 (Delimiter::None, Some(token)) => token,
                 (delimiter, _) => {
+                    let delimiter = if delimiter == Delimiter::None { Delimiter::Parenthesis } else { delimiter };
                     let mut inner = Group::new(delimiter, without_docs(group.stream()));
                     inner.set_span(group.span());
                     inner.into()
