@@ -18,7 +18,8 @@ fn every_good_description_is_rust_that_compiles() {
         let description = std::fs::read_to_string(&path).unwrap();
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let tokens: TokenStream = format!("[fragbuf_dsl] {description}").parse().unwrap();
-        let module = fragbuf_expansion::unchecked_fragment_buffer(tokens).unwrap_or_else(|| panic!("{name} is refused"));
+        let module =
+            fragbuf_expansion::unchecked_fragment_buffer(tokens).unwrap_or_else(|| panic!("{name} is refused"));
         let _ = writeln!(text, "// {name}\n{module}\n");
         count += 1;
     }

@@ -103,10 +103,22 @@ pub(crate) fn closure(
 
 /// The closure that these tokens are, all of them.
 pub(crate) fn whole_closure(tokens: &TokenStream, role: Role, report: &mut Report) -> Result<RawFunction, Stop> {
-    let cursor = Cursor::new(tokens.clone());
+    let mut cursor = Cursor::new(tokens.clone());
     require_closure(&cursor, &role, report)?;
     let origin = cursor.origin(report);
-    read_closure(tokens, role, origin, cursor.end(), report).map(|(function, _)| function)
+    let tokens = closure_tokens(&mut cursor);
+    require_end(&cursor, "closure", report)?;
+    read_closure(&tokens, role, origin, cursor.end(), report).map(|(function, _)| function)
+}
+
+/// A block ends a closure, as in a file: what stands behind it belongs to nothing.
+fn require_end(cursor: &Cursor, what: &str, report: &mut Report) -> Result<(), Stop> {
+    if cursor.is_done() {
+        return Ok(());
+    }
+    let message = format!("{} stands after the {what}", cursor.describe());
+    report.error(codes::UNEXPECTED, &cursor.origin(report), message, "leave it out, or put the whole into parentheses");
+    Err(Stop)
 }
 
 fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<(), Stop> {
