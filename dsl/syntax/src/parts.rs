@@ -131,9 +131,12 @@ fn bounded(tokens: Option<TokenStream>, report: &mut Report) -> Result<TokenStre
     tokens.and_then(|tokens| nesting::bounded(tokens, report)).ok_or(Stop)
 }
 
+/// From a span to the user's place.
+type Placing = Box<dyn Fn(Span) -> Origin>;
+
 /// Which span belongs to which captured function. Each is a text of its own to `proc_macro2`, under a name of its own.
 struct Sources {
-    read: Vec<(String, Box<dyn Fn(Span) -> Origin>)>,
+    read: Vec<(String, Placing)>,
     otherwise: Origin,
 }
 
