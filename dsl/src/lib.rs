@@ -58,6 +58,9 @@ pub use fragbuf_macros as macros;
 ///   functions in `functions`;
 /// * `draft()` and `variant()`: the description as data, with the places where it was written.
 ///
+/// The functions are Rust's: where a shader goes on with some value (a sum that overflows, an index beyond the list, a
+/// `clamp` with crossed bounds), they panic as Rust does.
+///
 /// A mistake is an error at the user's own token, `[code] message` with a way out. The description is checked against
 /// fragbuf's own registry; one that needs rows of a user's belongs into a file or the builder.
 #[macro_export]

@@ -35,3 +35,35 @@ pub(crate) fn identifier(name: &str, span: Span) -> Ident {
         _ => Ident::new_raw(name, span),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proc_macro2::Span;
+
+    use super::{identifier, module};
+
+    #[test]
+    fn modules_are_in_snake_case() {
+        let cases = [
+            ("Glass", "glass"),
+            ("MostVisible", "most_visible"),
+            ("ABuffer", "a_buffer"),
+            ("KBuffer2", "k_buffer2"),
+            ("Gpu3Buffer", "gpu3_buffer"),
+            ("RGBA", "rgba"),
+            ("Snake_Case", "snake_case"),
+            ("Type", "r#type"),
+            ("Super", "super_"),
+        ];
+        for (name, wanted) in cases {
+            assert_eq!(module(name, Span::call_site()).to_string(), wanted, "{name}");
+        }
+    }
+
+    #[test]
+    fn words_of_rust_become_raw() {
+        assert_eq!(identifier("match", Span::call_site()).to_string(), "r#match");
+        assert_eq!(identifier("crate", Span::call_site()).to_string(), "crate_");
+        assert_eq!(identifier("depth", Span::call_site()).to_string(), "depth");
+    }
+}

@@ -218,3 +218,58 @@ impl Writer<'_> {
         let _ = write!(self.places, "{}", place.column);
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use std::str::FromStr;
+
+    use fragbuf_model::Origin;
+    use proc_macro2::{Delimiter, Group, Literal, Span, TokenStream, TokenTree};
+
+    use super::Captured;
+
+    fn place(span: Span) -> Origin {
+        let (start, end) = (span.start(), span.end());
+        let number = |value: usize| u32::try_from(value).unwrap();
+        Origin::new("file", number(start.line), number(start.column) + 1).with_length(number(end.column - start.column))
+    }
+
+    /// Every leaf with its place, brackets apart.
+    fn leaves(tokens: TokenStream, place: &dyn Fn(Span) -> Origin, found: &mut Vec<(String, Origin)>) {
+        for token in tokens {
+            match token {
+                TokenTree::Group(group) => leaves(group.stream(), place, found),
+                other => found.push((other.to_string(), place(other.span()))),
+            }
+        }
+    }
+
+    #[test]
+    fn tokens_come_back_at_their_places() {
+        let text = "|f, u| {\n    let größe = f.depth >= 2.5e-1 && u.cut != -1.0;\n\n  'a: \"two\" }";
+        let tokens = TokenStream::from_str(text).unwrap();
+        let captured = Captured::of(&tokens, &place);
+        let (file, text, places) = captured.parts();
+        let leak = |part: &str| -> &'static str { part.to_owned().leak() };
+        let again = Captured::new(leak(file), leak(text), leak(places));
+        assert_eq!(again.tokens().unwrap().to_string(), tokens.to_string());
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        leaves(tokens, &place, &mut before);
+        leaves(again.tokens().unwrap(), &again.place(), &mut after);
+        assert_eq!(before, after);
+    }
+
+    #[test]
+    fn what_macros_make_of_tokens_keeps_its_meaning() {
+        let sum = TokenStream::from_str("a + b").unwrap();
+        let one = TokenStream::from(TokenTree::from(Literal::i32_unsuffixed(-1)));
+        let mut tokens = TokenStream::new();
+        for inner in [sum, one] {
+            tokens.extend([TokenTree::from(Group::new(Delimiter::None, inner))]);
+        }
+        let captured = Captured::of(&tokens, &place);
+        // A negative number is two tokens: in brackets it cannot become a subtraction.
+        assert_eq!(captured.tokens().unwrap().to_string(), "(a + b) (- 1)");
+    }
+}
