@@ -32,7 +32,7 @@ pub use captured::Captured;
 pub use grammar::{Role, Written};
 pub use parts::{Part, Parts, assemble};
 
-use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check};
+use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check, codes};
 use fragbuf_templates::Registry;
 use proc_macro2::{Span, TokenStream};
 
@@ -55,7 +55,10 @@ impl Parsed {
         match check(draft, registry) {
             Ok(variant) => diagnostics.gate(variant),
             Err(more) => {
-                diagnostics.extend(more);
+                // What an attribute of unknown format would have offered is not known: nothing is said of its absence.
+                let unknown = diagnostics.iter().any(|found| found.code == codes::UNKNOWN_FORMAT);
+                let follows = |code| unknown && (code == codes::UNMET || code == codes::MISSING_DEPTH);
+                more.iter().filter(|found| !follows(found.code)).for_each(|found| diagnostics.push(found.clone()));
                 // There is at least one, so the way on is never taken.
                 diagnostics.gate(()).and_then(|()| check(draft, registry))
             }
