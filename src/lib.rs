@@ -19,6 +19,9 @@
 //!
 //! From there [`generate`] makes files for every target, and [`manifest`] says how an engine runs them.
 //!
+//! The same description can stand in Rust, as a module with structs and callable closures ([`fragment_buffer!`]), or be put
+//! together by a program ([`builder`]).
+//!
 //! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
 //! into a variant, and [`report`], which draws diagnostics with their source lines.
 
@@ -29,6 +32,7 @@ pub use fragbuf_backends::{
     Checked, File, Generation, Request, SCHEMA, TARGETS, Target, generate, manifest, plan_json, target, tier,
 };
 pub use fragbuf_codegen::{Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
+pub use fragbuf_dsl::{builder, closure, fragment_buffer, function, glam};
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Selection, Variant, check};
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_templates::{Registry, vocabulary};

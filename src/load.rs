@@ -1,7 +1,7 @@
 //! A technique's key or a description's text, with changes from outside, becomes a variant.
 
-use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check};
-use fragbuf_syntax::parse;
+use fragbuf_model::{Diagnostics, Draft, Origin, Variant};
+use fragbuf_syntax::{Parsed, parse};
 use fragbuf_templates::Registry;
 
 /// A description to load.
@@ -68,12 +68,5 @@ pub fn variant_or(
             let _ = draft.set(name, value, &Origin::new("unless said", 1, 1));
         }
     }
-    // The rules run even over a draft with mistakes in it: all that is wrong comes at once.
-    match check(&draft, registry) {
-        Ok(variant) => diagnostics.gate(variant),
-        Err(more) => {
-            diagnostics.extend(more);
-            diagnostics.gate(()).and_then(|()| check(&draft, registry))
-        }
-    }
+    Parsed { draft: Some(draft), diagnostics }.check(registry)
 }

@@ -48,6 +48,11 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}",
         &[("missing-depth", 2, 37, "`depth: f32`")],
     ),
+    // What follows from a format that is unknown is not said.
+    (
+        "buffer B from ab_ll {\n    fragment { color: rgb8, depth: f23 }\n}",
+        &[("unknown-format", 2, 23, "did you mean `rgba8`?"), ("unknown-format", 2, 36, "`f32`")],
+    ),
     (
         "buffer B from ab_ll {\n    resolve: over;\n    resolve |fragments, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
         &[("duplicate", 3, 5, "leave one of them out")],

@@ -11,6 +11,7 @@
 mod cases;
 mod command_line;
 mod diagnostics;
+mod examples;
 mod fuzz;
 mod instances;
 mod names;

@@ -1,8 +1,8 @@
 //! The description's own uniforms, by name: values in, the words of the uniform buffer out.
 //!
-//! WGSL's layout rules for uniform blocks, over the six types that a description can have.
+//! Offsets are the model's ([`UniformBlock`]); nothing here knows a layout rule.
 
-use fragbuf_model::{Uniform, UniformType};
+use fragbuf_model::{Uniform, UniformBlock, UniformType};
 
 use crate::Error;
 
@@ -48,25 +48,15 @@ impl Value {
     }
 }
 
-/// Words and alignment in words.
-fn layout(kind: UniformType) -> (usize, usize) {
-    match kind {
-        UniformType::F32 | UniformType::U32 | UniformType::I32 => (1, 1),
-        UniformType::Vec2 => (2, 2),
-        UniformType::Vec3 => (3, 4),
-        UniformType::Vec4 => (4, 4),
-    }
-}
-
 /// The words of the block, all zero.
 pub(crate) fn zeros(uniforms: &[Uniform]) -> Vec<u32> {
-    let end = offsets(uniforms).zip(uniforms).map(|(offset, uniform)| offset + layout(uniform.kind.value).0).last();
-    vec![0; end.unwrap_or(0).next_multiple_of(4)]
+    vec![0; UniformBlock::of(uniforms).size as usize / 4]
 }
 
 /// Puts one value into the words of the block.
 pub(crate) fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
-    let found = offsets(uniforms).zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
+    let offsets = UniformBlock::of(uniforms).offsets;
+    let found = offsets.into_iter().zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
     let Some((offset, uniform)) = found else {
         let names: Vec<&str> = uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
         let wanted = format!("one of the description's uniforms ({})", names.join(", "));
@@ -76,19 +66,10 @@ pub(crate) fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Va
     if kind != value.kind() {
         return Err(Error::BadValue { name: format!("uniform `{name}`"), wanted: kind.keyword().to_owned() });
     }
-    for (word, value) in words.iter_mut().skip(offset).zip(value.words()) {
+    for (word, value) in words.iter_mut().skip(offset as usize / 4).zip(value.words()) {
         *word = value;
     }
     Ok(())
-}
-
-fn offsets(uniforms: &[Uniform]) -> impl Iterator<Item = usize> {
-    uniforms.iter().scan(0usize, |end, uniform| {
-        let (words, align) = layout(uniform.kind.value);
-        let offset = end.next_multiple_of(align);
-        *end = offset + words;
-        Some(offset)
-    })
 }
 
 #[cfg(test)]

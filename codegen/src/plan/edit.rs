@@ -31,12 +31,12 @@ fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> R
 }
 
 fn around(steps: &mut Vec<Step>, from: &str, to: &str, repeat: &Repeat) -> Result<(), String> {
-    if let (Some(first), Some(last)) = (position(steps, from), position(steps, to)) {
-        if first <= last {
-            let body = steps.drain(first..=last).collect();
-            steps.insert(first, Step::Repeat(Repeat { body, ..repeat.clone() }));
-            return Ok(());
-        }
+    if let (Some(first), Some(last)) = (position(steps, from), position(steps, to))
+        && first <= last
+    {
+        let body = steps.drain(first..=last).collect();
+        steps.insert(first, Step::Repeat(Repeat { body, ..repeat.clone() }));
+        return Ok(());
     }
     in_some_loop(steps, from, &mut |body| around(body, from, to, repeat))
 }
@@ -58,10 +58,10 @@ fn in_some_loop(
     edit: &mut dyn FnMut(&mut Vec<Step>) -> Result<(), String>,
 ) -> Result<(), String> {
     for step in steps {
-        if let Step::Repeat(repeat) = step {
-            if edit(&mut repeat.body).is_ok() {
-                return Ok(());
-            }
+        if let Step::Repeat(repeat) = step
+            && edit(&mut repeat.body).is_ok()
+        {
+            return Ok(());
         }
     }
     Err(unknown(anchor))

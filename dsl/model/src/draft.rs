@@ -28,6 +28,23 @@ pub struct Draft {
     pub helpers: Vec<UserFunction>,
 }
 
+impl Draft {
+    /// A draft that says its name and nothing else.
+    pub fn empty(name: Spanned<String>) -> Self {
+        Draft {
+            name,
+            preset: None,
+            attributes: Vec::new(),
+            uniforms: Vec::new(),
+            keep: None,
+            constraints: Vec::new(),
+            choices: Vec::new(),
+            resolve: None,
+            helpers: Vec::new(),
+        }
+    }
+}
+
 /// One attribute of the payload.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
@@ -181,6 +198,12 @@ pub enum KeepCount {
     AtMost(u32),
 }
 
+impl From<u32> for KeepCount {
+    fn from(count: u32) -> Self {
+        KeepCount::AtMost(count)
+    }
+}
+
 /// `axis: value { options } else value { options }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
@@ -213,6 +236,18 @@ pub enum OptionValue {
     Number(u32),
     /// A word.
     Word(String),
+}
+
+impl From<u32> for OptionValue {
+    fn from(number: u32) -> Self {
+        OptionValue::Number(number)
+    }
+}
+
+impl From<&str> for OptionValue {
+    fn from(word: &str) -> Self {
+        OptionValue::Word(word.to_owned())
+    }
 }
 
 /// A closure or helper function of the user's, type-checked and lowered to WGSL.

@@ -9,6 +9,7 @@ mod draft;
 mod names;
 mod origin;
 mod set;
+mod uniform_block;
 mod variant;
 
 pub use check::{MOST_KEPT, check};
@@ -19,4 +20,5 @@ pub use draft::{
 };
 pub use names::mangled;
 pub use origin::{Origin, Spanned};
+pub use uniform_block::UniformBlock;
 pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant, is_target_fact};

@@ -12,17 +12,8 @@ impl Draft {
                 letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
             })
             .collect();
-        Draft {
-            name: Spanned::new(name, origin.clone()),
-            preset: Some(Spanned::new(key.to_owned(), origin.clone())),
-            attributes: Vec::new(),
-            uniforms: Vec::new(),
-            keep: None,
-            constraints: Vec::new(),
-            choices: Vec::new(),
-            resolve: None,
-            helpers: Vec::new(),
-        }
+        let preset = Some(Spanned::new(key.to_owned(), origin.clone()));
+        Draft { preset, ..Draft::empty(Spanned::new(name, origin.clone())) }
     }
 
     /// The payload of a description that names none, the papers': `color: rgba8, depth: f32`.

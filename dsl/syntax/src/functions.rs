@@ -26,17 +26,8 @@ pub(crate) fn finish(
         functions.into_iter().map(|raw| (raw.role.clone(), check::function(raw, &environment, report))).collect();
     let helpers: Vec<Option<&Function>> = helper_functions(&checked, &environment);
     reads::refuse_recursion(&helpers, report);
-    let mut draft = Draft {
-        name,
-        preset,
-        attributes,
-        uniforms,
-        keep: keep.map(|(count, _)| Keep { count, criterion: None }),
-        constraints: Vec::new(),
-        choices,
-        resolve: None,
-        helpers: Vec::new(),
-    };
+    let keep = keep.map(|(count, _)| Keep { count, criterion: None });
+    let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
     for (role, function) in &checked {
         let Some(function) = function else { continue };
         let lowered = lower::function(function, &environment.helpers);

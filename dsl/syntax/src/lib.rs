@@ -1,7 +1,7 @@
 //! The written form of a fragment buffer: grammar, type checker and WGSL lowering of its Rust subset.
 //!
-//! In: the text of a `.fragbuf` file, or the tokens of another door to the same language. Out: a [`Draft`] whose closures
-//! are type-checked and lowered to WGSL, and everything that is wrong, each at the user's own place.
+//! In: the text of a `.fragbuf` file, the tokens of a macro, or the parts that a builder collected. Out: a [`Draft`] whose
+//! closures are type-checked and lowered to WGSL, and everything that is wrong, each at the user's own place.
 //!
 //! ```text
 //! text ─► tokens ─► grammar ─► closures (syn) ─► check: typed tree ─► lower: WGSL
@@ -10,6 +10,7 @@
 //! Nothing here knows a technique by name, looks anything up in the registry, or knows naga or wgpu.
 //! Any text comes back as diagnostics: nothing here panics, and nesting is bounded.
 
+mod captured;
 mod check;
 mod constants;
 mod fold;
@@ -20,13 +21,19 @@ mod lower;
 mod methods;
 mod near;
 mod nesting;
+mod parts;
 mod reads;
 mod report;
 mod text;
 mod tree;
 mod types;
 
-use fragbuf_model::{Diagnostics, Draft, Origin};
+pub use captured::Captured;
+pub use grammar::{Role, Written};
+pub use parts::{Part, Parts, assemble};
+
+use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check, codes};
+use fragbuf_templates::Registry;
 use proc_macro2::{Span, TokenStream};
 
 /// What came of reading a description.
@@ -37,6 +44,26 @@ pub struct Parsed {
     pub draft: Option<Draft>,
     /// Everything that is wrong, in the order of the text. Empty: the draft is whole.
     pub diagnostics: Diagnostics,
+}
+
+impl Parsed {
+    /// The variant, if nothing is wrong with the text and the rules accept it. The rules run even over a draft with
+    /// mistakes in it: all that is wrong comes at once.
+    pub fn check(&self, registry: &Registry) -> Result<Variant, Diagnostics> {
+        let mut diagnostics = self.diagnostics.clone();
+        let Some(draft) = &self.draft else { return Err(diagnostics) };
+        match check(draft, registry) {
+            Ok(variant) => diagnostics.gate(variant),
+            Err(more) => {
+                // What an attribute of unknown format would have offered is not known: nothing is said of its absence.
+                let unknown = diagnostics.iter().any(|found| found.code == codes::UNKNOWN_FORMAT);
+                let follows = |code| unknown && (code == codes::UNMET || code == codes::MISSING_DEPTH);
+                more.iter().filter(|found| !follows(found.code)).for_each(|found| diagnostics.push(found.clone()));
+                // There is at least one, so the way on is never taken.
+                diagnostics.gate(()).and_then(|()| check(draft, registry))
+            }
+        }
+    }
 }
 
 /// Reads the text of a `.fragbuf` file; `file` is its name in messages.
@@ -50,7 +77,13 @@ pub fn parse(text: &str, file: &str) -> Parsed {
 
 /// Reads the tokens of a description; `place` says where each stands in the user's text.
 pub fn parse_tokens(tokens: TokenStream, place: &dyn Fn(Span) -> Origin) -> Parsed {
+    read_tokens(tokens, place).0
+}
+
+/// The same, with the functions in the user's own tokens, also those that are left out of the draft.
+pub fn read_tokens(tokens: TokenStream, place: &dyn Fn(Span) -> Origin) -> (Parsed, Vec<Written>) {
     let mut report = report::Report::new(place);
-    let draft = nesting::bounded(tokens, &mut report).and_then(|tokens| grammar::description(tokens, &mut report));
-    Parsed { draft, diagnostics: report.finish() }
+    let read = nesting::bounded(tokens, &mut report).and_then(|tokens| grammar::description(tokens, &mut report));
+    let (draft, written) = read.map_or((None, Vec::new()), |(draft, written)| (Some(draft), written));
+    (Parsed { draft, diagnostics: report.finish() }, written)
 }

@@ -1,6 +1,6 @@
 //! Bounds on nesting, so that no description can exhaust the stack of whoever reads it.
 //!
-//! In: tokens. Out: the same tokens without documentation comments, or a mistake. Brackets may nest [`DEPTH`] deep; a
+//! In: tokens. Out: the same tokens without documentation comments, invisible groups made visible, or a mistake. Brackets may nest [`DEPTH`] deep; a
 //! statement may have [`LENGTH`] tokens, counted together with the statements around it, because operators nest too.
 
 use fragbuf_model::codes;
@@ -54,16 +54,27 @@ fn without_docs(tokens: TokenStream) -> TokenStream {
             continue;
         }
         kept.push(match first {
-            TokenTree::Group(group) => {
-                let mut inner = Group::new(group.delimiter(), without_docs(group.stream()));
-                inner.set_span(group.span());
-                inner.into()
-            }
+            TokenTree::Group(group) => match (group.delimiter(), single(group)) {
+                (Delimiter::None, Some(token)) => token,
+                (delimiter, _) => {
+                    let delimiter = if delimiter == Delimiter::None { Delimiter::Parenthesis } else { delimiter };
+                    let mut inner = Group::new(delimiter, without_docs(group.stream()));
+                    inner.set_span(group.span());
+                    inner.into()
+                }
+            },
             other => other.clone(),
         });
         rest = after;
     }
     kept.into_iter().collect()
+}
+
+/// The only token of a group: what `macro_rules` put in for `$name:literal` comes so.
+fn single(group: &Group) -> Option<TokenTree> {
+    let mut tokens = group.stream().into_iter();
+    let first = tokens.next().filter(|token| !matches!(token, TokenTree::Group(_)))?;
+    tokens.next().is_none().then_some(first)
 }
 
 fn past_doc(tokens: &[TokenTree]) -> Option<&[TokenTree]> {

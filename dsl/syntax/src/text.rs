@@ -35,14 +35,18 @@ pub(crate) fn tokens(text: &str, file: &str) -> Result<TokenStream, Box<Diagnost
     TokenStream::from_str(text).map_err(|error| {
         let start = error.span().start();
         let origin = Origin::new(file, number(start.line.max(1)), number(start.column + 1));
-        let found = character(text, start.line, start.column);
-        let message = match found {
-            Some(letter) => format!("`{letter}` begins nothing that can be read here"),
-            None => "the text ends within a token".to_string(),
-        };
-        let hint = "a description has the tokens of Rust: close strings and comments, and leave out other signs";
-        Box::new(Diagnostic::new(codes::UNREADABLE, &origin, message, hint))
+        Box::new(unreadable(&origin, character(text, start.line, start.column)))
     })
+}
+
+/// What is said where the text is no tokens.
+pub(crate) fn unreadable(origin: &Origin, found: Option<char>) -> Diagnostic {
+    let message = match found {
+        Some(letter) => format!("`{letter}` begins nothing that can be read here"),
+        None => "the text ends within a token".to_string(),
+    };
+    let hint = "a description has the tokens of Rust: close strings and comments, and leave out other signs";
+    Diagnostic::new(codes::UNREADABLE, origin, message, hint)
 }
 
 fn character(text: &str, line: usize, column: usize) -> Option<char> {

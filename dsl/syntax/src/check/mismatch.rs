@@ -45,15 +45,17 @@ pub(super) fn quoted(name: &str) -> String {
 /// How to get from the type of `found` to `needed`.
 pub(super) fn way_out(inference: &Inference, found: &Expr, needed: Type) -> String {
     let (is, needed) = (inference.resolve(found.ty), inference.resolve(needed));
-    if let (Kind::Whole(number), Type::F32 | Type::Unknown(_)) = (&found.kind, needed) {
-        if inference.is_fractional(needed) {
-            return format!("write `{number}.0`");
-        }
+    if let (Kind::Whole(number), Type::F32 | Type::Unknown(_)) = (&found.kind, needed)
+        && inference.is_fractional(needed)
+    {
+        return format!("write `{number}.0`");
     }
-    if let Kind::Float(number) = found.kind {
-        if inference.is_whole(needed) && number.fract() == 0.0 && number >= 0.0 {
-            return format!("write `{number:.0}`");
-        }
+    if let Kind::Float(number) = found.kind
+        && inference.is_whole(needed)
+        && number.fract() == 0.0
+        && number >= 0.0
+    {
+        return format!("write `{number:.0}`");
     }
     match (is, needed) {
         (_, Type::Unit) => "end it with `;`, or leave it out".to_string(),

@@ -2,18 +2,16 @@
 //!
 //! In: a block in braces. Out: its rows, each name once. Formats and types are the model's.
 
-use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType, codes};
-use proc_macro2::Ident;
-
 use super::cursor::Cursor;
 use super::{Stop, names};
 use crate::near;
 use crate::report::Report;
+use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType, codes};
 
-/// `name: word`.
+/// `name: word`, both as written.
 pub(crate) struct Row {
-    name: Ident,
-    word: Spanned<String>,
+    pub name: Spanned<String>,
+    pub word: Spanned<String>,
 }
 
 /// The rows of the block in braces that belongs here; `shape` is an example of it.
@@ -37,6 +35,7 @@ pub(crate) fn rows(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Res
 
 fn row(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<Row, Stop> {
     let Some(name) = cursor.any_word() else { return Err(unexpected(cursor, "a name", shape, report)) };
+    let name = names::written(&name, report);
     if !cursor.sign(':') {
         return Err(unexpected(cursor, "`:`", shape, report));
     }

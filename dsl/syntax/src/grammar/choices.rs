@@ -16,15 +16,47 @@ const SHAPE: &str = "sync: interlock else spin_lock { limit: 4096 };";
 /// `axis: value else value;`
 pub(crate) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
     let axis = word(cursor, "an axis", report)?;
-    if let Some(hint) = not_an_axis(&axis.value) {
-        let message = format!("`{}` is not an axis", axis.value);
-        report.error(codes::UNEXPECTED, &axis.origin, message, hint);
-        return Err(Stop);
-    }
+    refuse_items(&axis, report)?;
     cursor.sign(':');
     let mut alternatives: Vec<Alternative> = Vec::new();
     loop {
-        let next = alternative(cursor, report)?;
+        alternatives.push(alternative(cursor, report)?);
+        if !cursor.word("else") {
+            break;
+        }
+    }
+    let choice = distinct(Choice { axis, alternatives }, report);
+    end_of_item(cursor, SHAPE, report)?;
+    Ok(choice)
+}
+
+/// A choice that another door made, its words not yet looked at.
+pub(crate) fn given(choice: &Choice, report: &mut Report) -> Result<Choice, Stop> {
+    let axis = names::word(&choice.axis, report);
+    refuse_items(&axis, report)?;
+    let mut alternatives = Vec::with_capacity(choice.alternatives.len());
+    for alternative in &choice.alternatives {
+        let mut options = Options::with_capacity(alternative.options.len());
+        for (name, value) in &alternative.options {
+            let value = match &value.value {
+                OptionValue::Word(text) => {
+                    let word = names::word(&Spanned::new(text.clone(), value.origin.clone()), report);
+                    Spanned::new(OptionValue::Word(word.value), word.origin)
+                }
+                OptionValue::Number(_) => value.clone(),
+            };
+            options.push((names::word(name, report), value));
+        }
+        alternatives.push(Alternative { value: names::word(&alternative.value, report), options });
+    }
+    Ok(distinct(Choice { axis, alternatives }, report))
+}
+
+/// The choice without what it gives a second time.
+fn distinct(choice: Choice, report: &mut Report) -> Choice {
+    let mut alternatives: Vec<Alternative> = Vec::with_capacity(choice.alternatives.len());
+    for next in choice.alternatives {
+        let next = Alternative { value: next.value, options: distinct_options(next.options, report) };
         match alternatives.iter().find(|other| other.value.value == next.value.value) {
             Some(first) => {
                 let message = format!("`{}` is given twice", next.value.value);
@@ -34,12 +66,31 @@ pub(crate) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice,
             }
             None => alternatives.push(next),
         }
-        if !cursor.word("else") {
-            break;
+    }
+    Choice { axis: choice.axis, alternatives }
+}
+
+fn distinct_options(given: Options, report: &mut Report) -> Options {
+    let mut options = Options::with_capacity(given.len());
+    for (name, value) in given {
+        match options.iter().find(|other| other.0.value == name.value) {
+            Some((first, _)) => {
+                let message = format!("the option `{}` is given twice", name.value);
+                let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
+                report.push(diagnostic.label(&first.origin, "the first is here"));
+            }
+            None => options.push((name, value)),
         }
     }
-    end_of_item(cursor, SHAPE, report)?;
-    Ok(Choice { axis, alternatives })
+    options
+}
+
+/// Items that are no axes, though they may look so.
+fn refuse_items(axis: &Spanned<String>, report: &mut Report) -> Result<(), Stop> {
+    let Some(hint) = not_an_axis(&axis.value) else { return Ok(()) };
+    let message = format!("`{}` is not an axis", axis.value);
+    report.error(codes::UNEXPECTED, &axis.origin, message, hint);
+    Err(Stop)
 }
 
 fn not_an_axis(word: &str) -> Option<&'static str> {
@@ -64,7 +115,7 @@ fn alternative(cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, 
 fn word(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
     match cursor.peek() {
         Some(TokenTree::Ident(word)) => {
-            let word = word.clone();
+            let word = names::written(word, report);
             cursor.take();
             Ok(names::word(&word, report))
         }
@@ -83,14 +134,7 @@ fn options(group: &Group, report: &mut Report) -> Options {
     let mut options = Options::new();
     while !cursor.is_done() {
         match option(&mut cursor, report) {
-            Ok((name, value)) => match options.iter().find(|other| other.0.value == name.value) {
-                Some((first, _)) => {
-                    let message = format!("the option `{}` is given twice", name.value);
-                    let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
-                    report.push(diagnostic.label(&first.origin, "the first is here"));
-                }
-                None => options.push((name, value)),
-            },
+            Ok(option) => options.push(option),
             Err(Stop) => while !cursor.is_done() && !cursor.sign(',') && cursor.take().is_some() {},
         }
     }
@@ -106,9 +150,9 @@ fn option(cursor: &mut Cursor, report: &mut Report) -> Result<(Spanned<String>, 
     let value = match cursor.peek() {
         Some(TokenTree::Literal(_)) => OptionValue::Number(number(cursor, report)?),
         Some(TokenTree::Ident(word)) => {
-            let word = word.to_string();
+            let word = names::written(word, report);
             cursor.take();
-            OptionValue::Word(word)
+            OptionValue::Word(names::word(&word, report).value)
         }
         _ => return Err(option_shape(cursor, "a number or a word", report)),
     };

@@ -5,6 +5,7 @@
 
 use fragbuf_model::{Origin, Spanned, codes};
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use syn::ext::IdentExt;
 use syn::spanned::Spanned as _;
 
 use super::cursor::{Cursor, is_sign};
@@ -15,11 +16,12 @@ use crate::report::Report;
 
 /// What a function is for.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
-    /// Behind `least`.
+pub enum Role {
+    /// Behind `least`: `|f, u| -> f32`.
     Criterion,
-    /// The how-manieth `where`.
+    /// The how-manieth `where`, from 0: `|f, u| -> bool`.
     Admit(usize),
+    /// Behind `resolve`: `|fragments, u| -> Vec4`.
     Resolve,
     /// `fn` of this name.
     Helper(String),
@@ -47,7 +49,16 @@ impl Role {
     }
 }
 
-/// A function as written.
+/// A function in the user's own tokens, documentation comments apart.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// What it is for.
+    pub role: Role,
+    /// From `|`, or from `fn`, to its end.
+    pub tokens: TokenStream,
+}
+
+/// A function as written, read as Rust.
 pub(crate) struct RawFunction {
     pub role: Role,
     pub origin: Origin,
@@ -70,34 +81,79 @@ pub(crate) struct RawParameter {
 }
 
 /// The closure that belongs here, and the `;` behind it.
-pub(crate) fn closure(cursor: &mut Cursor, role: Role, report: &mut Report) -> Result<RawFunction, Stop> {
+pub(crate) fn closure(
+    cursor: &mut Cursor,
+    role: Role,
+    written: &mut Vec<Written>,
+    report: &mut Report,
+) -> Result<RawFunction, Stop> {
     let origin = cursor.origin(report);
-    if !cursor.at_sign('|') {
-        let message = format!("a closure belongs here, not {}", cursor.describe());
-        let hint = match role {
-            Role::Criterion => "write `least |f| f.depth`",
-            Role::Resolve => "write `resolve |fragments| { … }`, or name an effect: `resolve: over;`",
-            _ => "write `where |f| f.depth > 0.5;`",
-        };
-        report.error(codes::UNEXPECTED, &origin, message, hint);
-        return Err(Stop);
-    }
+    require_closure(cursor, &role, report)?;
     let tokens = closure_tokens(cursor);
     let end = cursor.span();
     let closed = cursor.sign(';');
-    let parsed: syn::ExprClosure = read(&tokens, end, report)?;
-    if !closed && !matches!(*parsed.body, syn::Expr::Block(_)) {
+    written.push(Written { role: role.clone(), tokens: tokens.clone() });
+    let (function, is_block) = read_closure(&tokens, role, origin, end, report)?;
+    if !closed && !is_block {
         let message = format!("`;` belongs here, not {}", cursor.describe());
         report.error(codes::UNEXPECTED, &report.at(end), message, "end the closure with `;`");
     }
+    Ok(function)
+}
+
+/// The closure that these tokens are, all of them.
+pub(crate) fn whole_closure(tokens: &TokenStream, role: Role, report: &mut Report) -> Result<RawFunction, Stop> {
+    let mut cursor = Cursor::new(tokens.clone());
+    require_closure(&cursor, &role, report)?;
+    let origin = cursor.origin(report);
+    let tokens = closure_tokens(&mut cursor);
+    require_end(&cursor, "closure", report)?;
+    read_closure(&tokens, role, origin, cursor.end(), report).map(|(function, _)| function)
+}
+
+/// A block ends a closure, as in a file: what stands behind it belongs to nothing.
+fn require_end(cursor: &Cursor, what: &str, report: &mut Report) -> Result<(), Stop> {
+    if cursor.is_done() {
+        return Ok(());
+    }
+    let message = format!("{} stands after the {what}", cursor.describe());
+    report.error(codes::UNEXPECTED, &cursor.origin(report), message, "leave it out, or put the whole into parentheses");
+    Err(Stop)
+}
+
+fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<(), Stop> {
+    if cursor.at_sign('|') {
+        return Ok(());
+    }
+    let message = format!("a closure belongs here, not {}", cursor.describe());
+    let hint = match role {
+        Role::Criterion => "write `least |f| f.depth`",
+        Role::Resolve => "write `resolve |fragments| { … }`, or name an effect: `resolve: over;`",
+        _ => "write `where |f| f.depth > 0.5;`",
+    };
+    report.error(codes::UNEXPECTED, &cursor.origin(report), message, hint);
+    Err(Stop)
+}
+
+/// The function, and whether its body is a block.
+fn read_closure(
+    tokens: &TokenStream,
+    role: Role,
+    origin: Origin,
+    end: Span,
+    report: &mut Report,
+) -> Result<(RawFunction, bool), Stop> {
+    let parsed: syn::ExprClosure = read(tokens, end, report)?;
+    let is_block = matches!(*parsed.body, syn::Expr::Block(_));
     refuse_closure_modifiers(&parsed, report);
     let output = match parsed.output {
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, kind) => Some(*kind),
     };
     let parameters = parsed.inputs.into_iter().filter_map(|pattern| parameter(pattern, report)).collect();
-    let rust = nesting::spaced(&tokens);
-    Ok(RawFunction { role, name_origin: origin.clone(), origin, rust, parameters, output, body: *parsed.body })
+    let rust = nesting::spaced(tokens);
+    let name_origin = origin.clone();
+    Ok((RawFunction { role, name_origin, origin, rust, parameters, output, body: *parsed.body }, is_block))
 }
 
 /// The tokens of a closure: to the `;`, to the end of its block, or to where the next item can only begin.
@@ -125,7 +181,11 @@ fn closure_tokens(cursor: &mut Cursor) -> TokenStream {
 }
 
 /// `fn name(…) -> … { … }`
-pub(crate) fn helper(cursor: &mut Cursor, report: &mut Report) -> Result<RawFunction, Stop> {
+pub(crate) fn helper(
+    cursor: &mut Cursor,
+    written: &mut Vec<Written>,
+    report: &mut Report,
+) -> Result<RawFunction, Stop> {
     let origin = cursor.origin(report);
     let mut tokens: Vec<TokenTree> = Vec::new();
     while !cursor.is_done() && !cursor.at_sign(';') {
@@ -143,9 +203,34 @@ pub(crate) fn helper(cursor: &mut Cursor, report: &mut Report) -> Result<RawFunc
     };
     cursor.sign(';');
     let tokens: TokenStream = tokens.into_iter().collect();
-    let parsed: syn::ItemFn = read(&tokens, end, report)?;
+    written.push(Written { role: Role::Helper(name_of(&tokens)), tokens: tokens.clone() });
+    read_helper(&tokens, origin, end, report)
+}
+
+/// The helper function that these tokens are, all of them.
+pub(crate) fn whole_helper(tokens: &TokenStream, report: &mut Report) -> Result<RawFunction, Stop> {
+    let cursor = Cursor::new(tokens.clone());
+    let origin = cursor.origin(report);
+    if !cursor.at_word("fn") {
+        let message = format!("a function belongs here, not {}", cursor.describe());
+        report.error(codes::UNEXPECTED, &origin, message, "write `fn name(x: f32) -> f32 { … }`");
+        return Err(Stop);
+    }
+    read_helper(tokens, origin, cursor.end(), report)
+}
+
+/// The word after `fn`.
+fn name_of(tokens: &TokenStream) -> String {
+    match tokens.clone().into_iter().nth(1) {
+        Some(TokenTree::Ident(name)) => name.unraw().to_string(),
+        _ => String::new(),
+    }
+}
+
+fn read_helper(tokens: &TokenStream, origin: Origin, end: Span, report: &mut Report) -> Result<RawFunction, Stop> {
+    let parsed: syn::ItemFn = read(tokens, end, report)?;
     refuse_signature(&parsed.sig, report);
-    let name = names::declared(&parsed.sig.ident, "function", report);
+    let name = names::declared(&names::written(&parsed.sig.ident, report), "function", report);
     refuse_generated_name(&name, report);
     let output = match parsed.sig.output {
         syn::ReturnType::Default => None,
@@ -162,7 +247,7 @@ pub(crate) fn helper(cursor: &mut Cursor, report: &mut Report) -> Result<RawFunc
         }
     }
     let body = syn::Expr::Block(syn::ExprBlock { attrs: Vec::new(), label: None, block: *parsed.block });
-    let rust = nesting::spaced(&tokens);
+    let rust = nesting::spaced(tokens);
     Ok(RawFunction { role: Role::Helper(name.value), origin, name_origin: name.origin, rust, parameters, output, body })
 }
 
@@ -220,7 +305,7 @@ fn parameter(pattern: syn::Pat, report: &mut Report) -> Option<RawParameter> {
     };
     match pattern {
         syn::Pat::Ident(name) if name.by_ref.is_none() && name.subpat.is_none() => Some(RawParameter {
-            name: Some(names::declared(&name.ident, "parameter", report)),
+            name: Some(names::declared(&names::written(&name.ident, report), "parameter", report)),
             mutable: name.mutability.is_some(),
             kind,
             origin,

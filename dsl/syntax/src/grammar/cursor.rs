@@ -113,6 +113,11 @@ impl Cursor {
         self.peek().map(TokenTree::span).or(self.end).unwrap_or_else(Span::call_site)
     }
 
+    /// The span of what a message points at when the tokens have run out.
+    pub(crate) fn end(&self) -> Span {
+        self.end.unwrap_or_else(Span::call_site)
+    }
+
     /// The next token in the words of a message.
     pub(crate) fn describe(&self) -> String {
         match self.peek() {

@@ -6,7 +6,7 @@ use fragbuf_model::{Attribute, Choice, Diagnostic, KeepCount, Origin, Spanned, U
 use proc_macro2::{Delimiter, Spacing, TokenTree};
 
 use super::cursor::{Cursor, is_sign};
-use super::{RawFunction, Role, Stop, blocks, choices, closures};
+use super::{RawFunction, Role, Row, Stop, Written, blocks, choices, closures};
 use crate::near;
 use crate::report::Report;
 
@@ -23,6 +23,8 @@ pub(crate) struct Items {
     pub choices: Vec<Choice>,
     /// Criterion, constraints, resolve and helpers, in the user's order.
     pub functions: Vec<RawFunction>,
+    /// The same in the user's own tokens, also those that could not be read.
+    pub written: Vec<Written>,
     fragment_block: Option<Origin>,
     uniform_block: Option<Origin>,
     constraints: usize,
@@ -85,71 +87,108 @@ impl Items {
         Ok(())
     }
 
+    /// The rows of both blocks, for a door that has no blocks.
+    pub(crate) fn add_rows(&mut self, attributes: Vec<Row>, uniforms: Vec<Row>, report: &mut Report) {
+        (self.attributes, self.broken_attributes) = blocks::attributes(attributes, report);
+        (self.uniforms, self.broken_uniforms) = blocks::uniforms(uniforms, report);
+    }
+
     fn keep(&mut self, cursor: &mut Cursor, origin: Origin, report: &mut Report) -> Result<(), Stop> {
         cursor.take();
         let count = choices::count(cursor, report)?;
         let criterion = if cursor.word("least") {
-            Some(closures::closure(cursor, Role::Criterion, report)?)
+            Some(closures::closure(cursor, Role::Criterion, &mut self.written, report)?)
         } else {
             end_of_item(cursor, "keep 8;` or, to choose by a value, `keep 8 least |f| …;", report)?;
             None
         };
+        self.add_keep(count, criterion, origin, report);
+        Ok(())
+    }
+
+    /// The line `keep`, unless there is one.
+    pub(crate) fn add_keep(
+        &mut self,
+        count: Spanned<KeepCount>,
+        criterion: Option<RawFunction>,
+        origin: Origin,
+        report: &mut Report,
+    ) {
         if let Some((_, first)) = &self.keep {
             let diagnostic =
                 Diagnostic::new(codes::DUPLICATE, &origin, "`keep` is given twice", "leave one of them out");
             report.push(diagnostic.label(first, "the first is here"));
-            return Ok(());
+            return;
         }
         self.keep = Some((count, origin));
         self.functions.extend(criterion);
-        Ok(())
     }
 
     fn constraint(&mut self, cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
         cursor.take();
-        let role = Role::Admit(self.constraints);
-        self.constraints += 1;
-        self.functions.push(closures::closure(cursor, role, report)?);
+        let role = self.next_constraint();
+        self.functions.push(closures::closure(cursor, role, &mut self.written, report)?);
         Ok(())
+    }
+
+    /// The role of one constraint more.
+    pub(crate) fn next_constraint(&mut self) -> Role {
+        self.constraints += 1;
+        Role::Admit(self.constraints - 1)
     }
 
     fn resolve(&mut self, cursor: &mut Cursor, origin: Origin, report: &mut Report) -> Result<(), Stop> {
         cursor.take();
-        let function = closures::closure(cursor, Role::Resolve, report)?;
-        let first = self.functions.iter().find(|other| other.role == Role::Resolve).map(|other| &other.origin);
-        let first = first.or_else(|| self.chosen("resolve"));
-        if let Some(first) = first {
-            report.push(twice("resolve", &origin, first));
-            return Ok(());
-        }
-        self.functions.push(function);
+        let function = closures::closure(cursor, Role::Resolve, &mut self.written, report)?;
+        self.add_resolve(function, &origin, report);
         Ok(())
     }
 
+    /// The effect, unless there is one.
+    pub(crate) fn add_resolve(&mut self, function: RawFunction, origin: &Origin, report: &mut Report) {
+        let first = self.functions.iter().find(|other| other.role == Role::Resolve).map(|other| &other.origin);
+        let first = first.or_else(|| self.chosen("resolve"));
+        if let Some(first) = first {
+            report.push(twice("resolve", origin, first));
+            return;
+        }
+        self.functions.push(function);
+    }
+
     fn helper(&mut self, cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
-        let function = closures::helper(cursor, report)?;
+        let function = closures::helper(cursor, &mut self.written, report)?;
+        self.add_helper(function, report);
+        Ok(())
+    }
+
+    /// A helper function, unless there is one of its name.
+    pub(crate) fn add_helper(&mut self, function: RawFunction, report: &mut Report) {
         let same = |other: &&RawFunction| other.role == function.role;
         if let Some(first) = self.functions.iter().find(same) {
             let message = format!("the function `{}` is given twice", function.role.rust_name());
             let diagnostic = Diagnostic::new(codes::DUPLICATE, &function.name_origin, message, "rename one of them");
             report.push(diagnostic.label(&first.name_origin, "the first is here"));
-            return Ok(());
+            return;
         }
         self.functions.push(function);
-        Ok(())
     }
 
     fn choice(&mut self, cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
         let choice = choices::choice(cursor, report)?;
+        self.add_choice(choice, report);
+        Ok(())
+    }
+
+    /// A choice, unless there is one on its axis.
+    pub(crate) fn add_choice(&mut self, choice: Choice, report: &mut Report) {
         let axis = choice.axis.value.as_str();
         let function = self.functions.iter().find(|other| axis == "resolve" && other.role == Role::Resolve);
         let first = self.chosen(axis).or(function.map(|other| &other.origin));
         if let Some(first) = first {
             report.push(twice(axis, &choice.axis.origin, first));
-            return Ok(());
+            return;
         }
         self.choices.push(choice);
-        Ok(())
     }
 
     fn chosen(&self, axis: &str) -> Option<&Origin> {

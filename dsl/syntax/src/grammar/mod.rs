@@ -11,8 +11,12 @@ mod cursor;
 mod items;
 mod names;
 
-pub(crate) use closures::{RawFunction, RawParameter, Role};
+pub(crate) use blocks::Row;
+pub(crate) use choices::given as given_choice;
+pub(crate) use closures::{RawFunction, RawParameter, whole_closure, whole_helper};
+pub use closures::{Role, Written};
 pub(crate) use items::Items;
+pub(crate) use names::{buffer as buffer_name, word};
 
 use fragbuf_model::{Diagnostic, Draft, Origin, Spanned, codes};
 use proc_macro2::{Group, TokenStream};
@@ -25,18 +29,19 @@ use cursor::Cursor;
 pub(crate) struct Stop;
 
 /// The whole text: `buffer Name from preset { … }`.
-pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<Draft> {
+pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<(Draft, Vec<Written>)> {
     let mut cursor = Cursor::new(tokens);
     find_buffer(&mut cursor, report)?;
     let start = cursor.origin(report);
     cursor.word("buffer");
-    let name = buffer_name(&mut cursor, report);
+    let name = name_of_buffer(&mut cursor, report);
     let preset = preset(&mut cursor, report);
     let body = body(&mut cursor, report)?;
     let mut items = Items::default();
     items.read(&mut Cursor::inside(&body), report);
     after_buffer(&cursor, &start, report);
-    Some(functions::finish(name, preset, items, report))
+    let written = std::mem::take(&mut items.written);
+    Some((functions::finish(name, preset, items, report), written))
 }
 
 /// Goes to the word `buffer`.
@@ -57,7 +62,7 @@ fn find_buffer(cursor: &mut Cursor, report: &mut Report) -> Option<()> {
     Some(())
 }
 
-fn buffer_name(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
+fn name_of_buffer(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
     let origin = cursor.origin(report);
     let word = if cursor.at_word("from") { None } else { cursor.any_word() };
     let Some(word) = word else {
@@ -65,13 +70,8 @@ fn buffer_name(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
         report.error(codes::UNEXPECTED, &origin, message, "write `buffer Name { … }`");
         return Spanned::new("Unnamed".to_string(), origin);
     };
-    let name = names::declared(&word, "buffer", report);
-    if name.value.starts_with(|first: char| first.is_ascii_lowercase() || first == '_') {
-        let message = format!("the buffer's name `{}` is not in UpperCamelCase", name.value);
-        let hint = format!("it becomes a type: write `{}`", names::upper_camel(&name.value));
-        report.error(codes::UNEXPECTED, &name.origin, message, hint);
-    }
-    name
+    let word = names::written(&word, report);
+    names::buffer(&word, report)
 }
 
 fn preset(cursor: &mut Cursor, report: &mut Report) -> Option<Spanned<String>> {

@@ -131,13 +131,13 @@ impl Lowering<'_> {
             self.statements(block);
             value = last;
         }
-        if let Kind::If(branch) = &value.kind {
-            if !self.is_select(branch, value) {
-                let name = self.names.fresh(&name);
-                self.emit(format!("var {name}: {};", ty.wgsl()), origin);
-                self.store(value, &Destination::Assign(name.clone()));
-                return self.spell(id, name);
-            }
+        if let Kind::If(branch) = &value.kind
+            && !self.is_select(branch, value)
+        {
+            let name = self.names.fresh(&name);
+            self.emit(format!("var {name}: {};", ty.wgsl()), origin);
+            self.store(value, &Destination::Assign(name.clone()));
+            return self.spell(id, name);
         }
         let text = self.value(value);
         let name = self.names.fresh(&name);

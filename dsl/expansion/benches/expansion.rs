@@ -1,0 +1,41 @@
+//! What the macro costs: parsing, checking and emitting, over `proc_macro2`'s own tokens. Inside the compiler the tokens
+//! come from rustc, each call of which costs a little more. Figures are the least of many runs.
+#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench prints, and fails by panicking")]
+
+use std::time::{Duration, Instant};
+
+use fragbuf_templates::Registry;
+use proc_macro2::TokenStream;
+
+const MINIMAL: &str = "buffer Nearest from kplus_array { keep 4; }";
+const MOST_VISIBLE: &str = include_str!("../../../examples/most_visible.fragbuf");
+
+fn least(mut work: impl FnMut()) -> Duration {
+    let runs = (0..300).map(|_| {
+        let start = Instant::now();
+        work();
+        start.elapsed()
+    });
+    runs.min().unwrap_or_default()
+}
+
+fn main() {
+    println!("{:16} {:>8} {:>10} {:>10} {:>10}", "description", "tokens", "read µs", "rows µs", "expand µs");
+    for (name, text) in [("minimal", MINIMAL), ("most_visible", MOST_VISIBLE)] {
+        let call: TokenStream = format!("[fragbuf_dsl] {text}").parse().unwrap();
+        let read = least(|| drop(fragbuf_syntax::parse(text, name)));
+        let rows = least(|| drop(Registry::builtin()));
+        let expand = least(|| drop(fragbuf_expansion::fragment_buffer(call.clone())));
+        let tokens = count(&call);
+        let [read, rows, expand] = [read, rows, expand].map(|time| time.as_micros());
+        println!("{name:16} {tokens:>8} {read:>10} {rows:>10} {expand:>10}");
+    }
+}
+
+fn count(tokens: &TokenStream) -> usize {
+    let inside = |token| match token {
+        proc_macro2::TokenTree::Group(group) => 2 + count(&group.stream()),
+        _ => 1,
+    };
+    tokens.clone().into_iter().map(inside).sum()
+}

@@ -1,0 +1,8 @@
+fragbuf_dsl::fragment_buffer! {
+    buffer Glass from kplus_array {
+        keep 8
+        sort: insertion;
+    }
+}
+
+fn main() {}

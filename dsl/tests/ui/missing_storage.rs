@@ -1,0 +1,5 @@
+fragbuf_dsl::fragment_buffer! {
+    buffer Glass { keep 8; }
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+fragbuf_dsl::fragment_buffer! {
+    buffer Glass from kplus_array {
+        fragment { color: rgb8, depth: f32 }
+        uniform { view: mat4 }
+        keep 4 least |f| f.depth - f.color.w;
+    }
+}
+
+// What could be emitted is there.
+fn main() {
+    let _ = glass::Fragment { depth: 0.5, ..Default::default() };
+}
