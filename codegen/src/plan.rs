@@ -111,7 +111,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         requires,
         soundness: selection.soundness(),
         hazards: rows()
-            .flat_map(|row| row.hazards.iter().copied())
+            .flat_map(|row| row.hazards.iter().cloned())
             .filter(|hazard| hazard.unless.is_none_or(|fact| !offers.contains(&fact)))
             .collect(),
     })
@@ -211,12 +211,12 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
     let mut constants = vec![("CAPACITY".to_owned(), bound.value("capacity").unwrap_or(0) as u32)];
     for selected in &selection.rows {
         for parameter in &selected.row.parameters {
-            let set = selected.options.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
+            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
             let value = match set {
                 Some(value) => value,
                 None => parameter.default.evaluate(&|symbol| bound.value(symbol))? as u32,
             };
-            constants.push((parameter.constant.to_owned(), value));
+            constants.push((parameter.constant.to_string(), value));
         }
     }
     Ok(constants)

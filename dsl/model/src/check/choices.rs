@@ -139,7 +139,7 @@ fn unsaid(
         .filter_map(|chosen| chosen.alternatives.first())
         .flat_map(|selected| &selected.row.defaults)
         .find(|(name, _)| *name == axis.key)
-        .map(|(_, value)| *value);
+        .map(|(_, value)| value.as_ref());
     let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suited).or(axis.default);
     let origin = draft.preset.as_ref().map_or(&draft.name.origin, |preset| &preset.origin);
     let Some(row) = value.and_then(|value| registry.row(axis.key, value)) else {
@@ -192,7 +192,7 @@ fn option(
     diagnostics: &mut Diagnostics,
 ) -> Option<(String, u32)> {
     let Some(parameter) = row.parameters.iter().find(|parameter| parameter.name == name.value) else {
-        let known: Vec<&str> = row.parameters.iter().map(|parameter| parameter.name).collect();
+        let known: Vec<&str> = row.parameters.iter().map(|parameter| &*parameter.name).collect();
         let hint = if known.is_empty() {
             format!("`{}` has no options: drop the braces", row.key)
         } else {
