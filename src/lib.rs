@@ -20,9 +20,11 @@
 //! From there [`generate`] makes files for every target, and [`manifest`] says how an engine runs them.
 //!
 //! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
-//! into a variant, and [`report`], which draws diagnostics with their source lines.
+//! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
+//! source lines.
 
 pub mod load;
+pub mod own;
 pub mod report;
 
 pub use fragbuf_backends::{

@@ -15,6 +15,7 @@ mod fuzz;
 mod instances;
 mod names;
 mod oracle;
+mod own;
 mod product;
 mod render;
 mod snapshots;

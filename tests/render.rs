@@ -177,6 +177,37 @@ fn all_fragments_are_within_a_255th_of_the_oracle() {
     }
 }
 
+/// A storage of the user's own, with as much room as any pixel needs: the picture is everybody's.
+#[test]
+fn a_storage_of_the_users_own_is_within_a_255th_of_the_oracle() {
+    for (seed, (k, count)) in (1..).zip([(8, 5), (40, 40), (60, 60)]) {
+        check("examples/own_storage/first_k.fragbuf", Some(k), count, seed, [0.0, 0.3, 0.0]);
+    }
+}
+
+/// Beyond its room it keeps what came first: a software driver runs the fragments of a pixel in the order of drawing.
+#[test]
+fn a_storage_of_the_users_own_loses_what_its_file_says() {
+    let folder = folder("own-first");
+    let mut quads = quads(5, 11);
+    for quad in &mut quads {
+        (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE);
+    }
+    let model = write(&folder, &quads);
+    let out = folder.join("o.png");
+    let first_k = "examples/own_storage/first_k.fragbuf";
+    let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", "32x32", "--device", "cpu", "--json"];
+    let what = ["render", first_k, "--set", "k=3", "--background", "0,0,0,1", "--scene", model.to_str().unwrap()];
+    let output = fragbuf(&[&what, &common[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(figures["lost"]["displaced"], 2 * SIZE * SIZE, "{figures}");
+    let expected = oracle(&quads[..3], None, 0, 0, [0.0; 3]);
+    for (seen, expected) in read(&out).2[0].iter().zip(expected) {
+        assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{seen}, and not {}", 255.0 * expected);
+    }
+}
+
 #[test]
 fn more_layers_than_there_was_room_for_are_not_lost() {
     // More than eight per pixel, for which room is made, and more than 64, which a resolve pass holds.

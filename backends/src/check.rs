@@ -73,15 +73,15 @@ fn refused(pass: &PassText, location: Option<SourceLocation>, message: &str, des
 /// A mistake in a file of the user's own. The same line of several passes is one mistake, so the pass is not named.
 fn refused_own(pass: &PassText, location: Option<SourceLocation>, message: &str, line: &Origin) -> Diagnostics {
     let origin = location.and_then(|location| narrowed(pass, location, line)).unwrap_or_else(|| line.clone());
-    let hint =
-        "naga reads this file together with the templates around it; `show --dump wgsl` prints such a text whole";
+    let hint = "in scope are the file's own names, the contracts' functions, and the accessors of the row's buffers: \
+                `x_load`, `x_store` where a pass writes, `x_atomic_…` where it says `x atomic`";
     Diagnostic::new(codes::REFUSED, &origin, message, hint).into()
 }
 
 /// naga's place inside a line of the user's. `None` where renaming has changed the line's length.
 fn narrowed(pass: &PassText, location: SourceLocation, line: &Origin) -> Option<Origin> {
     let text = pass.text.lines().nth(location.line_number.checked_sub(1)? as usize)?;
-    let indent = text.len() - text.trim_start().len();
+    let indent = text.chars().count() - text.trim_start().chars().count();
     let is_same = indent as u32 + 1 == line.column && text.trim().chars().count() == line.length as usize;
     let before = text.get(..location.line_position.checked_sub(1)? as usize)?.chars().count() as u32;
     let most = (line.column + line.length).checked_sub(before + 1)?;

@@ -18,7 +18,7 @@ mod program;
 
 pub use contract::{CONTRACTS, Contract, verify};
 pub use layout::{Key, Layout, Word};
-pub use own::{Places, adopt};
+pub use own::adopt;
 pub use plan::{Bound, FIRST_BINDING, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
 

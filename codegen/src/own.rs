@@ -5,28 +5,16 @@
 //! Which functions are needed follows from the rows that call them; nothing here names one.
 
 use fragbuf_model::codes::{CONTRACT, REFUSED, ROW, UNKNOWN_AXIS, UNKNOWN_VALUE};
-use fragbuf_model::{Diagnostic, Diagnostics, Origin, is_target_fact, mangled};
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, is_target_fact, mangled};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Kind, Pass, Row, State, Step};
 
 use crate::link::{Head, Item, heads, items, shape};
 use crate::{CONTRACTS, Contract};
 
-/// Where the lines of a row stand.
-#[derive(Clone, Debug)]
-pub struct Places {
-    /// The line that names the axis.
-    pub row: Origin,
-    /// The line of each buffer, in order.
-    pub resources: Vec<Origin>,
-    /// The line of each step, in order.
-    pub steps: Vec<Origin>,
-    /// The line of each default, in order.
-    pub defaults: Vec<Origin>,
-}
-
 /// Makes the row of a user's file one of the registry's. Every mistake comes at once.
-pub fn adopt(mut row: Row, places: &Places, registry: &Registry) -> Result<Row, Diagnostics> {
+pub fn adopt(own: OwnRow, registry: &Registry) -> Result<Row, Diagnostics> {
+    let OwnRow { mut row, ref places } = own;
     let mut faults = Diagnostics::new();
     steps(&mut row, places, registry, &mut faults);
     resources(&row, places, registry, &mut faults);
@@ -59,7 +47,7 @@ impl File<'_> {
     /// A whole line, from 1.
     fn line(&self, number: usize) -> Origin {
         let text = self.text.lines().nth(number.saturating_sub(1)).unwrap_or("");
-        let indent = text.len() - text.trim_start().len();
+        let indent = text.chars().count() - text.trim_start().chars().count();
         Origin::new(self.name.clone(), number as u32, indent as u32 + 1).with_length(text.trim().chars().count() as u32)
     }
 
@@ -73,30 +61,30 @@ impl File<'_> {
 }
 
 /// Passes take their kind and state from a pass of the registry with the same skeleton.
-fn steps(row: &mut Row, places: &Places, registry: &Registry, faults: &mut Diagnostics) {
-    let mut others = registry.rows_of(&row.axis).peekable();
-    if row.steps.is_empty() && others.peek().is_some() && others.all(|other| !other.steps.is_empty()) {
-        let known = known_skeletons(registry).join(", ");
-        let hint = format!("add a line such as `//: pass store: entries plain`; the passes are {known}");
-        faults.push(Diagnostic::new(
-            ROW,
-            &places.row,
-            format!("a {} needs passes, and the row has none", row.axis),
-            hint,
-        ));
-    }
+fn steps(row: &mut Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
+    let (mut unknown, axis) = (false, row.axis.clone());
     for (step, place) in row.steps.iter_mut().zip(&places.steps) {
         let Step::Pass(pass) = step else { continue };
-        match shape_of(&pass.skeleton, registry) {
-            Some((kind, state)) => (pass.kind, pass.state) = (kind, state),
-            None => faults.push(Diagnostic::new(
-                UNKNOWN_VALUE,
-                place,
-                format!("there is no pass `{}`", pass.skeleton),
-                format!("the passes are {}", known_skeletons(registry).join(", ")),
-            )),
+        if let Some((kind, state)) = shape_of(&pass.skeleton, registry) {
+            (pass.kind, pass.state) = (kind, state);
+            continue;
         }
+        unknown = true;
+        let hint = format!("the passes are {}", known_skeletons(registry).join(", "));
+        let message = format!("there is no pass `{}`", pass.skeleton);
+        faults.push(Diagnostic::new(UNKNOWN_VALUE, place, message, hint));
     }
+    let mut others = registry.rows_of(&axis).peekable();
+    let is_start = others.peek().is_some() && others.all(draws);
+    if is_start && !unknown && !draws(row) {
+        let message = format!("no pass of the row draws the scene, and a {axis} needs one");
+        faults.push(Diagnostic::new(ROW, &places.row, message, "add a line such as `//: pass store: entries plain`"));
+    }
+}
+
+/// Whether a pass of the row draws the scene.
+fn draws(row: &Row) -> bool {
+    row.steps.iter().any(|step| matches!(step, Step::Pass(pass) if pass.kind == Kind::Geometry))
 }
 
 fn shape_of(skeleton: &str, registry: &Registry) -> Option<(Kind, State)> {
@@ -120,7 +108,7 @@ fn passes(registry: &Registry) -> impl Iterator<Item = &Pass> {
     })
 }
 
-fn resources(row: &Row, places: &Places, registry: &Registry, faults: &mut Diagnostics) {
+fn resources(row: &Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
     for (resource, place) in row.resources.iter().zip(&places.resources) {
         let name = &resource.name;
         let owner = registry
@@ -136,7 +124,7 @@ fn resources(row: &Row, places: &Places, registry: &Registry, faults: &mut Diagn
     }
 }
 
-fn defaults(row: &Row, places: &Places, registry: &Registry, faults: &mut Diagnostics) {
+fn defaults(row: &Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
     for ((axis, value), place) in row.defaults.iter().zip(&places.defaults) {
         let values: Vec<&str> = registry.rows_of(axis).map(|row| row.key.as_str()).collect();
         if registry.axis(axis).is_none_or(|axis| !axis.chosen) {
@@ -172,7 +160,7 @@ fn declarations(items: &[Item<'_>], file: &File<'_>, faults: &mut Diagnostics) {
 }
 
 /// Contract functions have their heads, and those that somebody calls are there.
-fn functions(row: &Row, file: &File<'_>, places: &Places, registry: &Registry, faults: &mut Diagnostics) {
+fn functions(row: &Row, file: &File<'_>, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
     let heads = heads(file.text);
     for Head { name, signature, at } in &heads {
         let Some(contract) = CONTRACTS.iter().find(|contract| contract.name == *name) else { continue };
@@ -198,7 +186,7 @@ fn functions(row: &Row, file: &File<'_>, places: &Places, registry: &Registry, f
 
 /// The functions that a row must have, each with a caller and the line that brings the caller in: skeletons call from the
 /// row's passes, rows of other axes where everything that they require is offered here.
-fn needed(row: &Row, places: &Places, registry: &Registry) -> Vec<(&'static Contract, String, Origin)> {
+fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static Contract, String, Origin)> {
     let mut needed: Vec<(&'static Contract, String, Origin)> = Vec::new();
     for caller in registry.rows().iter().filter(|caller| caller.axis != row.axis) {
         let Some(template) = &caller.template else { continue };
@@ -224,7 +212,7 @@ fn needed(row: &Row, places: &Places, registry: &Registry) -> Vec<(&'static Cont
 }
 
 /// The line of the pass with this skeleton; the row's own where the row has no passes and serves everybody's.
-fn pass_line(row: &Row, skeleton: &str, places: &Places) -> Option<Origin> {
+fn pass_line(row: &Row, skeleton: &str, places: &RowPlaces) -> Option<Origin> {
     if row.steps.is_empty() {
         return Some(places.row.clone());
     }

@@ -41,7 +41,7 @@ pub(crate) struct Painted {
 /// Draws the scene.
 pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress) -> Result<Painted, Failure> {
     let registry = Registry::builtin();
-    let input = Input::read(wish.description, &registry)?;
+    let mut input = Input::read(wish.description, &registry)?;
     let unless_said: &[(&str, &str)] = if wish.count_all { &[EVERYTHING] } else { &[] };
     let (mut set, mut frames) = (wish.set.to_vec(), 0);
     let (mut said, mut room) = (None, None);

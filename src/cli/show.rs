@@ -33,7 +33,7 @@ impl Show {
         if stage == "spirv" {
             return Err(Failure::Usage("spirv is no text: `generate --target spirv` writes it".to_owned()));
         }
-        let input = Input::read(&self.description, &registry)?;
+        let mut input = Input::read(&self.description, &registry)?;
         let variant = input.variant(&self.set, &registry)?;
         let targets = if one.is_empty() { &all } else { &one };
         let request = Request { targets, form: Form::Program, prefix: "", group: 0 };

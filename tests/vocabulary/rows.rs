@@ -41,7 +41,7 @@ fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static 
 }
 
 fn template_of(storage: &str) -> Option<fragbuf_templates::vocabulary::Template> {
-    Registry::builtin().row("storage", storage).and_then(|row| row.template)
+    Registry::builtin().row("storage", storage).and_then(|row| row.template.clone())
 }
 
 fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {

@@ -101,7 +101,7 @@ impl From<String> for Fault {
 fn own_lines(text: &str, file: &str) -> Vec<LineOrigin> {
     let file: Arc<str> = file.into();
     let place = |(line, text): (u32, &str)| {
-        let indent = text.len() - text.trim_start().len();
+        let indent = text.chars().count() - text.trim_start().chars().count();
         let length = text.trim().chars().count() as u32;
         LineOrigin::Own(Origin::new(file.clone(), line, indent as u32 + 1).with_length(length))
     };

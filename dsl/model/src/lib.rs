@@ -8,6 +8,7 @@ mod diagnostic;
 mod draft;
 mod names;
 mod origin;
+mod own;
 mod set;
 mod variant;
 
@@ -19,4 +20,5 @@ pub use draft::{
 };
 pub use names::mangled;
 pub use origin::{Origin, Spanned};
+pub use own::{OwnRow, RowPlaces, written};
 pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant, is_target_fact};

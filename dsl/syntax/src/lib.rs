@@ -7,6 +7,8 @@
 //! text ─► tokens ─► grammar ─► closures (syn) ─► check: typed tree ─► lower: WGSL
 //! ```
 //!
+//! [`row()`] reads the other thing that users write: the row in the head of a WGSL file of their own.
+//!
 //! Nothing here knows a technique by name, looks anything up in the registry, or knows naga or wgpu.
 //! Any text comes back as diagnostics: nothing here panics, and nesting is bounded.
 
@@ -22,9 +24,12 @@ mod near;
 mod nesting;
 mod reads;
 mod report;
+mod row;
 mod text;
 mod tree;
 mod types;
+
+pub use row::row;
 
 use fragbuf_model::{Diagnostics, Draft, Origin};
 use proc_macro2::{Span, TokenStream};

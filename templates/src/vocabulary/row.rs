@@ -115,6 +115,23 @@ pub enum Order {
     Unordered,
 }
 
+impl Soundness {
+    /// Every kind, the strongest first.
+    pub const ALL: [Soundness; 4] = [Soundness::Atomics, Soundness::Interlock, Soundness::Lock, Soundness::Racy];
+
+    /// The word of plans and of rows in files.
+    pub fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+}
+
+impl Template {
+    /// A file of fragbuf's own, or one that code has made.
+    pub fn new(path: impl Into<Text>, text: impl Into<Text>) -> Self {
+        Template { path: path.into(), text: text.into(), own: None }
+    }
+}
+
 impl Row {
     /// A row with nothing but its names.
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {

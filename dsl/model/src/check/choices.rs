@@ -170,6 +170,15 @@ fn selected(
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
     let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
+        if let Some(path) = alternative.file() {
+            diagnostics.push(Diagnostic::new(
+                codes::MISSING_FILE,
+                &value.origin,
+                format!("nothing has read `{path}`"),
+                "files are read where a description is loaded from a file; add its row to the registry before the check",
+            ));
+            return None;
+        }
         let known: Vec<&str> =
             registry.rows_of(&axis.value).map(|row| row.key.as_str()).filter(|key| *key != Registry::CLOSURE).collect();
         diagnostics.push(Diagnostic::new(

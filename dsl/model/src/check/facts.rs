@@ -5,7 +5,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Row};
 
 use crate::variant::{Chosen, is_target_fact};
-use crate::{Diagnostic, Diagnostics, Draft, codes};
+use crate::{Diagnostic, Diagnostics, Draft, codes, written};
 
 /// Checks every combination; `given` is what the payload and the `keep` line offer.
 pub(super) fn check(
@@ -87,7 +87,7 @@ impl Situation<'_> {
         let given: Vec<Fact> = self.given.iter().map(|fact| if *fact == said { other } else { *fact }).collect();
         let also = pick.iter().find(|row| !missing(row, pick, &given).is_empty());
         let also = also.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
-        let storage = format!("`{}: {}`", chosen.axis, pick[index].key);
+        let storage = name(pick[index]);
         let others = self.ways_out(pick).map_or(String::new(), |ways| format!(", or choose {ways}"));
         Diagnostic::new(
             codes::KEEP_MISMATCH,
@@ -104,14 +104,13 @@ impl Situation<'_> {
         let mut diagnostic = Diagnostic::new(
             codes::UNMET,
             &chosen.origin,
-            format!("`{}: {}` requires {}, and nothing here offers it", row.axis, row.key, fact.meaning()),
+            format!("`{}: {}` requires {}, and nothing here offers it", row.axis, written(&row.key), fact.meaning()),
             self.hint(fact, pick),
         );
         for (other, row) in self.choices.iter().zip(pick) {
             let could = self.registry.rows_of(&other.axis).any(|row| row.offers.contains(&fact));
             if could && other.origin != chosen.origin {
-                diagnostic =
-                    diagnostic.label(&other.origin, format!("`{}: {}` does not offer it", other.axis, row.key));
+                diagnostic = diagnostic.label(&other.origin, format!("{} does not offer it", name(row)));
             }
         }
         diagnostic
@@ -145,7 +144,7 @@ impl Situation<'_> {
 }
 
 fn name(row: &Row) -> String {
-    format!("`{}: {}`", row.axis, row.key)
+    format!("`{}: {}`", row.axis, written(&row.key))
 }
 
 fn joined(words: &[String]) -> String {
