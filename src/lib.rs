@@ -21,8 +21,9 @@
 //!
 //! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
 //! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
-//! source lines.
+//! source lines. [`build`] generates inside a `build.rs`.
 
+pub mod build;
 pub mod load;
 pub mod own;
 pub mod report;

@@ -8,6 +8,7 @@
     reason = "a test fails by panicking, and prints what it counted"
 )]
 
+mod build_script;
 mod cases;
 mod command_line;
 mod diagnostics;

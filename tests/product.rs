@@ -51,34 +51,18 @@ fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft
 fn every_combination_generates_or_is_refused_with_a_way_out() {
     let registry = Registry::builtin();
     let combinations = combinations(&registry);
-    let (mut accepted, mut refused) = (0, 0);
-    let mut texts: BTreeSet<Vec<u8>> = BTreeSet::new();
-    let mut covering: Vec<File> = Vec::new();
-    let mut covered: BTreeSet<(usize, Vec<String>)> = BTreeSet::new();
-    for (payload, description) in descriptions().iter().enumerate() {
-        for choices in &combinations {
-            for keep in [KeepCount::AtMost(8), KeepCount::All] {
-                match check(&chosen(description, choices, keep), &registry) {
-                    Err(faults) => {
-                        refused += 1;
-                        assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
-                    }
-                    Ok(variant) => {
-                        accepted += 1;
-                        let generation = generated(&variant);
-                        assert!(!generation.plans.is_empty(), "some target can express whatever is accepted");
-                        let files = generation.files;
-                        if covers_more(payload, choices, &mut covered) {
-                            covering.extend(files.iter().cloned());
-                        }
-                        texts.extend(files.into_iter().map(|file| file.bytes));
-                    }
-                }
-            }
-        }
-    }
+    let descriptions = descriptions();
+    let parts: Vec<Part> = std::thread::scope(|scope| {
+        let (combinations, registry) = (&combinations, &registry);
+        let tried = |description| scope.spawn(move || Part::of(description, combinations, registry));
+        let running: Vec<_> = descriptions.iter().map(tried).collect();
+        running.into_iter().map(|part| part.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    });
+    let accepted: usize = parts.iter().map(|part| part.accepted).sum();
+    let refused: usize = parts.iter().map(|part| part.refused).sum();
+    let texts: BTreeSet<&Vec<u8>> = parts.iter().flat_map(|part| &part.texts).collect();
     assert!(accepted > 100 && refused > accepted, "{accepted} accepted, {refused} refused");
-    let external = validate(covering.iter());
+    let external = validate(parts.iter().flat_map(|part| &part.covering));
     assert!(external > 100);
     println!(
         "product: {} combinations, {accepted} accepted, {refused} refused; {} distinct files through naga and the \
@@ -88,15 +72,52 @@ fn every_combination_generates_or_is_refused_with_a_way_out() {
     );
 }
 
-/// Whether a combination has three values of three axes together (the payload counts as one) that none before had.
-fn covers_more(payload: usize, choices: &[(String, String)], covered: &mut BTreeSet<(usize, Vec<String>)>) -> bool {
+/// What came of one description with every combination of rows.
+#[derive(Default)]
+struct Part {
+    accepted: usize,
+    refused: usize,
+    texts: BTreeSet<Vec<u8>>,
+    covering: Vec<File>,
+}
+
+impl Part {
+    fn of(description: &Draft, combinations: &[Vec<(String, String)>], registry: &Registry) -> Self {
+        let mut part = Part::default();
+        let mut covered: BTreeSet<Vec<String>> = BTreeSet::new();
+        for choices in combinations {
+            for keep in [KeepCount::AtMost(8), KeepCount::All] {
+                match check(&chosen(description, choices, keep), registry) {
+                    Err(faults) => {
+                        part.refused += 1;
+                        assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
+                    }
+                    Ok(variant) => {
+                        part.accepted += 1;
+                        let generation = generated(&variant);
+                        assert!(!generation.plans.is_empty(), "some target can express whatever is accepted");
+                        let files = generation.files;
+                        if covers_more(choices, &mut covered) {
+                            part.covering.extend(files.iter().cloned());
+                        }
+                        part.texts.extend(files.into_iter().map(|file| file.bytes));
+                    }
+                }
+            }
+        }
+        part
+    }
+}
+
+/// Whether a combination has two values of two axes together that none before had with this description: three, with it.
+fn covers_more(choices: &[(String, String)], covered: &mut BTreeSet<Vec<String>>) -> bool {
     let values: Vec<&String> = choices.iter().map(|(_, value)| value).collect();
     let mut more = false;
     for first in 0..values.len() {
         for second in first + 1..values.len() {
             let names =
                 [choices[first].0.clone(), values[first].clone(), choices[second].0.clone(), values[second].clone()];
-            more |= covered.insert((payload, names.to_vec()));
+            more |= covered.insert(names.to_vec());
         }
     }
     more

@@ -1,6 +1,6 @@
 // Shell sort (Shell 1959): insertion sort over ever shorter distances. The gaps are Knuth's (The Art of Computer
-// Programming 3, sec. 5.2.1): 1, 4, 13, 40, 121, 364, 1093, each three times the last and one more. They are computed, not
-// looked up, which needs no table in private memory, and take O(n^1.5) steps.
+// Programming 3, sec. 5.2.1): 1, 4, 13, 40, 121, 364, 1093, each three times the last and one more, for O(n^1.5) steps.
+// They are computed, not looked up: private memory holds no table.
 
 fn layers_shell_sort() {
     var gap = 1u;

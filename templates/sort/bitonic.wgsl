@@ -1,6 +1,7 @@
-// Batcher's bitonic network (1968) for any number of fragments. Every comparison puts the nearer fragment at the lower
-// index, so the indices from the number of fragments up to the next power of two behave like fragments behind all others:
-// they never move, and comparisons with them are left out. Which places are compared depends on the count alone.
+// Batcher's bitonic network (1968) for any number of fragments. Every comparison puts the nearer fragment at the
+// lower index, so the indices from the number of fragments up to the next power of two behave like fragments behind
+// all others: they never move, and comparisons with them are left out. Which places are compared depends on the
+// number alone.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);
