@@ -137,7 +137,7 @@ impl Crate {
                         if path.to_string_lossy().contains("/fragbuf")
                             && path.to_string_lossy().contains("/glass-") =>
                     {
-                        drop(found.insert(path, entry.metadata().unwrap().modified().unwrap()));
+                        let _ = found.insert(path, entry.metadata().unwrap().modified().unwrap());
                     }
                     false => {}
                 }

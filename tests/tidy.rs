@@ -178,6 +178,8 @@ fn the_dsl_builds_without_naga_and_wgpu() {
 fn generating_needs_no_wgpu() {
     let tree = tree(&["--edges", "normal", "-p", "fragbuf", "--no-default-features"]);
     assert!(tree.contains("naga") && !tree.contains("wgpu"), "{tree}");
+    // Snapshots are taken by the caller's own insta.
+    assert!(!tree.contains("insta"), "{tree}");
 }
 
 fn tree(arguments: &[&str]) -> String {

@@ -1,5 +1,6 @@
 //! `fragbuf show`: one description, at any stage.
 
+use fragbuf::snapshot::joined;
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target, tier};
 
 use super::input::Input;
@@ -72,14 +73,7 @@ fn summary(generation: &Generation) -> String {
 
 /// Every text file once, under its path.
 fn files(generation: &Generation) -> String {
-    let mut text = String::new();
-    let mut seen: Vec<&str> = Vec::new();
-    for file in &generation.files {
-        if !seen.contains(&file.path.as_str()) {
-            seen.push(&file.path);
-            text.push_str(&format!("// ==== {}\n{}\n", file.path, String::from_utf8_lossy(&file.bytes)));
-        }
-    }
+    let mut text = joined(generation);
     for (target, refusal) in &generation.refusals {
         text.push_str(&format!("// {}: {refusal}\n", target.name));
     }
