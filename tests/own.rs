@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use fragbuf::load::{Description, load};
 use fragbuf::report::render;
-use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate};
+use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate, target};
 use fragbuf_model::codes;
 
 use crate::validators::validate;
@@ -131,6 +131,14 @@ const BAD: &[Bad] = &[
         "counters: word",
         "own_counters",
     ),
+    bad("//: buffer slots", "//: buffer my-slots: word\n//: buffer slots", "row", "my-slots", "letters"),
+    bad("[slot < k]", "[value < k]", "row", "value <", "slot"),
+    bad("[slot < k]", "[pixel < k]", "row", "pixel < pixels]: entry", "slot"),
+    bad("[slot < k]", "[fn < k]", "row", "fn <", "letters"),
+    bad("//: pass resolve", "//: pass store: slots plain\n//: pass resolve", "duplicate", "store: slots", "as"),
+    bad("//: offers", "//: parameter limit CAPACITY = 3, from 1 to 9\n//: offers", "row", "CAPACITY", "letters"),
+    bad("//: offers", "//: parameter limit LAYERS = 3, from 1 to 9\n//: offers", "contract", "LAYERS", "OWN_LAYERS"),
+    bad("//: offers", "//: parameter limit LIMIT = 3, from 9 to 1\n//: offers", "row", "1\n//: offers", "9"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "row", "//: paper", "the file's head"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "refused", "}\nfn first", "every brace closed"),
     bad("atomic_add(pixel, 1u)", "atomic_add(pixel, 1.5)", "refused", "1.5)", "accessors"),
@@ -211,7 +219,9 @@ fn mistakes_of_the_description_and_of_the_file_come_at_once() {
 /// The file is found beside the description that names it, wherever that lies; the text does not say where.
 #[test]
 fn a_good_file_goes_through_every_target_and_validator() {
-    let folder = with("good", DESCRIPTION, &example("first_k.wgsl"));
+    // Comments and summaries are the user's, in whatever letters.
+    let file = example("first_k.wgsl").replace("//: pass store", "//: paper Große 2026 §3\n//: pass store");
+    let folder = with("good", DESCRIPTION, &file.replace("fragments that asked", "fragments, déjà là, that asked"));
     assert_eq!(faults(&folder).map_err(|(faults, _)| faults.to_string()), Ok(()));
     let texts = ["good", "good/elsewhere"].map(|name| {
         let folder = with(name, DESCRIPTION, &example("first_k.wgsl"));
@@ -222,6 +232,24 @@ fn a_good_file_goes_through_every_target_and_validator() {
     });
     assert!(texts[0] == texts[1]);
     assert!(texts[0].iter().any(|file| String::from_utf8_lossy(&file.bytes).contains("// ---- mine.wgsl\n")));
+}
+
+/// Nobody has tested the user's statements: what naga writes holds them inside their bounds.
+#[test]
+fn programs_with_a_file_are_guarded_at_run_time() {
+    let of = |description: &Description| {
+        let loaded = load(description, &[], &[], &Registry::builtin());
+        let request = Request { targets: &[target("msl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let files = generate(&loaded.variant.unwrap(), &request, &Registry::builtin()).unwrap().files;
+        files.iter().map(|file| String::from_utf8_lossy(&file.bytes).into_owned()).collect::<String>()
+    };
+    let folder = with("guarded", DESCRIPTION, &example("first_k.wgsl"));
+    let guarded = of(&Description::read(&folder.join("own.fragbuf")).unwrap());
+    let trusted = of(&Description::Technique("ab_ll".to_owned()));
+    // An index into a buffer is held below the buffer's size, a loop below 2^32 rounds.
+    for word in ["metal::min(unsigned(", "loop_bound"] {
+        assert!(guarded.contains(word) && !trusted.contains(word), "{word}");
+    }
 }
 
 /// Every axis takes a file: a sort is one without buffers or passes. Its facts count like any other row's.

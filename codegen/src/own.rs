@@ -18,6 +18,7 @@ pub fn adopt(own: OwnRow, registry: &Registry) -> Result<Row, Diagnostics> {
     let mut faults = Diagnostics::new();
     steps(&mut row, places, registry, &mut faults);
     resources(&row, places, registry, &mut faults);
+    parameters(&row, places, registry, &mut faults);
     defaults(&row, places, registry, &mut faults);
     if let Some(template) = &row.template {
         let file = File { text: &template.text, name: &places.row.file };
@@ -121,6 +122,19 @@ fn resources(row: &Row, places: &RowPlaces, registry: &Registry, faults: &mut Di
             None => continue,
         };
         faults.push(Diagnostic::new(CONTRACT, place, taken, format!("choose another name, such as `own_{name}`")));
+    }
+}
+
+/// Constants of the rows of other axes may stand in the same program.
+fn parameters(row: &Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
+    for (index, (parameter, place)) in row.parameters.iter().zip(&places.parameters).enumerate() {
+        let constant = &parameter.constant;
+        let others = registry.rows().iter().filter(|other| other.axis != row.axis).flat_map(|other| &other.parameters);
+        if others.chain(&row.parameters[..index]).any(|other| other.constant == *constant) {
+            let message = format!("another row, or this, has a constant `{constant}` too");
+            let hint = format!("choose another name, such as `OWN_{constant}`");
+            faults.push(Diagnostic::new(CONTRACT, place, message, hint));
+        }
     }
 }
 

@@ -46,4 +46,6 @@ pub struct RowPlaces {
     pub steps: Vec<Origin>,
     /// The value of each default, in order.
     pub defaults: Vec<Origin>,
+    /// The constant of each parameter, in order.
+    pub parameters: Vec<Origin>,
 }

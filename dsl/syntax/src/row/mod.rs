@@ -21,6 +21,7 @@
 //! ```
 
 mod line;
+mod reader;
 mod statements;
 
 use std::sync::Arc;
@@ -55,7 +56,13 @@ pub fn row(text: &str, path: &str, key: &str, file: &str) -> Result<OwnRow, Diag
         text: without_row(text).into(),
         own: Some(file.to_string().into()),
     });
-    let places = RowPlaces { row: first.origin(), resources: Vec::new(), steps: Vec::new(), defaults: Vec::new() };
+    let places = RowPlaces {
+        row: first.origin(),
+        resources: Vec::new(),
+        steps: Vec::new(),
+        defaults: Vec::new(),
+        parameters: Vec::new(),
+    };
     let mut statements = Statements::new(OwnRow { row, places }, faults);
     for (number, text, start) in rest {
         statements.read(Line::new(&file, *number, text, *start));

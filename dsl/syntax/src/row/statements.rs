@@ -1,12 +1,12 @@
 //! What each line of a row says.
 
-use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, OwnRow, Spanned, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Element, Fact, Formula, FormulaError, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource,
-    Soundness, Step, Use,
+    Access, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Use,
 };
 
 use super::line::Line;
+use super::reader::{Read, Reader, Stop};
 use crate::near;
 
 /// The words that begin a line.
@@ -36,10 +36,8 @@ const ELEMENTS: [(&str, Element); 3] =
 /// What an extent may depend on.
 const SYMBOLS: [&str; 6] = ["width", "height", "pixels", "k", "fragments", "kept"];
 
-/// A mistake was reported; the rest of the line is not worth reading.
-struct Stop;
-
-type Read<T> = Result<T, Stop>;
+/// Names inside generated accessors, beside which an index stands.
+const ACCESSOR_NAMES: [&str; 5] = ["at", "key", "value", "entry", "expected"];
 
 /// The axis that a row begins with.
 pub(super) fn axis(line: &mut Line<'_>, faults: &mut Diagnostics) -> Option<String> {
@@ -61,57 +59,57 @@ pub(super) struct Statements {
     declared: Vec<String>,
     /// The buffers that lines refer to.
     used: Vec<Spanned<String>>,
-    faults: Diagnostics,
+    reader: Reader,
 }
 
 impl Statements {
     pub(super) fn new(own: OwnRow, faults: Diagnostics) -> Self {
-        Statements { own, declared: Vec::new(), used: Vec::new(), faults }
+        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults } }
     }
 
     /// The whole row, or every mistake.
     pub(super) fn finish(mut self) -> Result<OwnRow, Diagnostics> {
-        let names = &self.declared;
-        for used in self.used.iter().filter(|used| !names.contains(&used.value)) {
+        for used in self.used.iter().filter(|used| !self.declared.contains(&used.value)) {
             let message = format!("the row declares no buffer `{}`", used.value);
-            let hint = match names.as_slice() {
+            let hint = match self.declared.as_slice() {
                 [] => format!("declare it: `//: buffer {}[pixel < pixels]: word`", used.value),
                 names => near::hint(&used.value, names),
             };
-            self.faults.push(Diagnostic::new(codes::UNKNOWN_RESOURCE, &used.origin, message, hint));
+            self.reader.fault(codes::UNKNOWN_RESOURCE, &used.origin, message, hint);
         }
-        self.faults.gate(self.own)
+        self.reader.faults.gate(self.own)
     }
 
     /// Reads one line.
     pub(super) fn read(&mut self, mut line: Line<'_>) {
         if self.statement(&mut line).is_ok() && !line.is_done() {
-            let (message, origin) =
-                (format!("{} stands behind the end of the statement", line.describe()), line.here());
-            self.fault(codes::ROW, &origin, message, "leave it out; a new statement begins on a line of its own");
+            let message = format!("{} stands behind the end of the statement", line.describe());
+            let hint = "leave it out; a new statement begins on a line of its own";
+            self.reader.fault(codes::ROW, &line.here(), message, hint);
         }
     }
 
     fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let word = self.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
+        let word = self.reader.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
+        let row = &mut self.own.row;
         match word.value.as_str() {
-            "paper" => self.own.row.paper = line.until(&[]).value.into(),
+            "paper" => row.paper = line.until(&[]).value.into(),
+            "offers" => row.offers = self.reader.facts(line)?,
+            "requires" => row.requires = self.reader.facts(line)?,
+            "uses" => self.own.row.uses = self.uses(line)?,
             "buffer" => return self.buffer(line),
             "pass" => return self.pass(line),
             "host" => return self.host(line),
-            "uses" => self.own.row.uses = self.uses(line)?,
-            "offers" => self.own.row.offers = self.facts(line)?,
-            "requires" => self.own.row.requires = self.facts(line)?,
             "implies" => return self.implies(line),
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
             "hazard" => return self.hazard(line),
             "soundness" => return self.soundness(line),
             // The first line, when the row has no axis: that has been said.
-            _ if self.own.row.axis.is_empty() && line.origin() == self.own.places.row => return Err(Stop),
+            _ if row.axis.is_empty() && line.origin() == self.own.places.row => return Err(Stop),
             unknown => {
                 let message = format!("no line of a row begins with `{unknown}`");
-                return self.stop(codes::ROW, &word.origin, message, near::hint(unknown, &WORDS));
+                return self.reader.stop(codes::ROW, &word.origin, message, near::hint(unknown, &WORDS));
             }
         }
         Ok(())
@@ -119,30 +117,25 @@ impl Statements {
 
     /// `buffer name[index < length]…: element, clear 0, host, persistent -- summary`
     fn buffer(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let name = self.word(line, "the buffer's name", "`buffer heads[pixel < pixels]: word`")?;
+        const SHAPE: &str = "`buffer heads[pixel < pixels]: word`";
+        let name = self.reader.name(line, "a buffer's name", SHAPE)?;
         self.declared.push(name.value.clone());
-        let summary = line.summary.unwrap_or("of the user's own").to_owned();
-        let mut resource = Resource::new(&name.value, Element::Word, summary);
+        let mut resource = Resource::new(&name.value, Element::Word, summary(line));
         while line.sign('[') {
-            let index = self.word(line, "an index", "`[pixel < pixels]`")?;
-            self.sign(line, '<', "`[pixel < pixels]`")?;
-            let length = line.until(&[']']);
-            self.sign(line, ']', "`[pixel < pixels]`")?;
-            self.formula(&length, &SYMBOLS)?;
-            resource = resource.by(&index.value, length.value);
+            resource = self.extent(line, resource)?;
         }
-        self.sign(line, ':', "`buffer heads[pixel < pixels]: word`")?;
-        let element = self.word(line, "an element", "`word`, `entry` or `beside`")?;
-        resource.element = self.one_of(&element, &ELEMENTS, "no element")?;
+        self.reader.sign(line, ':', SHAPE)?;
+        let element = self.reader.word(line, "an element", "`word`, `entry` or `beside`")?;
+        resource.element = self.reader.one_of(&element, &ELEMENTS, "no element")?;
         while line.sign(',') {
-            let word = self.word(line, "an attribute", "`clear 0`, `host` or `persistent`")?;
+            let word = self.reader.word(line, "an attribute", "`clear 0`, `host` or `persistent`")?;
             match word.value.as_str() {
-                "clear" => resource.init = Init::Clear(self.number(line)?),
+                "clear" => resource.init = Init::Clear(self.reader.number(line)?.value),
                 "host" => resource.init = Init::Host,
                 "persistent" => resource.life = Life::Persistent,
                 other => {
                     let hint = near::hint(other, &["clear", "host", "persistent"]);
-                    return self.stop(codes::ROW, &word.origin, format!("a buffer has no `{other}`"), hint);
+                    return self.reader.stop(codes::ROW, &word.origin, format!("a buffer has no `{other}`"), hint);
                 }
             }
         }
@@ -150,7 +143,7 @@ impl Statements {
         if let Some(first) = known {
             let message = format!("the buffer `{}` is declared twice", name.value);
             let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
-            self.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
+            self.reader.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
             return Err(Stop);
         }
         self.own.row.resources.push(resource);
@@ -158,13 +151,40 @@ impl Statements {
         Ok(())
     }
 
+    /// `index < length]`
+    fn extent(&mut self, line: &mut Line<'_>, resource: Resource) -> Read<Resource> {
+        const SHAPE: &str = "`[pixel < pixels]`";
+        let index = self.reader.name(line, "an index", SHAPE)?;
+        let is_taken = resource.extents.iter().any(|extent| extent.name == index.value);
+        if is_taken || ACCESSOR_NAMES.contains(&index.value.as_str()) {
+            let message = format!("`{}` is a name beside this one in the buffer's accessors", index.value);
+            return self.reader.stop(codes::ROW, &index.origin, message, "choose another, such as `slot` or `pixel`");
+        }
+        self.reader.sign(line, '<', SHAPE)?;
+        let length = line.until(&[']']);
+        self.reader.sign(line, ']', SHAPE)?;
+        self.reader.formula(&length, &SYMBOLS)?;
+        Ok(resource.by(&index.value, length.value))
+    }
+
     /// `pass skeleton as anchor: buffer access, …`
     fn pass(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`pass store: entries plain`";
-        let skeleton = self.word(line, "the pass", SHAPE)?;
-        let anchor = if line.exactly("as") { self.word(line, "the pass's own name", SHAPE)? } else { skeleton.clone() };
-        self.sign(line, ':', SHAPE)?;
+        let skeleton = self.reader.word(line, "the pass", SHAPE)?;
+        let anchor = match line.exactly("as") {
+            true => self.reader.name(line, "the name of a pass", "`pass store as again: entries plain`")?,
+            false => skeleton.clone(),
+        };
+        self.reader.sign(line, ':', SHAPE)?;
         let uses = self.uses(line)?;
+        let is_anchor = |step: &Step| matches!(step, Step::Pass(pass) if pass.anchor == anchor.value);
+        if let Some(first) = self.own.row.steps.iter().position(is_anchor) {
+            let message = format!("two passes are called `{}`", anchor.value);
+            let hint = format!("name one of them: `pass {} as another: …`", skeleton.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &anchor.origin, message, hint);
+            self.reader.faults.push(diagnostic.label(&self.own.places.steps[first], "the first is here"));
+            return Err(Stop);
+        }
         self.own.row.steps.push(Step::Pass(Pass { uses, ..Pass::geometry(&anchor.value, &skeleton.value) }));
         self.own.places.steps.push(skeleton.origin);
         Ok(())
@@ -173,15 +193,18 @@ impl Statements {
     /// `host function: reads offsets[pixels]; sets fragments`
     fn host(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`host allocate: reads offsets[pixels]; sets fragments`";
-        let function = self.word(line, "the host's function", SHAPE)?;
-        self.sign(line, ':', SHAPE)?;
+        let function = self.reader.word(line, "the host's function", SHAPE)?;
+        self.reader.sign(line, ':', SHAPE)?;
         let (mut reads, mut sets) = (Vec::new(), Vec::new());
         loop {
-            let verb = self.word(line, "`reads` or `sets`", SHAPE)?;
+            let verb = self.reader.word(line, "`reads` or `sets`", SHAPE)?;
             let list = match verb.value.as_str() {
                 "reads" => &mut reads,
                 "sets" => &mut sets,
-                other => return self.stop(codes::ROW, &verb.origin, format!("the host cannot `{other}`"), SHAPE),
+                other => {
+                    let message = format!("the host cannot `{other}`");
+                    return self.reader.stop(codes::ROW, &verb.origin, message, SHAPE);
+                }
             };
             loop {
                 list.push(line.until(&[',', ';']));
@@ -209,9 +232,9 @@ impl Statements {
     fn uses(&mut self, line: &mut Line<'_>) -> Read<Vec<Use>> {
         let mut uses = Vec::new();
         while !line.is_done() {
-            let name = self.word(line, "a buffer", "`entries plain, counts atomic`")?;
-            let access = self.word(line, "how it is touched", "`read`, `plain`, `atomic` or `coherent`")?;
-            let mut usage = Use::new(&name.value, self.one_of(&access, &ACCESSES, "no way to touch a buffer")?);
+            let name = self.reader.word(line, "a buffer", "`entries plain, counts atomic`")?;
+            let access = self.reader.word(line, "how it is touched", "`read`, `plain`, `atomic` or `coherent`")?;
+            let mut usage = Use::new(&name.value, self.reader.one_of(&access, &ACCESSES, "no way to touch a buffer")?);
             if line.exactly("rechecked") {
                 usage.loads = Loads::Rechecked;
             }
@@ -224,31 +247,13 @@ impl Statements {
         Ok(uses)
     }
 
-    fn facts(&mut self, line: &mut Line<'_>) -> Read<Vec<Fact>> {
-        let mut facts = vec![self.fact(line)?];
-        while line.sign(',') {
-            facts.push(self.fact(line)?);
-        }
-        Ok(facts)
-    }
-
-    fn fact(&mut self, line: &mut Line<'_>) -> Read<Fact> {
-        let word = self.word(line, "a fact", "`keeps-best`, `keeps-all`, `critical`")?;
-        if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
-            return Ok(*fact);
-        }
-        let known: Vec<String> = Fact::ALL.iter().map(|fact| fact.word()).collect();
-        let message = format!("there is no fact `{}`", word.value);
-        self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
-    }
-
     /// `implies fact when fact`
     fn implies(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let then = self.fact(line)?;
+        let then = self.reader.fact(line)?;
         if !line.exactly("when") {
-            return self.unexpected(line, "`when`", "`implies sorted when depth-key`");
+            return self.reader.unexpected(line, "`when`", "`implies sorted when depth-key`");
         }
-        let given = self.fact(line)?;
+        let given = self.reader.fact(line)?;
         self.own.row.implies.push((given, then));
         Ok(())
     }
@@ -256,8 +261,8 @@ impl Statements {
     /// `suits axis value, …`
     fn suits(&mut self, line: &mut Line<'_>) -> Read<()> {
         loop {
-            let axis = self.word(line, "an axis", "`suits cull early`")?;
-            let value = self.word(line, "a value", "`suits cull early`")?;
+            let axis = self.reader.word(line, "an axis", "`suits cull early`")?;
+            let value = self.reader.word(line, "a value", "`suits cull early`")?;
             self.own.row.defaults.push((axis.value.into(), value.value.into()));
             self.own.places.defaults.push(value.origin);
             if !line.sign(',') {
@@ -269,99 +274,53 @@ impl Statements {
     /// `parameter name CONSTANT = formula, from least to greatest -- summary`
     fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
-        let name = self.word(line, "the option's name", SHAPE)?;
-        let constant = self.word(line, "the generated constant", SHAPE)?;
-        self.sign(line, '=', SHAPE)?;
+        let name = self.reader.word(line, "the option's name", SHAPE)?;
+        let constant = self.reader.name(line, "a generated constant", SHAPE)?;
+        self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
-        self.formula(&default, &["capacity", "entry_words", "beside_words"])?;
+        self.reader.formula(&default, &["capacity", "entry_words", "beside_words"])?;
         if !line.sign(',') || !line.exactly("from") {
-            return self.unexpected(line, "`, from`", SHAPE);
+            return self.reader.unexpected(line, "`, from`", SHAPE);
         }
-        let least = self.number(line)?;
+        let least = self.reader.number(line)?;
         if !line.exactly("to") {
-            return self.unexpected(line, "`to`", SHAPE);
+            return self.reader.unexpected(line, "`to`", SHAPE);
         }
-        let greatest = self.number(line)?;
+        let greatest = self.reader.number(line)?;
+        if greatest.value < least.value {
+            let message = format!("nothing lies between {} and {}", least.value, greatest.value);
+            let hint = format!("write `from {} to {}`", greatest.value, least.value);
+            return self.reader.stop(codes::ROW, &greatest.origin, message, hint);
+        }
         self.own.row.parameters.push(Parameter {
             name: name.value.into(),
             constant: constant.value.into(),
             default: default.value.into(),
-            range: (least, greatest),
-            summary: line.summary.unwrap_or("of the user's own").to_owned().into(),
+            range: (least.value, greatest.value),
+            summary: summary(line).into(),
         });
+        self.own.places.parameters.push(constant.origin);
         Ok(())
     }
 
     /// `hazard name unless fact -- what`
     fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let name = self.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
-        let unless = if line.exactly("unless") { Some(self.fact(line)?) } else { None };
-        let what = line.summary.unwrap_or("").to_owned().into();
-        self.own.row.hazards.push(Hazard { name: name.value.into(), what, unless });
+        let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
+        let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
+        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), unless });
         Ok(())
     }
 
     fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let word = self.word(line, "what it rests on", "`soundness atomics`")?;
+        let word = self.reader.word(line, "what it rests on", "`soundness atomics`")?;
         let known = Soundness::ALL.map(|soundness| (soundness.word(), soundness));
         let known: Vec<(&str, Soundness)> = known.iter().map(|(word, soundness)| (word.as_str(), *soundness)).collect();
-        self.own.row.soundness = self.one_of(&word, &known, "no soundness")?;
+        self.own.row.soundness = self.reader.one_of(&word, &known, "no soundness")?;
         Ok(())
     }
+}
 
-    fn one_of<T: Copy>(&mut self, word: &Spanned<String>, table: &[(&str, T)], what: &str) -> Read<T> {
-        if let Some((_, value)) = table.iter().find(|(name, _)| *name == word.value) {
-            return Ok(*value);
-        }
-        let known: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-        self.stop(codes::ROW, &word.origin, format!("`{}` is {what}", word.value), near::hint(&word.value, &known))
-    }
-
-    /// Reports a formula that cannot be read, or that depends on what it may not.
-    fn formula(&mut self, formula: &Spanned<String>, symbols: &[&str]) -> Read<()> {
-        let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
-        let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
-            // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
-            Ok(_) | Err(FormulaError::Overflow(_)) => return Ok(()),
-            Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
-            Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
-        };
-        let hint = format!("the formula may use {}, `+ - * /`, min, max, ceil_div and pow2", symbols.join(", "));
-        self.stop(codes::ROW, &formula.origin, problem, hint)
-    }
-
-    fn number(&mut self, line: &mut Line<'_>) -> Read<u32> {
-        let word = self.word(line, "a number", "digits only, such as `8`")?;
-        let Ok(number) = word.value.parse() else {
-            let message = format!("`{}` is no whole number of 32 bits", word.value);
-            return self.stop(codes::ROW, &word.origin, message, "write digits only, such as `8`");
-        };
-        Ok(number)
-    }
-
-    fn word(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
-        match line.word() {
-            Some(word) => Ok(word),
-            None => self.unexpected(line, what, shape),
-        }
-    }
-
-    fn sign(&mut self, line: &mut Line<'_>, sign: char, shape: &str) -> Read<()> {
-        if line.sign(sign) { Ok(()) } else { self.unexpected(line, &format!("`{sign}`"), shape) }
-    }
-
-    fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {
-        let message = format!("{what} belongs here, not {}", line.describe());
-        let origin = line.here();
-        self.stop(codes::ROW, &origin, message, format!("write {shape}"))
-    }
-
-    fn stop<T>(&mut self, code: Code, origin: &Origin, message: String, hint: impl Into<String>) -> Read<T> {
-        self.fault(code, origin, message, hint);
-        Err(Stop)
-    }
-
-    fn fault(&mut self, code: Code, origin: &Origin, message: String, hint: impl Into<String>) {
-        self.faults.push(Diagnostic::new(code, origin, message, hint));
-    }
+/// What stands behind ` -- `.
+fn summary(line: &Line<'_>) -> String {
+    line.summary.unwrap_or("of the user's own").to_owned()
 }
