@@ -234,6 +234,16 @@ fn a_good_file_goes_through_every_target_and_validator() {
     assert!(texts[0].iter().any(|file| String::from_utf8_lossy(&file.bytes).contains("// ---- mine.wgsl\n")));
 }
 
+/// Memory that is measured in k needs a k.
+#[test]
+fn a_storage_of_k_slots_does_not_keep_all() {
+    let folder = with("keep-all", &DESCRIPTION.replace("keep 8", "keep all"), &example("first_k.wgsl"));
+    let (faults, _) = faults(&folder).unwrap_err();
+    let found: Vec<_> = faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+    assert_eq!(found, [("keep-mismatch", 3, 10)], "{faults}");
+    assert!(faults.to_string().contains("write `keep 8;`"), "{faults}");
+}
+
 /// Nobody has tested the user's statements: what naga writes holds them inside their bounds.
 #[test]
 fn programs_with_a_file_are_guarded_at_run_time() {

@@ -226,15 +226,11 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
 fn frame(resources: &[Planned]) -> Vec<String> {
     let mut fields = vec!["width".to_owned(), "height".to_owned()];
     for symbol in ["k", "fragments", "kept"] {
-        if resources.iter().any(|planned| mentions(&planned.words, symbol)) {
+        if resources.iter().any(|planned| planned.words.mentions(symbol)) {
             fields.push(symbol.to_owned());
         }
     }
     fields
-}
-
-fn mentions(formula: &Formula, symbol: &str) -> bool {
-    formula.0.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|word| word == symbol)
 }
 
 impl Plan {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use fragbuf_backends::{File, Generation, Planned};
 use fragbuf_codegen::Plan;
-use fragbuf_model::{UniformType, mangled};
+use fragbuf_model::UniformType;
 
 use super::rust;
 
@@ -36,8 +36,10 @@ fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
     let axes = plan.selection.describe();
     let _ = write!(text, "\n    /// {}: {axes}.\n    pub mod {name} {{\n", plan.variant.name.value);
     let _ = writeln!(text, "        /// The bind group of everything.\n        pub const GROUP: u32 = {group};");
+    let mut names = Names::with("GROUP");
     for (constant, value) in &plan.constants {
-        let _ = writeln!(text, "        /// A constant of the shaders.\n        pub const {constant}: u32 = {value};");
+        let name = names.fresh(constant.clone());
+        let _ = writeln!(text, "        /// `{constant}` of the shaders.\n        pub const {name}: u32 = {value};");
     }
     blocks(plan, text);
     vertex(plan, text);
@@ -64,14 +66,14 @@ fn blocks(plan: &Plan, text: &mut String) {
 fn block(name: &str, summary: &str, binding: u32, fields: &[(String, UniformType)], text: &mut String) {
     let _ = write!(text, "\n        /// {summary}.\n        pub mod {name} {{\n");
     let _ = writeln!(text, "            /// The binding.\n            pub const BINDING: u32 = {binding};");
-    let mut end = 0u64;
+    let (mut end, mut names) = (0u64, Names::with("SIZE"));
     for (field, kind) in fields {
         let (size, align) = layout(*kind);
         let offset = end.next_multiple_of(align);
         end = offset + size;
-        let constant = mangled(field).to_ascii_uppercase();
+        let constant = names.fresh(format!("{}_OFFSET", field.to_ascii_uppercase()));
         let _ = writeln!(text, "            /// Byte offset of `{field}`, {}.", kind.wgsl_type());
-        let _ = writeln!(text, "            pub const {constant}_OFFSET: u64 = {offset};");
+        let _ = writeln!(text, "            pub const {constant}: u64 = {offset};");
     }
     let size = end.next_multiple_of(16);
     let _ =
@@ -93,12 +95,9 @@ fn vertex(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// Locations of the inputs of geometry passes.\n        pub mod vertex {\n");
     text.push_str("            /// vec3<f32>\n            pub const POSITION: u32 = 0;\n");
     let inputs = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let mut names = Names::with("POSITION");
     for (location, attribute) in (1..).zip(inputs) {
-        // The name `position` is the vertex's own.
-        let name = match attribute.name.value.as_str() {
-            "position" => "POSITION_".to_owned(),
-            name => mangled(name).to_ascii_uppercase(),
-        };
+        let name = names.fresh(attribute.name.value.to_ascii_uppercase());
         let kind = attribute.format.value.wgsl_type();
         let _ = writeln!(text, "            /// {kind}\n            pub const {name}: u32 = {location};");
     }
@@ -128,12 +127,13 @@ fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], f
     let _ =
         write!(text, "\n    /// The passes of a frame for the target `{target}`, in order.\n    pub mod {name} {{\n");
     let _ = writeln!(text, "        pub use super::{plan}{};", if plan == "plan" { "" } else { " as plan" });
+    let mut names = Names::with("plan");
     for pass in planned.plan.passes() {
         let _ = write!(
             text,
             "\n        /// The pass `{0}`.\n        pub mod {1} {{\n",
             pass.anchor,
-            rust::snake_case(&pass.anchor)
+            names.fresh(rust::snake_case(&pass.anchor))
         );
         for file in files.iter().filter(|file| file.pass == pass.anchor) {
             for (stage, entry_point) in &file.entry_points {
@@ -143,6 +143,24 @@ fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], f
         text.push_str("        }\n");
     }
     text.push_str("    }\n");
+}
+
+/// Names in one module: Rust takes each once, and names of descriptions may differ by case alone.
+struct Names(Vec<String>);
+
+impl Names {
+    fn with(taken: &str) -> Self {
+        Names(vec![taken.to_owned()])
+    }
+
+    /// The name, with `_` appended until none before had it.
+    fn fresh(&mut self, mut name: String) -> String {
+        while self.0.contains(&name) {
+            name.push('_');
+        }
+        self.0.push(name.clone());
+        name
+    }
 }
 
 fn stage_constants(stage: &str, entry_point: &str, path: &str, text: &mut String) {

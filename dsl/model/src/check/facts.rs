@@ -53,14 +53,19 @@ fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {
     row.offers.contains(&fact) || row.implies.iter().any(|(if_given, then)| *then == fact && given.contains(if_given))
 }
 
-/// A storage that keeps the k best needs a k, one that keeps all must have none.
+/// A storage that keeps the k best needs a k, and so does one whose memory is measured in it; one that keeps all must have
+/// none.
 fn keeps_what_is_said(row: &Row, given: &[Fact]) -> bool {
     let keeps = |fact: Fact| row.offers.contains(&fact);
     match (keeps(Fact::KeepsBest), keeps(Fact::KeepsAll)) {
         (true, false) => given.contains(&Fact::KeepsBest),
         (false, true) => given.contains(&Fact::KeepsAll),
-        _ => true,
+        _ => !given.contains(&Fact::KeepsAll) || !is_measured_in_k(row),
     }
+}
+
+fn is_measured_in_k(row: &Row) -> bool {
+    row.resources.iter().flat_map(|resource| &resource.extents).any(|extent| extent.length.mentions("k"))
 }
 
 fn is_legal(pick: &Pick<'_>, given: &[Fact]) -> bool {
