@@ -23,10 +23,14 @@
 //! together by a program ([`builder`]).
 //!
 //! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
-//! into a variant, and [`report`], which draws diagnostics with their source lines.
+//! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
+//! source lines. [`build`] generates inside a `build.rs`, [`snapshot`] inside tests.
 
+pub mod build;
 pub mod load;
+pub mod own;
 pub mod report;
+pub mod snapshot;
 
 pub use fragbuf_backends::{
     Checked, File, Generation, Request, SCHEMA, TARGETS, Target, generate, manifest, plan_json, target, tier,

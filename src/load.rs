@@ -1,15 +1,19 @@
-//! A technique's key or a description's text, with changes from outside, becomes a variant.
+//! A technique's key or a description's text, with changes from outside and the files that it names, becomes a variant.
 
-use fragbuf_model::{Diagnostics, Draft, Origin, Variant};
+use std::path::Path;
+
+use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Variant, codes};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_templates::Registry;
+
+use crate::own;
 
 /// A description to load.
 #[derive(Clone, Debug)]
 pub enum Description {
     /// A technique of the registry.
     Technique(String),
-    /// A file's name, as messages give it, and its text.
+    /// A file's name, as messages give it, and its text. Files that it names lie beside it.
     Text {
         /// The name.
         file: String,
@@ -18,40 +22,84 @@ pub enum Description {
     },
 }
 
-/// Checks a description after the changes `set`, each a name and a value as in `--set name=value`.
+impl Description {
+    /// The file at `path`, which messages call by this path.
+    pub fn read(path: &Path) -> std::io::Result<Self> {
+        Ok(Description::Text { file: path.display().to_string(), text: std::fs::read_to_string(path)? })
+    }
+
+    /// What messages call it.
+    pub fn name(&self) -> &str {
+        match self {
+            Description::Technique(key) => key,
+            Description::Text { file, .. } => file,
+        }
+    }
+}
+
+/// A description and what it led to.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The variant, or everything that is wrong.
+    pub variant: Result<Variant, Diagnostics>,
+    /// Every text that was read, by its name in messages; the description's is the first.
+    pub sources: Vec<(String, String)>,
+}
+
+/// Checks a description after the changes `set`, each a name and a value as in `--set name=value`, and with the choices
+/// `unless_said` on axes of which neither the description nor `set` says anything. The files that it names are read.
+pub fn load(
+    description: &Description,
+    set: &[(String, String)],
+    unless_said: &[(&str, &str)],
+    registry: &Registry,
+) -> Loaded {
+    let text = match description {
+        Description::Technique(key) => key,
+        Description::Text { text, .. } => text,
+    };
+    let mut sources = vec![(description.name().to_owned(), text.clone())];
+    let variant = drafted(description).and_then(|(mut draft, mut diagnostics)| {
+        change(&mut draft, set, unless_said, &mut diagnostics);
+        let own = own::read(&draft, registry);
+        sources.extend(own.sources);
+        if !own.diagnostics.is_empty() {
+            // Without its row nothing is known of what a choice offers: every fact would look unmet.
+            diagnostics.extend(own.diagnostics);
+            return Err(diagnostics);
+        }
+        Parsed { draft: Some(draft), diagnostics }.check(&own.registry)
+    });
+    Loaded { variant, sources }
+}
+
+/// The variant alone, after the changes `set`.
 pub fn variant(
     description: &Description,
     set: &[(String, String)],
     registry: &Registry,
 ) -> Result<Variant, Diagnostics> {
-    variant_or(description, set, &[], registry)
+    load(description, set, &[], registry).variant
 }
 
-/// The same, with `unless_said`, also names and values, where neither the description nor `set` says anything: of that
-/// axis, or for `fragment.attribute` of the payload.
-pub fn variant_or(
-    description: &Description,
-    set: &[(String, String)],
-    unless_said: &[(&str, &str)],
-    registry: &Registry,
-) -> Result<Variant, Diagnostics> {
-    let (mut draft, mut diagnostics) = match description {
+fn drafted(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {
+    match description {
         Description::Technique(key) => {
-            (Draft::from_technique(key, &Origin::new(key.as_str(), 1, 1)), Diagnostics::new())
+            Ok((Draft::from_technique(key, &Origin::new(key.as_str(), 1, 1)), Diagnostics::new()))
         }
         Description::Text { file, text } => {
             let parsed = parse(text, file);
-            match parsed.draft {
-                Some(draft) => (draft, parsed.diagnostics),
-                None => return Err(parsed.diagnostics),
-            }
+            parsed.draft.map(|draft| (draft, parsed.diagnostics.clone())).ok_or(parsed.diagnostics)
         }
-    };
+    }
+}
+
+fn change(draft: &mut Draft, set: &[(String, String)], unless_said: &[(&str, &str)], diagnostics: &mut Diagnostics) {
     for (name, value) in set {
         let origin = Origin::new("--set", 1, 1).with_length(name.chars().count() as u32);
         if let Err(wanted) = draft.set(name, value, &origin) {
-            diagnostics.push(fragbuf_model::Diagnostic::new(
-                fragbuf_model::codes::BAD_OPTION,
+            diagnostics.push(Diagnostic::new(
+                codes::BAD_OPTION,
                 &origin,
                 format!("`{value}` is no value for `{name}`"),
                 format!("give {wanted}"),
@@ -68,5 +116,4 @@ pub fn variant_or(
             let _ = draft.set(name, value, &Origin::new("unless said", 1, 1));
         }
     }
-    Parsed { draft: Some(draft), diagnostics }.check(registry)
 }

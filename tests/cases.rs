@@ -76,6 +76,9 @@ pub fn named() -> Vec<Case> {
                 ("k", "all"),
             ],
         ),
+        ("shell", technique("kplus_array"), vec![("sort", "shell"), ("k", "32")]),
+        ("hybrid", technique("ab_ll"), vec![("sort", "hybrid"), ("sort.insertion", "8")]),
+        ("bitonic", technique("ab_sb"), vec![("sort", "bitonic"), ("sort.layers", "33")]),
         ("interlock_else_lock", technique("kplus_array"), vec![("sync", "interlock else spin_lock")]),
         (
             "locked_sorted_array",

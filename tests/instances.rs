@@ -36,8 +36,8 @@ fn resolve_two(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32>
 ";
 
 fn two_lists() -> Registry {
-    let skeleton = |key: &str, text, calls| Row {
-        template: Some(Template { path: "test.wgsl", text }),
+    let skeleton = |key: &str, text: &'static str, calls| Row {
+        template: Some(Template::new("test.wgsl", text)),
         calls,
         ..Row::new("pass", key, "", "")
     };

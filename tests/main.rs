@@ -8,6 +8,7 @@
     reason = "a test fails by panicking, and prints what it counted"
 )]
 
+mod build_script;
 mod cases;
 mod command_line;
 mod diagnostics;
@@ -16,6 +17,7 @@ mod fuzz;
 mod instances;
 mod names;
 mod oracle;
+mod own;
 mod product;
 mod quads;
 mod render;

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use fragbuf::Registry;
+use fragbuf::vocabulary::KeepDefault;
 use serde_json::Value;
 
 use crate::oracle::over;
@@ -86,11 +88,22 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, b
     }
 }
 
+/// The techniques that keep all, or the k best. On a software driver, which runs the fragments of a pixel one after the
+/// other, those are exact too whose races lose fragments elsewhere.
+fn techniques(keep: KeepDefault) -> Vec<String> {
+    let registry = Registry::builtin();
+    let alike = registry
+        .techniques()
+        .iter()
+        .filter(|technique| (technique.keep == KeepDefault::All) == (keep == KeepDefault::All));
+    alike.map(|technique| technique.key.clone()).collect()
+}
+
 #[test]
 fn the_k_best_are_within_a_255th_of_the_oracle() {
     for (seed, (k, count)) in (1..).zip([(8, 5), (8, 40), (1, 12), (3, 25), (16, 60)]) {
-        for key in ["kplus_array", "kb"] {
-            check(key, Some(k), count, seed, Colors::Bytes, [0.0; 3]);
+        for key in techniques(KeepDefault::Best(8)) {
+            check(&key, Some(k), count, seed, Colors::Bytes, [0.0; 3]);
         }
     }
     check("kplus_array", Some(8), 30, 99, Colors::Bytes, [0.2, 0.9, 0.5]);
@@ -99,19 +112,50 @@ fn the_k_best_are_within_a_255th_of_the_oracle() {
 #[test]
 fn all_fragments_are_within_a_255th_of_the_oracle() {
     for (seed, count) in (1..).zip([1, 9, 40, 60]) {
-        for key in ["ab_ll", "ab_sb"] {
-            check(key, None, count, seed, Colors::Bytes, [0.0; 3]);
+        for key in techniques(KeepDefault::All) {
+            check(&key, None, count, seed, Colors::Bytes, [0.0; 3]);
         }
+    }
+}
+
+/// A storage of the user's own, with as much room as any pixel needs: the picture is everybody's.
+#[test]
+fn a_storage_of_the_users_own_is_within_a_255th_of_the_oracle() {
+    for (seed, (k, count)) in (1..).zip([(8, 5), (40, 40), (60, 60)]) {
+        check("examples/own_storage/first_k.fragbuf", Some(k), count, seed, Colors::Bytes, [0.0, 0.3, 0.0]);
+    }
+}
+
+/// Beyond its room it keeps what came first: a software driver runs the fragments of a pixel in the order of drawing.
+#[test]
+fn a_storage_of_the_users_own_loses_what_its_file_says() {
+    let folder = folder("own-first");
+    let mut quads = quads(5, 11, Colors::Bytes);
+    for quad in &mut quads {
+        (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE);
+    }
+    let model = write(&folder, &quads);
+    let out = folder.join("o.png");
+    let first_k = "examples/own_storage/first_k.fragbuf";
+    let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", "32x32", "--device", "cpu", "--json"];
+    let what = ["render", first_k, "--set", "k=3", "--background", "0,0,0,1", "--scene", model.to_str().unwrap()];
+    let output = fragbuf(&[&what, &common[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(figures["lost"]["displaced"], 2 * SIZE * SIZE, "{figures}");
+    let expected = oracle(&quads[..3], None, 0, 0, [0.0; 3]);
+    for (seen, expected) in read(&out).2[0].iter().zip(expected) {
+        assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{seen}, and not {}", 255.0 * expected);
     }
 }
 
 #[test]
 fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
-    for key in ["kplus_array", "kb"] {
-        check(key, Some(8), 60, 7, Colors::Thin, [0.0; 3]);
+    for key in techniques(KeepDefault::Best(8)) {
+        check(&key, Some(8), 60, 7, Colors::Thin, [0.0; 3]);
     }
-    for key in ["ab_ll", "ab_sb"] {
-        check(key, None, 60, 8, Colors::Thin, [0.0; 3]);
+    for key in techniques(KeepDefault::All) {
+        check(&key, None, 60, 8, Colors::Thin, [0.0; 3]);
     }
 }
 

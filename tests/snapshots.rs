@@ -98,6 +98,35 @@ fn module_form_with_a_prefix() {
     }
 }
 
+/// What a user's own test says, of a storage of the user's own.
+#[test]
+fn a_line_of_a_users_test() {
+    fragbuf::assert_variant_snapshot!("examples/own_storage/first_k.fragbuf", targets = ["wgsl", "glsl"]);
+}
+
+#[test]
+fn a_users_test_has_a_plan_and_a_text_for_each_target() {
+    let texts = fragbuf::snapshot::texts("kb", &["wgsl", "glsl", "msl"]).unwrap();
+    let names: Vec<&str> = texts.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["kb.plan", "kb.wgsl", "kb.glsl", "kb.msl"]);
+    assert!(texts[0].1.starts_with("plan Kb (kb)\n") && texts[1].1.starts_with("// ==== wgsl/reset.wgsl\n"));
+}
+
+#[test]
+#[should_panic(expected = "error[missing-file]")]
+fn a_users_test_of_a_description_with_mistakes_fails_with_the_report() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("mistaken.fragbuf");
+    std::fs::write(&path, "buffer B { storage: wgsl(\"no_such.wgsl\"); }").unwrap();
+    fragbuf::assert_variant_snapshot!(path.to_str().unwrap(), targets = ["wgsl"]);
+}
+
+#[test]
+fn a_users_test_of_what_is_no_text_is_told() {
+    let said = |description, target| fragbuf::snapshot::texts(description, &[target]).unwrap_err();
+    assert!(said("kb", "spirv").contains("wgsl, wgsl-native, glsl"));
+    assert!(said("no/such.fragbuf", "wgsl").contains("no/such.fragbuf"));
+}
+
 /// The manifest of one technique; the schema is a promise.
 #[test]
 fn manifest() {

@@ -35,8 +35,8 @@ fn read(path: &Path) -> String {
 #[test]
 fn every_template_has_a_row_and_is_plain_text() {
     let registry = Registry::builtin();
-    let rows = registry.rows().iter().filter_map(|row| row.template);
-    let known: BTreeSet<&str> = rows.chain(registry.shared().iter().copied()).map(|template| template.path).collect();
+    let rows = registry.rows().iter().filter_map(|row| row.template.as_ref());
+    let known: BTreeSet<&str> = rows.chain(registry.shared()).map(|template| &*template.path).collect();
     for path in files("templates", "wgsl") {
         let name = path.strip_prefix(root().join("templates")).unwrap().to_string_lossy().into_owned();
         let text = read(&path);
@@ -135,7 +135,7 @@ fn the_readme_has_the_computed_table() {
 /// Every technique has a page and a picture. The pages follow the rows: `INSTA_UPDATE=always` writes them anew.
 #[test]
 fn every_technique_has_its_page() {
-    let techniques = fragbuf_templates::Registry::builtin().techniques().to_vec();
+    let techniques = Registry::builtin().techniques().to_vec();
     for technique in &techniques {
         let path = root().join(format!("examples/techniques/{}.md", technique.key));
         let page = fragbuf(&["show", &technique.key, "--page"], root());
@@ -143,7 +143,11 @@ fn every_technique_has_its_page() {
             std::fs::write(&path, &page).unwrap();
         }
         assert_eq!(read(&path), page, "{} is out of date", path.display());
-        assert!(root().join(format!("examples/gallery/{}.png", technique.key)).exists(), "no picture of {}", technique.key);
+        assert!(
+            root().join(format!("examples/gallery/{}.png", technique.key)).exists(),
+            "no picture of {}",
+            technique.key
+        );
     }
     assert_eq!(files("examples/techniques", "md").len(), techniques.len(), "a page of no technique");
 }
@@ -195,6 +199,8 @@ fn the_dsl_builds_without_naga_and_wgpu() {
 fn generating_needs_no_wgpu() {
     let tree = tree(&["--edges", "normal", "-p", "fragbuf", "--no-default-features"]);
     assert!(tree.contains("naga") && !tree.contains("wgpu"), "{tree}");
+    // Snapshots are taken by the caller's own insta.
+    assert!(!tree.contains("insta"), "{tree}");
 }
 
 fn tree(arguments: &[&str]) -> String {

@@ -5,7 +5,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, Refusal, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Loads};
 
-use crate::target::{Emission, File, Target};
+use crate::target::{Emission, File, Guards, Target};
 use crate::{Checked, check};
 
 /// What to generate.
@@ -148,6 +148,7 @@ fn emit(
             target: target.name,
             prefix: &prefix,
             rechecked: rechecked.map(|usage| format!("{prefix}{}", usage.resource)).collect(),
+            guards: if plan.selection.own_files().next().is_some() { Guards::On } else { Guards::Off },
         };
         match (target.emit)(&emission) {
             Ok(more) => files.extend(more),

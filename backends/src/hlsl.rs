@@ -3,15 +3,15 @@
 use naga::back::hlsl;
 
 use crate::markers::with_fences;
-use crate::target::{Emission, File};
+use crate::target::{Emission, File, Guards};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let module = with_fences(emission.checked.module(), emission.prefix);
     let options = hlsl::Options {
         shader_model: hlsl::ShaderModel::V6_0,
         zero_initialize_workgroup_memory: false,
-        restrict_indexing: false,
-        force_loop_bounding: false,
+        restrict_indexing: emission.guards == Guards::On,
+        force_loop_bounding: emission.guards == Guards::On,
         ..hlsl::Options::default()
     };
     let mut text = header(emission);

@@ -5,7 +5,7 @@ use fragbuf_glsl::Dialect;
 use fragbuf_model::mangled;
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::{
-    Access, Blend, Compare, DepthState, Element, Fact, Init, Kind, Life, Objects, Pass, State, StencilOperation,
+    Access, Blend, Compare, DepthState, Element, Init, Kind, Life, Objects, Pass, State, StencilOperation,
     StencilState, Step, TextureFormat, Until,
 };
 use serde_json::{Map, Value, json};
@@ -86,7 +86,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("keep".into(), plan.variant.keep.into());
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
-    map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(feature(*fact))).collect());
+    map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(fact.word())).collect());
     map.insert(
         "constants".into(),
         plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),
@@ -102,11 +102,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map
 }
 
-/// A fact's `Debug` name in lower case, words joined by `-`.
-fn feature(fact: Fact) -> String {
-    dashed(&format!("{fact:?}"))
-}
-
+/// A `Debug` name in lower case, words joined by `-`.
 fn dashed(name: &str) -> String {
     let mut text = String::new();
     for letter in name.chars() {

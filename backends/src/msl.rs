@@ -2,28 +2,21 @@
 //! one more.
 
 use naga::back::msl;
-use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use crate::hlsl::header;
-use crate::target::{Emission, File};
+use crate::target::{Emission, File, Guards};
 
 /// The buffer of sizes: the last that Metal guarantees.
 const SIZES: u8 = 30;
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
-    let unchecked = BoundsCheckPolicy::Unchecked;
     let options = msl::Options {
         lang_version: (2, 4),
         per_entry_point_map: resources(emission.checked.module())?,
         fake_missing_bindings: false,
-        bounds_check_policies: BoundsCheckPolicies {
-            index: unchecked,
-            buffer: unchecked,
-            image_load: unchecked,
-            binding_array: unchecked,
-        },
+        bounds_check_policies: emission.guards.policies(),
         zero_initialize_workgroup_memory: false,
-        force_loop_bounding: false,
+        force_loop_bounding: emission.guards == Guards::On,
         ..msl::Options::default()
     };
     let pipeline = msl::PipelineOptions::default();

@@ -1,20 +1,19 @@
 //! SPIR-V by naga, with the words that WGSL lacks in place of their markers. One module per entry point.
 //!
 //! Clip space is WGSL's (y up, z from 0 to 1), as in wgpu: a Vulkan host sets a viewport of negative height. Indices are
-//! not clamped and loops not bounded at run time: generated code is ours, and the interpreter covers it.
+//! not clamped and loops not bounded at run time unless a file of the user's own is part of the program.
 
 mod edits;
 
 use naga::back::spv;
-use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use crate::markers::with_fences;
-use crate::target::{Emission, File, stage_name, stage_of, stage_suffix};
+use crate::target::{Emission, File, Guards, stage_name, stage_of, stage_suffix};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let pass = emission.checked.pass();
     let module = with_fences(emission.checked.module(), emission.prefix);
-    let options = options();
+    let options = options(emission.guards);
     let mut files = Vec::with_capacity(pass.entry_points.len());
     for entry in &pass.entry_points {
         let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
@@ -29,19 +28,13 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
 }
 
 /// Every option that the output depends on, said here: naga's defaults differ between builds.
-fn options() -> spv::Options<'static> {
-    let unchecked = BoundsCheckPolicy::Unchecked;
+fn options(guards: Guards) -> spv::Options<'static> {
     spv::Options {
         lang_version: (1, 3),
         flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
-        bounds_check_policies: BoundsCheckPolicies {
-            index: unchecked,
-            buffer: unchecked,
-            image_load: unchecked,
-            binding_array: unchecked,
-        },
+        bounds_check_policies: guards.policies(),
         zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
-        force_loop_bounding: false,
+        force_loop_bounding: guards == Guards::On,
         ..spv::Options::default()
     }
 }

@@ -2,6 +2,7 @@
 
 use fragbuf_codegen::{Profile, Stage};
 use fragbuf_templates::vocabulary::{Fact, Soundness};
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use crate::{Checked, glsl, hlsl, msl, spirv, wgsl};
 
@@ -29,6 +30,28 @@ pub struct Emission<'a> {
     pub prefix: &'a str,
     /// Atomic resources whose loads are hints, or made again inside the critical section.
     pub rechecked: Vec<String>,
+    /// What the text is guarded against at run time.
+    pub guards: Guards,
+}
+
+/// Whether generated code holds places inside their bounds and ends every loop, where naga writes the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guards {
+    /// It need not: every statement is a tested template's, or one of a closure, which cannot index.
+    Off,
+    /// It must: a file of the user's own is part of the program.
+    On,
+}
+
+impl Guards {
+    /// What naga does about an index outside of its bounds.
+    pub(crate) fn policies(self) -> BoundsCheckPolicies {
+        let policy = match self {
+            Guards::Off => BoundsCheckPolicy::Unchecked,
+            Guards::On => BoundsCheckPolicy::Restrict,
+        };
+        BoundsCheckPolicies { index: policy, buffer: policy, image_load: policy, binding_array: policy }
+    }
 }
 
 /// One file of one target.

@@ -3,7 +3,7 @@
 
 use fragbuf_templates::Registry;
 
-use crate::link::heads;
+use crate::link::{Head, heads};
 
 /// One function of a contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,19 +58,19 @@ const fn row(axis: &'static str, name: &'static str, signature: &'static str, pr
 pub fn verify(registry: &Registry) -> Vec<String> {
     let mut faults = Vec::new();
     for row in registry.rows() {
-        let Some(template) = row.template else { continue };
-        let heads = heads(template.text);
+        let Some(template) = &row.template else { continue };
+        let heads = heads(&template.text);
         for contract in CONTRACTS {
-            for (name, head) in &heads {
-                if name == contract.name && (row.axis != contract.axis || head != contract.signature) {
+            for Head { name, signature, .. } in &heads {
+                if *name == contract.name && (row.axis != contract.axis || *signature != contract.signature) {
                     faults.push(format!(
-                        "{}: `fn {name}{head}` should be `fn {name}{}`",
+                        "{}: `fn {name}{signature}` should be `fn {name}{}`",
                         template.path, contract.signature
                     ));
                 }
             }
         }
-        let offers_any = CONTRACTS.iter().any(|contract| heads.iter().any(|(name, _)| name == contract.name));
+        let offers_any = CONTRACTS.iter().any(|contract| heads.iter().any(|head| head.name == contract.name));
         if !offers_any && CONTRACTS.iter().any(|contract| contract.axis == row.axis) {
             faults.push(format!("{}: offers no function of the contract `{}`", template.path, row.axis));
         }

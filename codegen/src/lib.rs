@@ -12,11 +12,13 @@ mod contract;
 mod emit;
 mod layout;
 mod link;
+mod own;
 mod plan;
 mod program;
 
 pub use contract::{CONTRACTS, Contract, verify};
 pub use layout::{Key, Layout, Word};
+pub use own::adopt;
 pub use plan::{Bound, FIRST_BINDING, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
 

@@ -112,7 +112,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         requires,
         soundness: selection.soundness(),
         hazards: rows()
-            .flat_map(|row| row.hazards.iter().copied())
+            .flat_map(|row| row.hazards.iter().cloned())
             .filter(|hazard| hazard.unless.is_none_or(|fact| !offers.contains(&fact)))
             .collect(),
     })
@@ -214,12 +214,12 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
         vec![("CAPACITY".to_owned(), number("capacity")), ("BESIDE_WORDS".to_owned(), number("beside_words"))];
     for selected in &selection.rows {
         for parameter in &selected.row.parameters {
-            let set = selected.options.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
+            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
             let value = match set {
                 Some(value) => value,
                 None => parameter.default.evaluate(&|symbol| bound.value(symbol))? as u32,
             };
-            constants.push((parameter.constant.to_owned(), value));
+            constants.push((parameter.constant.to_string(), value));
         }
     }
     Ok(constants)
@@ -240,7 +240,7 @@ fn frame(limit: Limit, resources: &[Planned], steps: &[Step]) -> Vec<String> {
         fields.push("k".to_owned());
     }
     for symbol in ["n", "fragments", "kept"] {
-        if resources.iter().any(|planned| mentions(&planned.words, symbol)) {
+        if resources.iter().any(|planned| planned.words.mentions(symbol)) {
             fields.push(symbol.to_owned());
         }
     }
@@ -248,10 +248,6 @@ fn frame(limit: Limit, resources: &[Planned], steps: &[Step]) -> Vec<String> {
         fields.push("iteration".to_owned());
     }
     fields
-}
-
-fn mentions(formula: &Formula, symbol: &str) -> bool {
-    formula.0.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|word| word == symbol)
 }
 
 impl Plan {

@@ -127,6 +127,8 @@ pub enum LineOrigin {
     },
     /// The user's description.
     User(Origin),
+    /// A WGSL file of the user's own, from the line's first sign to its last: the same text, unless it was renamed.
+    Own(Origin),
 }
 
 impl LineMap {
@@ -163,18 +165,28 @@ pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Progr
     for pass in plan.passes() {
         match link_pass(plan, pass, linking, registry) {
             Ok(text) => passes.push(text),
-            Err(problem) => diagnostics.push(Diagnostic::new(
-                codes::INTERNAL,
-                &plan.variant.name.origin,
-                format!("pass `{}`: {problem}", pass.anchor),
-                "report it with the description; a row of your own must fulfil the contract of its axis",
-            )),
+            Err(fault) => diagnostics.push(unlinkable(plan, pass, &fault)),
         }
     }
     diagnostics.gate(Program { linking: linking.clone(), passes })
 }
 
-fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, String> {
+fn unlinkable(plan: &Plan, pass: &Pass, fault: &link::Fault) -> Diagnostic {
+    match &fault.own {
+        Some(origin) => {
+            let hint = "every file of a program has its own names: begin private ones with the name of the file";
+            Diagnostic::new(codes::REFUSED, origin, &fault.problem, hint)
+        }
+        None => Diagnostic::new(
+            codes::INTERNAL,
+            &plan.variant.name.origin,
+            format!("pass `{}`: {}", pass.anchor, fault.problem),
+            "report it with the description; a row of your own must fulfil the contract of its axis",
+        ),
+    }
+}
+
+fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, link::Fault> {
     let is_library = linking.form == Form::Module && pass.kind == Kind::Geometry;
     let stage_text = match pass.kind {
         Kind::Geometry if !is_library => Some("geometry"),
@@ -183,7 +195,7 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     };
     let no_renames = link::Renames::default();
     let mut templates: Vec<Source> =
-        registry.shared().iter().map(|template| Source::template(*template, &no_renames)).collect();
+        registry.shared().iter().map(|template| Source::template(template, &no_renames)).collect();
     templates.extend(instances::sources(pass, plan, registry)?);
     for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
         templates.push(instances::skeleton(skeleton, registry)?);

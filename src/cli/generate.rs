@@ -54,7 +54,7 @@ impl Generate {
         let all = registry.techniques().iter().filter(|_| self.all).map(|technique| technique.key.clone());
         let mut folders: Vec<(PathBuf, Generation)> = Vec::new();
         for argument in self.description.iter().cloned().chain(all) {
-            let input = Input::read(&argument, &registry)?;
+            let mut input = Input::read(&argument, &registry)?;
             let variant = input.variant(&self.set, &registry)?;
             let generation = generate(&variant, &request, &registry).map_err(|faults| input.failure(faults))?;
             if generation.plans.is_empty() {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use fragbuf::load::{self, Description};
+use fragbuf::load::{Description, load};
 use fragbuf::{Registry, Variant};
 
 use super::output::Failure;
 
-/// A description as given, and the text to show beside its diagnostics.
+/// A description as given, and the texts to show beside its diagnostics.
 pub(crate) struct Input {
     description: Description,
     sources: Vec<(String, String)>,
@@ -19,34 +19,34 @@ impl Input {
         let path = Path::new(argument);
         let is_file = path.extension().is_some_and(|extension| extension == "fragbuf") || path.is_file();
         if registry.technique(argument).is_some() || !is_file {
-            let description = Description::Technique(argument.to_owned());
-            return Ok(Input { description, sources: vec![(argument.to_owned(), argument.to_owned())] });
+            return Ok(Input { description: Description::Technique(argument.to_owned()), sources: Vec::new() });
         }
         let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::InvalidData => Failure::Files(format!("{argument}: the text is not UTF-8")),
             _ => Failure::files(path, &error),
         })?;
-        let sources = vec![(argument.to_owned(), text.clone())];
-        Ok(Input { description: Description::Text { file: argument.to_owned(), text }, sources })
+        let description = Description::Text { file: argument.to_owned(), text };
+        Ok(Input { description, sources: Vec::new() })
     }
 
     /// The variant, after `--set`.
-    pub(crate) fn variant(&self, set: &[(String, String)], registry: &Registry) -> Result<Variant, Failure> {
-        load::variant(&self.description, set, registry).map_err(|diagnostics| self.failure(diagnostics))
+    pub(crate) fn variant(&mut self, set: &[(String, String)], registry: &Registry) -> Result<Variant, Failure> {
+        self.variant_or(set, &[], registry)
     }
 
     /// The variant, after `--set`, with `unless_said` on axes that nobody chose on.
-    #[cfg(feature = "pictures")]
     pub(crate) fn variant_or(
-        &self,
+        &mut self,
         set: &[(String, String)],
         unless_said: &[(&str, &str)],
         registry: &Registry,
     ) -> Result<Variant, Failure> {
-        load::variant_or(&self.description, set, unless_said, registry).map_err(|diagnostics| self.failure(diagnostics))
+        let loaded = load(&self.description, set, unless_said, registry);
+        self.sources = loaded.sources;
+        loaded.variant.map_err(|diagnostics| self.failure(diagnostics))
     }
 
-    /// Diagnostics with this input's text beside them.
+    /// Diagnostics with this input's texts beside them.
     pub(crate) fn failure(&self, diagnostics: fragbuf::Diagnostics) -> Failure {
         Failure::Description(diagnostics, self.sources.clone())
     }

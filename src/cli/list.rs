@@ -24,7 +24,7 @@ impl List {
 }
 
 fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
-    let input = Input::read(&technique.key, registry)?;
+    let mut input = Input::read(&technique.key, registry)?;
     let variant = input.variant(&[], registry)?;
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };

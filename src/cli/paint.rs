@@ -46,7 +46,7 @@ pub(crate) struct Painted {
 /// Draws the scene.
 pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Progress) -> Result<Painted, Failure> {
     let registry = Registry::builtin();
-    let input = Input::read(wish.description, &registry)?;
+    let mut input = Input::read(wish.description, &registry)?;
     let rounded = stage.exact && !in_255ths(&stage.scene);
     let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
     let unless_said: Vec<(&str, &str)> =

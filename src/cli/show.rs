@@ -1,5 +1,6 @@
 //! `fragbuf show`: one description, at any stage.
 
+use fragbuf::snapshot::joined;
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target, tier};
 
 use super::input::Input;
@@ -42,7 +43,7 @@ impl Show {
         if stage == "spirv" {
             return Err(Failure::Usage("spirv is no text: `generate --target spirv` writes it".to_owned()));
         }
-        let input = Input::read(&self.description, &registry)?;
+        let mut input = Input::read(&self.description, &registry)?;
         let variant = input.variant(&self.set, &registry)?;
         let targets = if one.is_empty() { &all } else { &one };
         let request = Request { targets, form: Form::Program, prefix: "", group: 0 };
@@ -82,14 +83,7 @@ fn summary(generation: &Generation) -> String {
 
 /// Every text file once, under its path.
 fn files(generation: &Generation) -> String {
-    let mut text = String::new();
-    let mut seen: Vec<&str> = Vec::new();
-    for file in &generation.files {
-        if !seen.contains(&file.path.as_str()) {
-            seen.push(&file.path);
-            text.push_str(&format!("// ==== {}\n{}\n", file.path, String::from_utf8_lossy(&file.bytes)));
-        }
-    }
+    let mut text = joined(generation);
     for (target, refusal) in &generation.refusals {
         text.push_str(&format!("// {}: {refusal}\n", target.name));
     }

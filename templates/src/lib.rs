@@ -10,8 +10,9 @@ pub mod vocabulary;
 macro_rules! template {
     ($path:literal) => {
         $crate::vocabulary::Template {
-            path: concat!($path, ".wgsl"),
-            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path, ".wgsl")),
+            path: std::borrow::Cow::Borrowed(concat!($path, ".wgsl")),
+            text: std::borrow::Cow::Borrowed(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path, ".wgsl"))),
+            own: None,
         }
     };
 }

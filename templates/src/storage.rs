@@ -37,7 +37,7 @@ fn linked_list() -> Row {
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll],
         requires: vec![Fact::FragmentAtomics],
-        defaults: vec![("sync", "slot_counter")],
+        defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new("storage", "linked_list", "a list per pixel through one pool of nodes", "Yang et al. 2010; K15 §2")
     }
 }
@@ -95,7 +95,7 @@ fn exact_regions() -> Row {
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Counted, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics],
-        defaults: vec![("sync", "slot_counter")],
+        defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",
             "exact_regions",
@@ -124,26 +124,27 @@ fn sorted_array() -> Row {
         // Entries are in the order of their keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
-        defaults: vec![("sync", "none"), ("sort", "none")],
+        defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
             Hazard {
-                name: "lost-update",
-                what: "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted",
+                name: "lost-update".into(),
+                what: "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted"
+                    .into(),
                 unless: Some(Fact::Critical),
             },
             Hazard {
-                name: "duplicate",
-                what: "an entry moved by one fragment while another moves it too stands in two slots",
+                name: "duplicate".into(),
+                what: "an entry moved by one fragment while another moves it too stands in two slots".into(),
                 unless: Some(Fact::Critical),
             },
             Hazard {
-                name: "torn",
-                what: "key and payload of a slot come from two fragments",
+                name: "torn".into(),
+                what: "key and payload of a slot come from two fragments".into(),
                 unless: Some(Fact::Critical),
             },
             Hazard {
-                name: "unsorted",
-                what: "the entries of a pixel are not in the order of their keys",
+                name: "unsorted".into(),
+                what: "the entries of a pixel are not in the order of their keys".into(),
                 unless: Some(Fact::Critical),
             },
         ],
@@ -195,7 +196,7 @@ fn worst_first(row: Row) -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
-        defaults: vec![("sync", "spin_lock"), ("cull", "early")],
+        defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row
     }
 }
@@ -223,7 +224,7 @@ fn fixed_array() -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics],
-        defaults: vec![("sync", "slot_counter")],
+        defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",
             "fixed_array",
@@ -265,7 +266,11 @@ fn cascade() -> Row {
         offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BoundAnyInstant],
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
-        defaults: vec![("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
+        defaults: vec![
+            ("sync".into(), "slot_counter".into()),
+            ("cull".into(), "early".into()),
+            ("sort".into(), "none".into()),
+        ],
         ..Row::new(
             "storage",
             "cascade",

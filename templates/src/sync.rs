@@ -40,11 +40,11 @@ fn spin_lock() -> Row {
         offers: vec![Fact::Critical],
         requires: vec![Fact::FragmentAtomics],
         parameters: vec![Parameter {
-            name: "limit",
-            constant: "SPIN_LIMIT",
+            name: "limit".into(),
+            constant: "SPIN_LIMIT".into(),
             default: "4096".into(),
             range: (1, 1 << 24),
-            summary: "tries before a fragment is given up and counted",
+            summary: "tries before a fragment is given up and counted".into(),
         }],
         soundness: Soundness::Lock,
         ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")

@@ -8,10 +8,11 @@
     reason = "a bench prints, and fails by panicking"
 )]
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fragbuf::load::{Description, variant};
+use fragbuf::load::{Description, load, variant};
 use fragbuf::{Form, Generation, Profile, Registry, Request, TARGETS, Target, Variant, generate};
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -102,6 +103,14 @@ fn ratios(criterion: &mut Criterion) {
     let text = include_str!("../../examples/most_visible.fragbuf");
     criterion.bench_function("most_visible.fragbuf to a draft", |bencher| {
         bencher.iter(|| fragbuf::parse(text, "most_visible.fragbuf"));
+    });
+    let described = Description::Text { file: "most_visible.fragbuf".to_owned(), text: text.to_owned() };
+    criterion.bench_function("most_visible.fragbuf to a variant", |bencher| {
+        bencher.iter(|| load(&described, &[], &[], &registry).variant.unwrap());
+    });
+    let own = Description::read(Path::new("examples/own_storage/first_k.fragbuf")).unwrap();
+    criterion.bench_function("first_k.fragbuf with its own storage to a variant", |bencher| {
+        bencher.iter(|| load(&own, &[], &[], &registry).variant.unwrap());
     });
 }
 

@@ -68,7 +68,7 @@ fn a_host_decision_fits() {
 fn an_edit_of_an_unknown_pass_is_refused() {
     use fragbuf_templates::vocabulary::{Edit, Row};
     let row = Row {
-        template: rows::registry().row("cull", "none").and_then(|row| row.template),
+        template: rows::registry().row("cull", "none").and_then(|row| row.template.clone()),
         edits: vec![Edit::SetSkeleton("no_such_pass".to_owned(), "store".to_owned())],
         ..Row::new("cull", "none", "", "")
     };

@@ -41,7 +41,7 @@ fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static 
 }
 
 fn template_of(storage: &str) -> Option<fragbuf_templates::vocabulary::Template> {
-    Registry::builtin().row("storage", storage).and_then(|row| row.template)
+    Registry::builtin().row("storage", storage).and_then(|row| row.template.clone())
 }
 
 fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {
@@ -109,7 +109,7 @@ fn stencil_routed() -> Row {
         ],
         offers: vec![Fact::FixedFunction],
         requires: vec![Fact::SampleMask, Fact::OneWordBesideDepth],
-        defaults: vec![("sync", "fixed_function")],
+        defaults: vec![("sync".into(), "fixed_function".into())],
         ..Row::new("storage", "stencil_routed", "samples of a multisampled target", "Myers & Bavoil 2007")
     }
 }
@@ -137,7 +137,7 @@ fn front_to_back() -> Row {
             at_most: "1024".into(),
         })],
         offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
-        defaults: vec![("sync", "fixed_function"), ("sort", "none")],
+        defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "front_to_back", "one layer a round", "Everitt 2001")
     }
 }
@@ -180,7 +180,7 @@ fn dual() -> Row {
         ],
         offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
         requires: vec![Fact::MinMaxBlend],
-        defaults: vec![("sync", "fixed_function"), ("sort", "none")],
+        defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
     }
 }
@@ -222,7 +222,7 @@ fn repeated_array() -> Row {
             ),
         ],
         offers: vec![Fact::KeepsBest, Fact::SurvivesRaces, Fact::CanReplace],
-        defaults: vec![("sync", "none")],
+        defaults: vec![("sync".into(), "none".into())],
         soundness: Soundness::Racy,
         ..Row::new("storage", "repeated_array", "k entries, repaired by the next pass", "Liu et al. 2009")
     }
@@ -276,7 +276,7 @@ fn bounded_regions() -> Row {
             ),
         ],
         offers: vec![Fact::KeepsBest, Fact::Counted, Fact::BoundAnyInstant, Fact::OwnAtomics],
-        defaults: vec![("sync", "slot_counter"), ("cull", "early")],
+        defaults: vec![("sync".into(), "slot_counter".into()), ("cull".into(), "early".into())],
         soundness: Soundness::Lock,
         ..Row::new("storage", "bounded_regions", "regions of min(f, k) per pixel", "K15 Alg. 3")
     }

@@ -52,7 +52,7 @@ impl Sizing {
 /// Whether shaders check bounds and bound loops at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Checks {
-    /// Only where the description has functions of its own: all other code comes from tested templates.
+    /// Only where the description has functions or files of its own: all other code comes from tested templates.
     Auto,
     /// Always.
     On,

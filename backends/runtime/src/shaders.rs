@@ -110,11 +110,12 @@ impl Shaders {
         actions(&self.plan).map(|_| ())
     }
 
-    /// Whether functions of the description's author are in the code: they run with wgpu's runtime checks.
+    /// Whether functions of the description's author are in the code, from the description or from files that it names:
+    /// they run with wgpu's runtime checks.
     pub(crate) fn has_user_functions(&self) -> bool {
         let variant = &self.plan.variant;
         let closures = variant.criterion.is_some() || variant.resolve.is_some() || !variant.constraints.is_empty();
-        closures || !variant.helpers.is_empty()
+        closures || !variant.helpers.is_empty() || self.plan.selection.own_files().next().is_some()
     }
 }
 

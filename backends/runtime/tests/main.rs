@@ -22,4 +22,5 @@ mod larger;
 mod rasterisation;
 mod sizing;
 mod sloped;
+mod sorts;
 mod translations;

@@ -119,7 +119,7 @@ impl Accessors<'_> {
         };
         let word = if self.access == ShaderAccess::Atomic { "atomic<u32>" } else { "u32" };
         let kind = if self.is_single_word() { word.to_owned() } else { format!("array<{word}>") };
-        let (summary, group, binding) = (self.planned.resource.summary, linking.group, self.planned.binding);
+        let (summary, group, binding) = (&self.planned.resource.summary, linking.group, self.planned.binding);
         let name = self.name();
         let _ = writeln!(text, "/// {}.", capitalised(summary));
         let _ = writeln!(text, "@group({group}) @binding({binding}){coherent} var<storage, {mode}> {name}: {kind};\n");

@@ -5,39 +5,45 @@ use crate::program::Stage;
 
 /// One declaration at module scope.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Item<'a> {
-    pub(super) name: &'a str,
+pub(crate) struct Item<'a> {
+    pub(crate) name: &'a str,
     /// From the first comment or attribute above to the closing brace or semicolon.
-    pub(super) text: &'a str,
+    pub(crate) text: &'a str,
     /// Line of `text`'s first line in its source, from 1.
-    pub(super) first_line: usize,
+    pub(crate) first_line: usize,
+    /// Line of the name, from 1.
+    pub(crate) declared_line: usize,
     /// Every name in it, members apart.
-    pub(super) mentions: Vec<&'a str>,
+    pub(crate) mentions: Vec<&'a str>,
     /// For an entry point.
-    pub(super) stage: Option<Stage>,
+    pub(crate) stage: Option<Stage>,
+    /// Whether it claims a binding.
+    pub(crate) is_bound: bool,
     /// One line: set next to its like, without a blank line between.
-    pub(super) is_short: bool,
+    pub(crate) is_short: bool,
 }
 
 /// The declarations in order. `Err`: the line of something that is none.
-pub(super) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
+pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
     let (code, comments) = tokens(text);
     let mut items = Vec::new();
     let (mut rest, mut line, mut counted) = (code.as_slice(), 1, 0);
     while let Some(first) = rest.first() {
         let length = item_length(rest).ok_or_else(|| line_of(text, first.at))?;
         let (tokens, after) = rest.split_at(length);
-        let name = declared_name(tokens).ok_or_else(|| line_of(text, first.at))?;
+        let declared = declared_name(tokens).ok_or_else(|| line_of(text, first.at))?;
         let end = tokens.last().map_or(first.at, |last| last.at + last.text.len());
         let start = with_comments(text, &comments, first.at);
         line += newlines(&text[counted..start]);
         counted = start;
         items.push(Item {
-            name,
+            name: declared.text,
             text: &text[start..end],
             first_line: line,
+            declared_line: line + newlines(&text[start..declared.at]),
             mentions: mentions(tokens),
             stage: stage(tokens),
+            is_bound: tokens.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
             is_short: !text[start..end].contains('\n'),
         });
         rest = after;
@@ -58,17 +64,42 @@ pub(crate) fn head(text: &str) -> String {
     String::new()
 }
 
-/// Functions by name, with everything between the name and the body.
-pub(crate) fn heads(text: &str) -> Vec<(String, String)> {
-    parse(text)
-        .unwrap_or_default()
-        .into_iter()
-        .filter_map(|item| {
-            let start = item.text.find(&format!("fn {}(", item.name))?;
-            let head = item.text[start + 3 + item.name.len()..].split(" {").next()?;
-            Some((item.name.to_owned(), head.to_owned()))
-        })
-        .collect()
+/// A function's name and what stands between it and the body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Head<'a> {
+    pub(crate) name: &'a str,
+    /// `(a: u32) -> u32`, as written.
+    pub(crate) signature: &'a str,
+    /// Byte offset of the name.
+    pub(crate) at: usize,
+}
+
+/// The heads of all functions, in order.
+pub(crate) fn heads(text: &str) -> Vec<Head<'_>> {
+    let (code, _) = tokens(text);
+    let mut heads = Vec::new();
+    for (index, pair) in code.windows(2).enumerate() {
+        let [word, name] = pair else { continue };
+        if word.text != "fn" || name.kind != TokenKind::Name {
+            continue;
+        }
+        let rest = code[index + 2..].iter().take_while(|token| token.text != "{");
+        let start = name.at + name.text.len();
+        let end = rest.last().map_or(start, |last| last.at + last.text.len());
+        heads.push(Head { name: name.text, signature: &text[start..end], at: name.at });
+    }
+    heads
+}
+
+/// A signature by its types alone: `(u32,u32)->Packed`, whatever its parameters are called.
+pub(crate) fn shape(signature: &str) -> String {
+    let (code, _) = tokens(signature);
+    let is_name = |index: usize| code.get(index + 1).is_some_and(|next: &Token<'_>| next.text == ":");
+    let kept = code.iter().enumerate().filter(|(index, token)| {
+        let ends_list = token.text == "," && code.get(index + 1).is_some_and(|next| next.text == ")");
+        token.text != ":" && !ends_list && !is_name(*index)
+    });
+    kept.map(|(_, token)| token.text).collect()
 }
 
 /// Everything that a text declares.
@@ -104,7 +135,7 @@ fn item_length(tokens: &[Token<'_>]) -> Option<usize> {
     None
 }
 
-fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
+fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<Token<'a>> {
     let keyword = tokens
         .iter()
         .position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
@@ -116,7 +147,7 @@ fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<&'a str> {
         }
         next = rest.next()?;
     }
-    (next.kind == TokenKind::Name).then_some(next.text)
+    (next.kind == TokenKind::Name).then_some(*next)
 }
 
 /// Where the comments begin that stand directly above `at`, line by line.
@@ -173,7 +204,9 @@ mod tests {
     fn members_are_no_mentions_and_heads_are_found() {
         let text = "fn f(a: u32) -> u32 {\n    return b.c;\n}\n";
         assert_eq!(parse(text).unwrap()[0].mentions, ["a", "b", "f", "fn", "return", "u32"]);
-        assert_eq!(heads(text), [("f".to_owned(), "(a: u32) -> u32".to_owned())]);
+        assert_eq!(heads(text), [Head { name: "f", signature: "(a: u32) -> u32", at: 3 }]);
+        assert_eq!(shape("( b : u32, ) -> u32"), shape("(a: u32) -> u32"));
+        assert_ne!(shape("(a: u32, b: u32)"), shape("(a: u32)"));
         assert_eq!(parse("const A = 1u;\n}\n"), Err(2));
     }
 }

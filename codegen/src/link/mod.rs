@@ -7,7 +7,7 @@ mod item;
 mod rename;
 mod token;
 
-pub(crate) use item::{head, heads, names};
+pub(crate) use item::{Head, Item, head, heads, names, parse as items, shape};
 pub(crate) use rename::Renames;
 
 use std::borrow::Cow;
@@ -18,7 +18,6 @@ use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
 
 use crate::program::{EntryPoint, LineMap, LineOrigin};
-use item::Item;
 
 /// A text to link.
 #[derive(Clone, Debug)]
@@ -26,7 +25,8 @@ pub(crate) struct Source {
     /// Its banner, and what the line map calls it.
     name: Arc<str>,
     text: Cow<'static, str>,
-    origins: Option<Vec<Origin>>,
+    /// Where each line comes from, if not from the line of that number in this source.
+    origins: Option<Vec<LineOrigin>>,
 }
 
 impl Source {
@@ -36,14 +36,20 @@ impl Source {
     }
 
     /// A template, renamed for its instance.
-    pub(crate) fn template(template: Template, renames: &Renames) -> Self {
-        Source { name: template.path.into(), text: renames.apply(template.text), origins: None }
+    pub(crate) fn template(template: &Template, renames: &Renames) -> Self {
+        let text = match &template.text {
+            Cow::Borrowed(text) => renames.apply(text),
+            Cow::Owned(text) => Cow::Owned(renames.apply(text).into_owned()),
+        };
+        let origins = template.own.as_deref().map(|file| own_lines(&template.text, file));
+        Source { name: template.path.as_ref().into(), text, origins }
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
     /// lies.
     pub(crate) fn user(function: &UserFunction) -> Self {
-        Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(function.lines.clone()) }
+        let origins = function.lines.iter().cloned().map(LineOrigin::User).collect();
+        Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(origins) }
     }
 
     /// The atomic accessors that its declarations mention: buffers offer many, and few are ever used.
@@ -56,13 +62,50 @@ impl Source {
         }
     }
 
-    fn items(&self) -> Result<Items<'_>, String> {
+    fn items(&self) -> Result<Items<'_>, Fault> {
         let parsed = match &self.text {
             Cow::Borrowed(text) => kept_items(text).map(Items::Kept),
             Cow::Owned(text) => item::parse(text).map(Items::Parsed),
         };
-        parsed.map_err(|line| format!("{}:{line}: not a declaration", self.name))
+        parsed.map_err(|line| Fault {
+            problem: format!("{}:{line}: not a declaration", self.name),
+            own: self.own_line(line),
+        })
     }
+
+    /// The place of a line, in a file of the user's own.
+    fn own_line(&self, line: usize) -> Option<Origin> {
+        match self.origins.as_ref()?.get(line.checked_sub(1)?)? {
+            LineOrigin::Own(origin) => Some(origin.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// Why texts cannot be linked.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fault {
+    /// What is wrong.
+    pub(crate) problem: String,
+    /// The line that is at fault, where it is one of a user's own file.
+    pub(crate) own: Option<Origin>,
+}
+
+impl From<String> for Fault {
+    fn from(problem: String) -> Self {
+        Fault { problem, own: None }
+    }
+}
+
+/// The lines of a user's own file, each from its first sign to its last.
+fn own_lines(text: &str, file: &str) -> Vec<LineOrigin> {
+    let file: Arc<str> = file.into();
+    let place = |(line, text): (u32, &str)| {
+        let indent = text.chars().count() - text.trim_start().chars().count();
+        let length = text.trim().chars().count() as u32;
+        LineOrigin::Own(Origin::new(file.clone(), line, indent as u32 + 1).with_length(length))
+    };
+    (1..).zip(text.lines()).map(place).collect()
 }
 
 /// The declarations of a source: a template's are found once and kept.
@@ -117,14 +160,14 @@ pub(crate) struct Linked {
 
 /// Links `sources`. Roots are the entry points, or `exports` where there are any. `prefix` goes before every name but the
 /// entry points'. `Err`: names that sources declare twice, or an export that none declares.
-pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &str) -> Result<Linked, String> {
+pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &str) -> Result<Linked, Fault> {
     let lists: Vec<Items<'_>> = sources.iter().map(Source::items).collect::<Result<_, _>>()?;
     let items: Vec<(usize, &Item<'_>)> = lists
         .iter()
         .enumerate()
         .flat_map(|(source, list)| list.as_slice().iter().map(move |item| (source, item)))
         .collect();
-    let index = declarations(&items)?;
+    let index = declarations(&items, sources)?;
     let reached = reach(&items, &index, exports)?;
     let entry_points: Vec<EntryPoint> = reached
         .iter()
@@ -148,14 +191,27 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
 }
 
 /// Where each name is declared. Looked up only: the order of the text is the order of the items.
-fn declarations<'a>(items: &[(usize, &Item<'a>)]) -> Result<HashMap<&'a str, usize>, String> {
+fn declarations<'a>(items: &[(usize, &Item<'a>)], sources: &[Source]) -> Result<HashMap<&'a str, usize>, Fault> {
     let mut index = HashMap::with_capacity(items.len());
     for (id, (_, item)) in items.iter().enumerate() {
-        if index.insert(item.name, id).is_some() {
-            return Err(format!("`{}` is declared twice", item.name));
+        if let Some(first) = index.insert(item.name, id) {
+            return Err(declared_twice(items[first], items[id], sources));
         }
     }
     Ok(index)
+}
+
+fn declared_twice(first: (usize, &Item<'_>), second: (usize, &Item<'_>), sources: &[Source]) -> Fault {
+    let own = |(source, item): (usize, &Item<'_>)| sources[source].own_line(item.declared_line);
+    let (place, other) = match (own(first), own(second)) {
+        (None, Some(place)) => (Some(place), first.0),
+        (place, _) => (place, second.0),
+    };
+    let problem = match &place {
+        Some(_) => format!("`{}` is declared in {} too", first.1.name, sources[other].name),
+        None => format!("`{}` is declared twice", first.1.name),
+    };
+    Fault { problem, own: place }
 }
 
 /// The items that the roots reach, in the order of the sources.
@@ -213,7 +269,7 @@ impl Writer {
         match &source.origins {
             Some(origins) => {
                 for at in (item.first_line..).take(lines) {
-                    self.lines.run(1, origins.get(at - 1).map_or(LineOrigin::None, |o| LineOrigin::User(o.clone())));
+                    self.lines.run(1, origins.get(at - 1).cloned().unwrap_or(LineOrigin::None));
                 }
             }
             None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
@@ -250,7 +306,7 @@ mod tests {
     #[test]
     fn two_declarations_of_one_name_are_refused() {
         let sources = [source("a", "const X = 1u;\n"), source("b", "const X = 2u;\n")];
-        assert_eq!(link("", &sources, &["X"], "").err(), Some("`X` is declared twice".to_owned()));
+        assert_eq!(link("", &sources, &["X"], "").err(), Some("`X` is declared twice".to_owned().into()));
     }
 
     #[test]

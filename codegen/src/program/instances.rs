@@ -11,7 +11,7 @@ use crate::{CONTRACTS, Plan};
 
 /// The skeleton's text.
 pub(super) fn skeleton(key: &str, registry: &Registry) -> Result<Source, String> {
-    let template = registry.row("pass", key).and_then(|row| row.template);
+    let template = registry.row("pass", key).and_then(|row| row.template.as_ref());
     template
         .map(|template| Source::template(template, &Renames::default()))
         .ok_or_else(|| format!("no text for the skeleton `{key}`"))
@@ -22,8 +22,8 @@ pub(super) fn sources(pass: &Pass, plan: &Plan, registry: &Registry) -> Result<V
     let mut sources = Vec::new();
     for role in ordered(pass, registry) {
         let row = instance_row(role, &plan.selection, registry)?;
-        if let Some(template) = row.template {
-            let renames = renames(role, axis_of(&role.contract, registry), row, template.text);
+        if let Some(template) = &row.template {
+            let renames = renames(role, axis_of(&role.contract, registry), row, &template.text);
             sources.push(Source::template(template, &renames));
         }
     }
@@ -35,8 +35,8 @@ pub(super) fn algorithms(pass: &Pass, plan: &Plan, registry: &Registry) -> Resul
     let mut heads: Vec<String> = Vec::new();
     for role in ordered(pass, registry) {
         let row = instance_row(role, &plan.selection, registry)?;
-        if let Some(template) = row.template.filter(|_| !row.paper.is_empty()) {
-            let lines = head(template.text);
+        if let Some(template) = row.template.as_ref().filter(|_| !row.paper.is_empty()) {
+            let lines = head(&template.text);
             let lines: Vec<&str> = lines.lines().map(|line| line.trim_start_matches("//").trim()).collect();
             let text = format!("{}:\n{}\n", template.path, lines.join("\n").trim_end());
             if !heads.contains(&text) {

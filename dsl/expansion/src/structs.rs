@@ -126,7 +126,7 @@ fn attribute_type(format: Format, serving: &TokenStream) -> TokenStream {
         Format::U32 => quote! { ::core::primitive::u32 },
         Format::Vec2 => quote! { #serving::glam::Vec2 },
         Format::Vec3 | Format::Octahedral => quote! { #serving::glam::Vec3 },
-        Format::Vec4 | Format::Rgba8 => quote! { #serving::glam::Vec4 },
+        Format::Vec4 | Format::Rgba8 | Format::Rgba16 => quote! { #serving::glam::Vec4 },
     }
 }
 

@@ -164,6 +164,13 @@ codes! {
     RECURSION "recursion" "Shader functions may not call themselves, not even through others.";
     MISSING_VALUE "missing-value" "Not every path gives the value that this place needs.";
     OUT_OF_RANGE "out-of-range" "The number does not fit.";
+    // A WGSL file of the user's own, and the row in its head.
+    MISSING_FILE "missing-file" "A file that the description names cannot be read.";
+    ROW "row" "A line of the row in the file's head cannot be read.";
+    UNKNOWN_FACT "unknown-fact" "There is no fact of this name.";
+    UNKNOWN_RESOURCE "unknown-resource" "The row declares no buffer of this name.";
+    CONTRACT "contract" "The file does not fulfil the contract of its axis.";
+    REFUSED "refused" "The file's own text is no program together with the others.";
     // The description as a whole.
     UNKNOWN_TECHNIQUE "unknown-technique" "The registry has no technique of this name.";
     UNKNOWN_AXIS "unknown-axis" "The registry has no axis of this name.";

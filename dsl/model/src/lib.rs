@@ -8,6 +8,7 @@ mod diagnostic;
 mod draft;
 mod names;
 mod origin;
+mod own;
 mod set;
 mod uniform_block;
 mod variant;
@@ -20,5 +21,6 @@ pub use draft::{
 };
 pub use names::mangled;
 pub use origin::{Origin, Spanned};
+pub use own::{OwnRow, RowPlaces, written};
 pub use uniform_block::UniformBlock;
 pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant, is_target_fact};

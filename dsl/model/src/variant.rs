@@ -154,6 +154,11 @@ impl Selection {
         self.rows.iter().map(|selected| selected.row.soundness).max().unwrap_or(Soundness::Atomics)
     }
 
+    /// The files of the user's own among the rows' templates, by their names in messages.
+    pub fn own_files(&self) -> impl Iterator<Item = &str> {
+        self.rows.iter().filter_map(|selected| selected.row.template.as_ref()?.own.as_deref())
+    }
+
     /// Everything that the rows offer.
     pub fn offers(&self) -> Vec<Fact> {
         self.rows.iter().flat_map(|selected| selected.row.offers.iter().copied()).collect()

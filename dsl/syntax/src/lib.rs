@@ -7,6 +7,8 @@
 //! text ─► tokens ─► grammar ─► closures (syn) ─► check: typed tree ─► lower: WGSL
 //! ```
 //!
+//! [`row()`] reads the other thing that users write: the row in the head of a WGSL file of their own.
+//!
 //! Nothing here knows a technique by name, looks anything up in the registry, or knows naga or wgpu.
 //! Any text comes back as diagnostics: nothing here panics, and nesting is bounded.
 
@@ -24,6 +26,7 @@ mod nesting;
 mod parts;
 mod reads;
 mod report;
+mod row;
 mod text;
 mod tree;
 mod types;
@@ -31,6 +34,7 @@ mod types;
 pub use captured::Captured;
 pub use grammar::{Role, Written};
 pub use parts::{Part, Parts, assemble};
+pub use row::row;
 
 use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check, codes};
 use fragbuf_templates::Registry;

@@ -146,7 +146,7 @@ impl Description {
         leaves.extend(self.attributes.iter().map(|(name, format)| match format {
             Format::F32 => format!("f.{name}"),
             Format::U32 => format!("f.{name} as f32"),
-            Format::Vec2 | Format::Vec3 | Format::Vec4 | Format::Rgba8 | Format::Octahedral => format!("f.{name}.y"),
+            _ => format!("f.{name}.y"),
         }));
         leaves.extend(self.uniforms.iter().map(|(name, kind)| match kind {
             UniformType::F32 => format!("u.{name}"),
@@ -258,9 +258,9 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
             if random.once_in(2) {
                 let number = OptionValue::Number(parameter.range.0 + random.below(3) as u32);
                 let option = if random.once_in(10) { OptionValue::from("many") } else { number };
-                options.push((parameter.name.to_owned(), option.clone()));
+                options.push((parameter.name.to_string(), option.clone()));
                 if random.once_in(10) {
-                    options.push((parameter.name.to_owned(), option));
+                    options.push((parameter.name.to_string(), option));
                 }
             }
         }

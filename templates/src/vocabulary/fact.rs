@@ -10,6 +10,18 @@ macro_rules! facts {
             /// Every fact.
             pub const ALL: &[Fact] = &[$(Fact::$variant),*];
 
+            /// The word of manifests and of rows in files: the name in lower case, joined by `-`.
+            pub fn word(self) -> String {
+                let mut word = String::new();
+                for letter in format!("{self:?}").chars() {
+                    if letter.is_ascii_uppercase() && !word.is_empty() {
+                        word.push('-');
+                    }
+                    word.push(letter.to_ascii_lowercase());
+                }
+                word
+            }
+
             /// What the fact means, as the object of "requires".
             pub fn meaning(self) -> &'static str {
                 match self { $(Fact::$variant => $meaning,)* }

@@ -73,6 +73,11 @@ pub enum Expression {
 const FUNCTIONS: [(&str, usize); 4] = [("min", 2), ("max", 2), ("ceil_div", 2), ("pow2", 1)];
 
 impl Formula {
+    /// Whether the value depends on this symbol.
+    pub fn mentions(&self, symbol: &str) -> bool {
+        self.0.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|word| word == symbol)
+    }
+
     /// Reads the text.
     pub fn read(&self) -> Result<Expression, FormulaError> {
         let mut reader = Reader { text: &self.0, at: 0 };

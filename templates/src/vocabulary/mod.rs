@@ -10,6 +10,9 @@ mod resource;
 mod row;
 mod technique;
 
+/// A text that a row includes, or that a user's file gave.
+pub type Text = std::borrow::Cow<'static, str>;
+
 pub use fact::Fact;
 pub use formula::{Expression, Formula, FormulaError, Polynomial};
 pub use pass::{

@@ -1,6 +1,6 @@
 //! What a technique keeps in memory.
 
-use super::Formula;
+use super::{Formula, Text};
 
 /// One buffer or texture.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Resource {
     /// How long its contents matter.
     pub life: Life,
     /// One line for the reader of a plan.
-    pub summary: &'static str,
+    pub summary: Text,
 }
 
 /// One part of an index.
@@ -94,8 +94,15 @@ pub enum Life {
 
 impl Resource {
     /// A buffer of `element`s without extents, kept from nothing.
-    pub fn new(name: &str, element: Element, summary: &'static str) -> Self {
-        Resource { name: name.to_owned(), element, extents: Vec::new(), init: Init::Keep, life: Life::Frame, summary }
+    pub fn new(name: &str, element: Element, summary: impl Into<Text>) -> Self {
+        Resource {
+            name: name.to_owned(),
+            element,
+            extents: Vec::new(),
+            init: Init::Keep,
+            life: Life::Frame,
+            summary: summary.into(),
+        }
     }
 
     /// Adds an index part inside those already there.

@@ -1,6 +1,6 @@
 //! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
 
-use super::{Edit, Fact, Formula, Resource, Step, Use};
+use super::{Edit, Fact, Formula, Resource, Step, Text, Use};
 
 /// One way to choose: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +23,9 @@ pub struct Row {
     /// Its axis.
     pub axis: String,
     /// What it does, in one line.
-    pub summary: &'static str,
+    pub summary: Text,
     /// Where it comes from: paper and section.
-    pub paper: &'static str,
+    pub paper: Text,
     /// The template; `None` where the row only changes plans or constants.
     pub template: Option<Template>,
     /// What it keeps in memory.
@@ -45,7 +45,7 @@ pub struct Row {
     /// What it changes in the steps of others.
     pub edits: Vec<Edit>,
     /// Values on other axes that suit it, taken when nothing else is said.
-    pub defaults: Vec<(&'static str, &'static str)>,
+    pub defaults: Vec<(Text, Text)>,
     /// What a user can set on it.
     pub parameters: Vec<Parameter>,
     /// What can go wrong by design.
@@ -57,36 +57,38 @@ pub struct Row {
 }
 
 /// A whole WGSL file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Template {
-    /// Its path under `templates/`.
-    pub path: &'static str,
+    /// Its path under `templates/`; a user's file as the description names it.
+    pub path: Text,
     /// Its text.
-    pub text: &'static str,
+    pub text: Text,
+    /// For a file of the user's own: what messages call it.
+    pub own: Option<Text>,
 }
 
 /// A number that a user can set on a row; it becomes a generated constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
     /// The word in `{ name: value }`.
-    pub name: &'static str,
+    pub name: Text,
     /// The generated constant.
-    pub constant: &'static str,
+    pub constant: Text,
     /// The value when nothing is said, over the symbols of generation time.
     pub default: Formula,
     /// Least and greatest.
     pub range: (u32, u32),
     /// What it does.
-    pub summary: &'static str,
+    pub summary: Text,
 }
 
 /// What can go wrong by design, and is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hazard {
     /// Its name.
-    pub name: &'static str,
+    pub name: Text,
     /// What happens.
-    pub what: &'static str,
+    pub what: Text,
     /// The hazard exists only while this is not offered.
     pub unless: Option<Fact>,
 }
@@ -113,14 +115,31 @@ pub enum Order {
     Unordered,
 }
 
+impl Soundness {
+    /// Every kind, the strongest first.
+    pub const ALL: [Soundness; 4] = [Soundness::Atomics, Soundness::Interlock, Soundness::Lock, Soundness::Racy];
+
+    /// The word of plans and of rows in files.
+    pub fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+}
+
+impl Template {
+    /// A file of fragbuf's own, or one that code has made.
+    pub fn new(path: impl Into<Text>, text: impl Into<Text>) -> Self {
+        Template { path: path.into(), text: text.into(), own: None }
+    }
+}
+
 impl Row {
     /// A row with nothing but its names.
-    pub fn new(axis: &str, key: &str, summary: &'static str, paper: &'static str) -> Self {
+    pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
         Row {
             key: key.to_owned(),
             axis: axis.to_owned(),
-            summary,
-            paper,
+            summary: summary.into(),
+            paper: paper.into(),
             template: None,
             resources: Vec::new(),
             uses: Vec::new(),

@@ -145,7 +145,7 @@ fn unsaid(
         .filter_map(|chosen| chosen.alternatives.first())
         .flat_map(|selected| &selected.row.defaults)
         .find(|(name, _)| *name == axis.key)
-        .map(|(_, value)| *value);
+        .map(|(_, value)| value.as_ref());
     let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suited).or(axis.default);
     let origin = draft.preset.as_ref().map_or(&draft.name.origin, |preset| &preset.origin);
     let rows: Option<Vec<&Row>> =
@@ -179,6 +179,15 @@ fn selected(
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
     let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
+        if let Some(path) = alternative.file() {
+            diagnostics.push(Diagnostic::new(
+                codes::MISSING_FILE,
+                &value.origin,
+                format!("nothing has read `{path}`"),
+                "files are read where a description is loaded from a file; add its row to the registry before the check",
+            ));
+            return None;
+        }
         let known: Vec<&str> =
             registry.rows_of(&axis.value).map(|row| row.key.as_str()).filter(|key| *key != Registry::CLOSURE).collect();
         diagnostics.push(Diagnostic::new(
@@ -201,7 +210,7 @@ fn option(
     diagnostics: &mut Diagnostics,
 ) -> Option<(String, u32)> {
     let Some(parameter) = row.parameters.iter().find(|parameter| parameter.name == name.value) else {
-        let known: Vec<&str> = row.parameters.iter().map(|parameter| parameter.name).collect();
+        let known: Vec<&str> = row.parameters.iter().map(|parameter| &*parameter.name).collect();
         let hint = if known.is_empty() {
             format!("`{}` has no options: drop the braces", row.key)
         } else {

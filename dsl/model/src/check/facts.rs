@@ -5,7 +5,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Row};
 
 use crate::variant::{Chosen, is_target_fact};
-use crate::{Diagnostic, Diagnostics, Draft, codes};
+use crate::{Diagnostic, Diagnostics, Draft, codes, written};
 
 /// Checks every combination; `given` is what the payload and the `keep` line offer.
 pub(super) fn check(
@@ -53,7 +53,8 @@ fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {
     row.offers.contains(&fact) || row.implies.iter().any(|(if_given, then)| *then == fact && given.contains(if_given))
 }
 
-/// A storage that keeps the k best needs a k; one that keeps all must have none, unless the k best are chosen afterwards.
+/// A storage that keeps the k best needs a k; one that keeps all must have none, unless the k best are chosen
+/// afterwards. One whose memory is measured in k needs a k too.
 fn keeps_what_is_said(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> bool {
     let keeps = |fact: Fact| row.offers.contains(&fact);
     match (keeps(Fact::KeepsBest), keeps(Fact::KeepsAll)) {
@@ -61,8 +62,12 @@ fn keeps_what_is_said(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> bool {
         (false, true) => {
             given.contains(&Fact::KeepsAll) || pick.iter().any(|other| other.offers.contains(&Fact::SelectsBest))
         }
-        _ => true,
+        _ => !given.contains(&Fact::KeepsAll) || !is_measured_in_k(row),
     }
+}
+
+fn is_measured_in_k(row: &Row) -> bool {
+    row.resources.iter().flat_map(|resource| &resource.extents).any(|extent| extent.length.mentions("k"))
 }
 
 fn is_legal(pick: &Pick<'_>, given: &[Fact]) -> bool {
@@ -89,7 +94,7 @@ impl Situation<'_> {
         let given: Vec<Fact> = self.given.iter().map(|fact| if *fact == said { other } else { *fact }).collect();
         let also = pick.iter().find(|row| !missing(row, pick, &given).is_empty());
         let also = also.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
-        let storage = format!("`{}: {}`", chosen.axis, pick[index].key);
+        let storage = name(pick[index]);
         let others = self.ways_out(pick).map_or(String::new(), |ways| format!(", or choose {ways}"));
         Diagnostic::new(
             codes::KEEP_MISMATCH,
@@ -106,14 +111,13 @@ impl Situation<'_> {
         let mut diagnostic = Diagnostic::new(
             codes::UNMET,
             &chosen.origin,
-            format!("`{}: {}` requires {}, and nothing here offers it", row.axis, row.key, fact.meaning()),
+            format!("`{}: {}` requires {}, and nothing here offers it", row.axis, written(&row.key), fact.meaning()),
             self.hint(fact, pick),
         );
         for (other, row) in self.choices.iter().zip(pick) {
             let could = self.registry.rows_of(&other.axis).any(|row| row.offers.contains(&fact));
             if could && other.origin != chosen.origin {
-                diagnostic =
-                    diagnostic.label(&other.origin, format!("`{}: {}` does not offer it", other.axis, row.key));
+                diagnostic = diagnostic.label(&other.origin, format!("{} does not offer it", name(row)));
             }
         }
         diagnostic
@@ -147,7 +151,7 @@ impl Situation<'_> {
 }
 
 fn name(row: &Row) -> String {
-    format!("`{}: {}`", row.axis, row.key)
+    format!("`{}: {}`", row.axis, written(&row.key))
 }
 
 fn joined(words: &[String]) -> String {

@@ -3,8 +3,10 @@
 //! In: tokens at the axis, or behind `keep`. Out: what was written; whether such an axis or value exists is the
 //! registry's to say.
 
+use std::path::Path;
+
 use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spanned, codes};
-use proc_macro2::{Group, TokenTree};
+use proc_macro2::{Delimiter, Group, TokenTree};
 
 use super::cursor::Cursor;
 use super::items::end_of_item;
@@ -104,12 +106,44 @@ fn not_an_axis(word: &str) -> Option<&'static str> {
 }
 
 fn alternative(cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
-    let value = word(cursor, "a value", report)?;
+    let value = match own_file(cursor, report)? {
+        Some(file) => file,
+        None => word(cursor, "a value", report)?,
+    };
     let options = match cursor.braces() {
         Some(group) => options(&group, report),
         None => Vec::new(),
     };
     Ok(Alternative { value, options })
+}
+
+/// `wgsl("path")`, if that comes next: a file of the user's own in place of a word of the registry.
+fn own_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<String>>, Stop> {
+    let Some(TokenTree::Group(group)) = cursor.peek_second().filter(|_| cursor.at_word("wgsl")) else {
+        return Ok(None);
+    };
+    if group.delimiter() != Delimiter::Parenthesis {
+        return Ok(None);
+    }
+    let mut inside = Cursor::inside(group);
+    cursor.take();
+    cursor.take();
+    let origin = inside.origin(report);
+    let path = inside.take().and_then(|token| syn::parse2::<syn::LitStr>(token.into()).ok()).map(|path| path.value());
+    match path.filter(|path| is_relative(path) && inside.is_done()) {
+        Some(path) => Ok(Some(Spanned::new(Alternative::value_of_file(&path), origin))),
+        None => {
+            let message = "a path in quotes belongs between the parentheses, relative to this description";
+            report.error(codes::UNEXPECTED, &origin, message, "write `storage: wgsl(\"my_storage.wgsl\");`");
+            Err(Stop)
+        }
+    }
+}
+
+/// Paths appear in generated text, which must not depend on where a description lies.
+fn is_relative(path: &str) -> bool {
+    let is_plain = !path.is_empty() && !path.contains(|letter: char| letter.is_control() || letter == '\\');
+    is_plain && !Path::new(path).is_absolute() && !path.starts_with('/')
 }
 
 fn word(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {

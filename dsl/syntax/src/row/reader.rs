@@ -1,0 +1,107 @@
+//! The pieces that statements are made of, each read or reported.
+
+use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
+use fragbuf_templates::vocabulary::{Fact, Formula, FormulaError};
+
+use super::line::Line;
+use crate::near;
+
+/// A mistake was reported; the rest of the line is not worth reading.
+pub(super) struct Stop;
+
+pub(super) type Read<T> = Result<T, Stop>;
+
+/// The mistakes so far.
+pub(super) struct Reader {
+    pub(super) faults: Diagnostics,
+}
+
+impl Reader {
+    /// A word; `what` it is and the `shape` of the statement are for the message.
+    pub(super) fn word(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
+        match line.word() {
+            Some(word) => Ok(word),
+            None => self.unexpected(line, what, shape),
+        }
+    }
+
+    /// A word that WGSL takes as a name and generated code leaves free.
+    pub(super) fn name(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
+        let word = self.word(line, what, shape)?;
+        let plain = !word.value.contains('-') && !word.value.starts_with(|first: char| first.is_ascii_digit());
+        if plain && mangled(&word.value) == word.value.as_str() {
+            return Ok(word);
+        }
+        let message = format!("`{}` cannot be {what}", word.value);
+        let hint = "choose a name of letters, digits and `_` that neither WGSL nor generated code has";
+        self.stop(codes::ROW, &word.origin, message, hint)
+    }
+
+    pub(super) fn sign(&mut self, line: &mut Line<'_>, sign: char, shape: &str) -> Read<()> {
+        if line.sign(sign) { Ok(()) } else { self.unexpected(line, &format!("`{sign}`"), shape) }
+    }
+
+    pub(super) fn number(&mut self, line: &mut Line<'_>) -> Read<Spanned<u32>> {
+        let word = self.word(line, "a number", "digits only, such as `8`")?;
+        let Ok(number) = word.value.parse() else {
+            let message = format!("`{}` is no whole number of 32 bits", word.value);
+            return self.stop(codes::ROW, &word.origin, message, "write digits only, such as `8`");
+        };
+        Ok(Spanned::new(number, word.origin))
+    }
+
+    pub(super) fn facts(&mut self, line: &mut Line<'_>) -> Read<Vec<Fact>> {
+        let mut facts = vec![self.fact(line)?];
+        while line.sign(',') {
+            facts.push(self.fact(line)?);
+        }
+        Ok(facts)
+    }
+
+    pub(super) fn fact(&mut self, line: &mut Line<'_>) -> Read<Fact> {
+        let word = self.word(line, "a fact", "`keeps-best`, `keeps-all`, `critical`")?;
+        if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
+            return Ok(*fact);
+        }
+        let known: Vec<String> = Fact::ALL.iter().map(|fact| fact.word()).collect();
+        let message = format!("there is no fact `{}`", word.value);
+        self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
+    }
+
+    /// The value of a word in a table.
+    pub(super) fn one_of<T: Copy>(&mut self, word: &Spanned<String>, table: &[(&str, T)], what: &str) -> Read<T> {
+        if let Some((_, value)) = table.iter().find(|(name, _)| *name == word.value) {
+            return Ok(*value);
+        }
+        let known: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
+        self.stop(codes::ROW, &word.origin, format!("`{}` is {what}", word.value), near::hint(&word.value, &known))
+    }
+
+    /// Reports a formula that cannot be read, or that depends on what it may not.
+    pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[&str]) -> Read<()> {
+        let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
+        let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
+            // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
+            Ok(_) | Err(FormulaError::Overflow(_)) => return Ok(()),
+            Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
+            Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
+        };
+        let hint = format!("the formula may use {}, `+ - * /`, min, max, ceil_div and pow2", symbols.join(", "));
+        self.stop(codes::ROW, &formula.origin, problem, hint)
+    }
+
+    pub(super) fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {
+        let message = format!("{what} belongs here, not {}", line.describe());
+        let origin = line.here();
+        self.stop(codes::ROW, &origin, message, format!("write {shape}"))
+    }
+
+    pub(super) fn stop<T>(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) -> Read<T> {
+        self.fault(code, at, message, hint);
+        Err(Stop)
+    }
+
+    pub(super) fn fault(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) {
+        self.faults.push(Diagnostic::new(code, at, message, hint));
+    }
+}

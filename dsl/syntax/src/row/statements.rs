@@ -1,0 +1,326 @@
+//! What each line of a row says.
+
+use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
+use fragbuf_templates::vocabulary::{
+    Access, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Use,
+};
+
+use super::line::Line;
+use super::reader::{Read, Reader, Stop};
+use crate::near;
+
+/// The words that begin a line.
+const WORDS: [&str; 12] = [
+    "paper",
+    "buffer",
+    "pass",
+    "host",
+    "uses",
+    "offers",
+    "requires",
+    "implies",
+    "suits",
+    "parameter",
+    "hazard",
+    "soundness",
+];
+
+/// How a shader touches a buffer.
+const ACCESSES: [(&str, Access); 4] =
+    [("read", Access::Read), ("plain", Access::Plain), ("atomic", Access::Atomic), ("coherent", Access::Coherent)];
+
+/// What one element is.
+const ELEMENTS: [(&str, Element); 3] =
+    [("word", Element::Word), ("entry", Element::Entry), ("beside", Element::Beside)];
+
+/// What an extent may depend on.
+const SYMBOLS: [&str; 6] = ["width", "height", "pixels", "k", "fragments", "kept"];
+
+/// Names inside generated accessors, beside which an index stands.
+const ACCESSOR_NAMES: [&str; 5] = ["at", "key", "value", "entry", "expected"];
+
+/// The axis that a row begins with.
+pub(super) fn axis(line: &mut Line<'_>, faults: &mut Diagnostics) -> Option<String> {
+    let origin = line.here();
+    let word = line.word().filter(|word| !WORDS.contains(&word.value.as_str()));
+    if let (Some(word), true, Some(_)) = (&word, line.is_done(), line.summary) {
+        return Some(word.value.clone());
+    }
+    let message = "a row begins with its axis, and what the file does behind ` -- `";
+    let hint = "write a first line such as `//: storage -- the first k fragments, as they come`";
+    faults.push(Diagnostic::new(codes::ROW, &origin, message, hint));
+    None
+}
+
+/// The row so far.
+pub(super) struct Statements {
+    own: OwnRow,
+    /// The buffers that lines declare, those with mistakes in them too.
+    declared: Vec<String>,
+    /// The buffers that lines refer to.
+    used: Vec<Spanned<String>>,
+    reader: Reader,
+}
+
+impl Statements {
+    pub(super) fn new(own: OwnRow, faults: Diagnostics) -> Self {
+        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults } }
+    }
+
+    /// The whole row, or every mistake.
+    pub(super) fn finish(mut self) -> Result<OwnRow, Diagnostics> {
+        for used in self.used.iter().filter(|used| !self.declared.contains(&used.value)) {
+            let message = format!("the row declares no buffer `{}`", used.value);
+            let hint = match self.declared.as_slice() {
+                [] => format!("declare it: `//: buffer {}[pixel < pixels]: word`", used.value),
+                names => near::hint(&used.value, names),
+            };
+            self.reader.fault(codes::UNKNOWN_RESOURCE, &used.origin, message, hint);
+        }
+        self.reader.faults.gate(self.own)
+    }
+
+    /// Reads one line.
+    pub(super) fn read(&mut self, mut line: Line<'_>) {
+        if self.statement(&mut line).is_ok() && !line.is_done() {
+            let message = format!("{} stands behind the end of the statement", line.describe());
+            let hint = "leave it out; a new statement begins on a line of its own";
+            self.reader.fault(codes::ROW, &line.here(), message, hint);
+        }
+    }
+
+    fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let word = self.reader.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
+        let row = &mut self.own.row;
+        match word.value.as_str() {
+            "paper" => row.paper = line.until(&[]).value.into(),
+            "offers" => row.offers = self.reader.facts(line)?,
+            "requires" => row.requires = self.reader.facts(line)?,
+            "uses" => self.own.row.uses = self.uses(line)?,
+            "buffer" => return self.buffer(line),
+            "pass" => return self.pass(line),
+            "host" => return self.host(line),
+            "implies" => return self.implies(line),
+            "suits" => return self.suits(line),
+            "parameter" => return self.parameter(line),
+            "hazard" => return self.hazard(line),
+            "soundness" => return self.soundness(line),
+            // The first line, when the row has no axis: that has been said.
+            _ if row.axis.is_empty() && line.origin() == self.own.places.row => return Err(Stop),
+            unknown => {
+                let message = format!("no line of a row begins with `{unknown}`");
+                return self.reader.stop(codes::ROW, &word.origin, message, near::hint(unknown, &WORDS));
+            }
+        }
+        Ok(())
+    }
+
+    /// `buffer name[index < length]…: element, clear 0, host, persistent -- summary`
+    fn buffer(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`buffer heads[pixel < pixels]: word`";
+        let name = self.reader.name(line, "a buffer's name", SHAPE)?;
+        self.declared.push(name.value.clone());
+        let mut resource = Resource::new(&name.value, Element::Word, summary(line));
+        while line.sign('[') {
+            resource = self.extent(line, resource)?;
+        }
+        self.reader.sign(line, ':', SHAPE)?;
+        let element = self.reader.word(line, "an element", "`word`, `entry` or `beside`")?;
+        resource.element = self.reader.one_of(&element, &ELEMENTS, "no element")?;
+        while line.sign(',') {
+            let word = self.reader.word(line, "an attribute", "`clear 0`, `host` or `persistent`")?;
+            match word.value.as_str() {
+                "clear" => resource.init = Init::Clear(self.reader.number(line)?.value),
+                "host" => resource.init = Init::Host,
+                "persistent" => resource.life = Life::Persistent,
+                other => {
+                    let hint = near::hint(other, &["clear", "host", "persistent"]);
+                    return self.reader.stop(codes::ROW, &word.origin, format!("a buffer has no `{other}`"), hint);
+                }
+            }
+        }
+        let known = self.own.row.resources.iter().position(|other| other.name == name.value);
+        if let Some(first) = known {
+            let message = format!("the buffer `{}` is declared twice", name.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
+            self.reader.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
+            return Err(Stop);
+        }
+        self.own.row.resources.push(resource);
+        self.own.places.resources.push(name.origin);
+        Ok(())
+    }
+
+    /// `index < length]`
+    fn extent(&mut self, line: &mut Line<'_>, resource: Resource) -> Read<Resource> {
+        const SHAPE: &str = "`[pixel < pixels]`";
+        let index = self.reader.name(line, "an index", SHAPE)?;
+        let is_taken = resource.extents.iter().any(|extent| extent.name == index.value);
+        if is_taken || ACCESSOR_NAMES.contains(&index.value.as_str()) {
+            let message = format!("`{}` is a name beside this one in the buffer's accessors", index.value);
+            return self.reader.stop(codes::ROW, &index.origin, message, "choose another, such as `slot` or `pixel`");
+        }
+        self.reader.sign(line, '<', SHAPE)?;
+        let length = line.until(&[']']);
+        self.reader.sign(line, ']', SHAPE)?;
+        self.reader.formula(&length, &SYMBOLS)?;
+        Ok(resource.by(&index.value, length.value))
+    }
+
+    /// `pass skeleton as anchor: buffer access, …`
+    fn pass(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`pass store: entries plain`";
+        let skeleton = self.reader.word(line, "the pass", SHAPE)?;
+        let anchor = match line.exactly("as") {
+            true => self.reader.name(line, "the name of a pass", "`pass store as again: entries plain`")?,
+            false => skeleton.clone(),
+        };
+        self.reader.sign(line, ':', SHAPE)?;
+        let uses = self.uses(line)?;
+        let is_anchor = |step: &Step| matches!(step, Step::Pass(pass) if pass.anchor == anchor.value);
+        if let Some(first) = self.own.row.steps.iter().position(is_anchor) {
+            let message = format!("two passes are called `{}`", anchor.value);
+            let hint = format!("name one of them: `pass {} as another: …`", skeleton.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &anchor.origin, message, hint);
+            self.reader.faults.push(diagnostic.label(&self.own.places.steps[first], "the first is here"));
+            return Err(Stop);
+        }
+        self.own.row.steps.push(Step::Pass(Pass { uses, ..Pass::geometry(&anchor.value, &skeleton.value) }));
+        self.own.places.steps.push(skeleton.origin);
+        Ok(())
+    }
+
+    /// `host function: reads offsets[pixels]; sets fragments`
+    fn host(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`host allocate: reads offsets[pixels]; sets fragments`";
+        let function = self.reader.word(line, "the host's function", SHAPE)?;
+        self.reader.sign(line, ':', SHAPE)?;
+        let (mut reads, mut sets) = (Vec::new(), Vec::new());
+        loop {
+            let verb = self.reader.word(line, "`reads` or `sets`", SHAPE)?;
+            let list = match verb.value.as_str() {
+                "reads" => &mut reads,
+                "sets" => &mut sets,
+                other => {
+                    let message = format!("the host cannot `{other}`");
+                    return self.reader.stop(codes::ROW, &verb.origin, message, SHAPE);
+                }
+            };
+            loop {
+                list.push(line.until(&[',', ';']));
+                if !line.sign(',') {
+                    break;
+                }
+            }
+            if !line.sign(';') {
+                break;
+            }
+        }
+        for read in &reads {
+            let name = read.value.split('[').next().unwrap_or("").to_owned();
+            let length = name.chars().count() as u32;
+            self.used.push(Spanned::new(name, read.origin.clone().with_length(length)));
+        }
+        let values = |list: Vec<Spanned<String>>| list.into_iter().map(|word| word.value).collect();
+        let host = Host { function: function.value, reads: values(reads), sets: values(sets) };
+        self.own.row.steps.push(Step::Host(host));
+        self.own.places.steps.push(function.origin);
+        Ok(())
+    }
+
+    /// `buffer access, buffer atomic rechecked, …`
+    fn uses(&mut self, line: &mut Line<'_>) -> Read<Vec<Use>> {
+        let mut uses = Vec::new();
+        while !line.is_done() {
+            let name = self.reader.word(line, "a buffer", "`entries plain, counts atomic`")?;
+            let access = self.reader.word(line, "how it is touched", "`read`, `plain`, `atomic` or `coherent`")?;
+            let mut usage = Use::new(&name.value, self.reader.one_of(&access, &ACCESSES, "no way to touch a buffer")?);
+            if line.exactly("rechecked") {
+                usage.loads = Loads::Rechecked;
+            }
+            uses.push(usage);
+            self.used.push(name);
+            if !line.sign(',') {
+                break;
+            }
+        }
+        Ok(uses)
+    }
+
+    /// `implies fact when fact`
+    fn implies(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let then = self.reader.fact(line)?;
+        if !line.exactly("when") {
+            return self.reader.unexpected(line, "`when`", "`implies sorted when depth-key`");
+        }
+        let given = self.reader.fact(line)?;
+        self.own.row.implies.push((given, then));
+        Ok(())
+    }
+
+    /// `suits axis value, …`
+    fn suits(&mut self, line: &mut Line<'_>) -> Read<()> {
+        loop {
+            let axis = self.reader.word(line, "an axis", "`suits cull early`")?;
+            let value = self.reader.word(line, "a value", "`suits cull early`")?;
+            self.own.row.defaults.push((axis.value.into(), value.value.into()));
+            self.own.places.defaults.push(value.origin);
+            if !line.sign(',') {
+                return Ok(());
+            }
+        }
+    }
+
+    /// `parameter name CONSTANT = formula, from least to greatest -- summary`
+    fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
+        let name = self.reader.word(line, "the option's name", SHAPE)?;
+        let constant = self.reader.name(line, "a generated constant", SHAPE)?;
+        self.reader.sign(line, '=', SHAPE)?;
+        let default = line.until(&[',']);
+        self.reader.formula(&default, &["capacity", "entry_words", "beside_words"])?;
+        if !line.sign(',') || !line.exactly("from") {
+            return self.reader.unexpected(line, "`, from`", SHAPE);
+        }
+        let least = self.reader.number(line)?;
+        if !line.exactly("to") {
+            return self.reader.unexpected(line, "`to`", SHAPE);
+        }
+        let greatest = self.reader.number(line)?;
+        if greatest.value < least.value {
+            let message = format!("nothing lies between {} and {}", least.value, greatest.value);
+            let hint = format!("write `from {} to {}`", greatest.value, least.value);
+            return self.reader.stop(codes::ROW, &greatest.origin, message, hint);
+        }
+        self.own.row.parameters.push(Parameter {
+            name: name.value.into(),
+            constant: constant.value.into(),
+            default: default.value.into(),
+            range: (least.value, greatest.value),
+            summary: summary(line).into(),
+        });
+        self.own.places.parameters.push(constant.origin);
+        Ok(())
+    }
+
+    /// `hazard name unless fact -- what`
+    fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
+        let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
+        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), unless });
+        Ok(())
+    }
+
+    fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let word = self.reader.word(line, "what it rests on", "`soundness atomics`")?;
+        let known = Soundness::ALL.map(|soundness| (soundness.word(), soundness));
+        let known: Vec<(&str, Soundness)> = known.iter().map(|(word, soundness)| (word.as_str(), *soundness)).collect();
+        self.own.row.soundness = self.reader.one_of(&word, &known, "no soundness")?;
+        Ok(())
+    }
+}
+
+/// What stands behind ` -- `.
+fn summary(line: &Line<'_>) -> String {
+    line.summary.unwrap_or("of the user's own").to_owned()
+}

@@ -1,0 +1,97 @@
+//! Any file gives a row or mistakes, each inside the file, and never a panic; a good row gives what it says.
+
+#![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
+
+use fragbuf_syntax::row;
+use fragbuf_templates::vocabulary::{Access, Element, Fact, Init, Loads, Soundness, Step};
+
+const GOOD: &str = "// What it is.\n\
+    //: storage -- all of it\n\
+    //: paper Nobody 2026, sec. 3\n\
+    //: buffer heads[pixel < pixels]: word, clear 7 -- the first\n\
+    //: buffer rest[slot < k * 2][pixel < ceil_div(width, 8) * height]: beside, persistent -- the rest\n\
+    //: pass reset: heads plain\n\
+    //: pass store as again: heads atomic rechecked, rest coherent\n\
+    //: host allocate: reads heads[pixels]; sets fragments\n\
+    //: offers keeps-best, bound-any-instant\n\
+    //: requires critical\n\
+    //: implies sorted when depth-key\n\
+    //: suits sync spin_lock, cull early\n\
+    //: parameter limit LIMIT = 2 * capacity, from 1 to 99 -- tries\n\
+    //: hazard torn unless critical -- two in one\n\
+    //: soundness lock\n\
+    \n\
+    fn storage_insert(pixel: u32, entry: Packed) {}\n";
+
+#[test]
+fn a_row_says_what_its_lines_say() {
+    let own = row(GOOD, "mine.wgsl", "wgsl:mine.wgsl", "there/mine.wgsl").expect("it is a row");
+    let row = own.row;
+    assert_eq!((row.axis.as_str(), row.key.as_str(), &*row.summary), ("storage", "wgsl:mine.wgsl", "all of it"));
+    assert_eq!(row.paper, "Nobody 2026, sec. 3");
+    let [heads, rest] = row.resources.as_slice() else { unreachable!("two buffers: {:?}", row.resources) };
+    assert_eq!((heads.element, heads.init, &*heads.summary), (Element::Word, Init::Clear(7), "the first"));
+    let extents: Vec<_> = rest.extents.iter().map(|extent| (extent.name.as_str(), extent.length.to_string())).collect();
+    assert_eq!(extents, [("slot", "k * 2".to_owned()), ("pixel", "ceil_div(width, 8) * height".to_owned())]);
+    let [Step::Pass(reset), Step::Pass(store), Step::Host(host)] = row.steps.as_slice() else {
+        unreachable!("three steps: {:?}", row.steps)
+    };
+    assert_eq!((reset.anchor.as_str(), reset.skeleton.as_str()), ("reset", "reset"));
+    assert_eq!((store.anchor.as_str(), store.skeleton.as_str()), ("again", "store"));
+    let uses: Vec<_> = store.uses.iter().map(|usage| (usage.resource.as_str(), usage.access, usage.loads)).collect();
+    assert_eq!(uses, [("heads", Access::Atomic, Loads::Rechecked), ("rest", Access::Coherent, Loads::Exact)]);
+    assert_eq!(
+        (host.reads.as_slice(), host.sets.as_slice()),
+        (&["heads[pixels]".to_owned()][..], &["fragments".to_owned()][..])
+    );
+    assert_eq!(row.offers, [Fact::KeepsBest, Fact::BoundAnyInstant]);
+    assert_eq!(
+        (row.requires.as_slice(), row.implies.as_slice()),
+        (&[Fact::Critical][..], &[(Fact::DepthKey, Fact::Sorted)][..])
+    );
+    assert_eq!(row.defaults, [("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())]);
+    let limit = &row.parameters[0];
+    assert_eq!((&*limit.name, &*limit.constant, limit.range), ("limit", "LIMIT", (1, 99)));
+    assert_eq!((row.hazards[0].unless, row.soundness), (Some(Fact::Critical), Soundness::Lock));
+    let template = row.template.expect("the text");
+    assert_eq!((&*template.path, template.own.as_deref()), ("mine.wgsl", Some("there/mine.wgsl")));
+    assert!(!template.text.contains("//:") && template.text.lines().count() == GOOD.lines().count());
+}
+
+/// The same row with pieces of it removed, doubled, swapped and replaced by signs that need care.
+#[test]
+fn any_text_is_a_row_or_mistakes_inside_it() {
+    let mut state = 1u64;
+    let mut below = |end: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 16) as usize % end.max(1)
+    };
+    const SIGNS: [&str; 12] = ["[", "]", "<", ":", ",", " -- ", "//:", "\n", "ä", "\u{a0}", "99999999999", "("];
+    let mut refused = 0;
+    for _ in 0..4000 {
+        let mut letters: Vec<String> = GOOD.chars().map(String::from).collect();
+        for _ in 0..1 + below(4) {
+            let at = below(letters.len());
+            match below(3) {
+                0 => drop(letters.drain(at..(at + 1 + below(12)).min(letters.len()))),
+                1 => letters[at] = SIGNS[below(SIGNS.len())].to_owned(),
+                _ => {
+                    let other = below(letters.len());
+                    letters.swap(at, other);
+                }
+            }
+        }
+        let text = letters.concat();
+        let Err(faults) = row(&text, "any.wgsl", "wgsl:any.wgsl", "any.wgsl") else { continue };
+        refused += 1;
+        for fault in &faults {
+            let line = text.lines().nth(fault.origin.line as usize - 1).unwrap_or("");
+            let end = (fault.origin.column + fault.origin.length) as usize;
+            assert!(end <= line.chars().count() + 2, "beyond the line: {fault}\n{text}");
+            assert!(!fault.hint.is_empty() && !fault.message.is_empty(), "{fault}");
+        }
+    }
+    assert!(refused > 1000, "{refused}");
+}

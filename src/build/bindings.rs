@@ -1,0 +1,173 @@
+//! What Rust code needs to run generated passes: entry points and texts, bindings, sizes of buffers, layouts of blocks.
+
+use std::fmt::Write;
+
+use fragbuf_backends::{File, Generation, Planned};
+use fragbuf_codegen::Plan;
+use fragbuf_model::UniformType;
+
+use super::rust;
+
+/// One module `name` of bindings for a generation from `source`. Paths of files begin with `folder`, relative to the Rust
+/// file. A plan is a module `plan`, with a number where targets follow different ones; each target is a module with one
+/// module per pass.
+pub fn bindings(name: &str, source: &str, generation: &Generation, group: u32, folder: &str) -> String {
+    let mut text = format!(
+        "\n/// Generated from `{source}`.\n#[allow(dead_code, unused_parens, clippy::all)]\npub mod {name} {{\n"
+    );
+    for (index, planned) in generation.plans.iter().enumerate() {
+        plan(&plan_name(index), &planned.plan, group, &mut text);
+    }
+    for (index, planned) in generation.plans.iter().enumerate() {
+        for target in &planned.targets {
+            let files: Vec<&File> = generation.files.iter().filter(|file| file.target == target.name).collect();
+            target_module(target.name, &plan_name(index), planned, &files, folder, &mut text);
+        }
+    }
+    text.push_str("}\n");
+    text
+}
+
+fn plan_name(index: usize) -> String {
+    if index == 0 { "plan".to_owned() } else { format!("plan_{index}") }
+}
+
+fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
+    let axes = plan.selection.describe();
+    let _ = write!(text, "\n    /// {}: {axes}.\n    pub mod {name} {{\n", plan.variant.name.value);
+    let _ = writeln!(text, "        /// The bind group of everything.\n        pub const GROUP: u32 = {group};");
+    let mut names = Names::with("GROUP");
+    for (constant, value) in &plan.constants {
+        let name = names.fresh(constant.clone());
+        let _ = writeln!(text, "        /// `{constant}` of the shaders.\n        pub const {name}: u32 = {value};");
+    }
+    blocks(plan, text);
+    vertex(plan, text);
+    buffers(plan, text);
+    text.push_str("    }\n");
+}
+
+/// Uniform blocks: byte offsets of their fields, and sizes as every target takes them.
+fn blocks(plan: &Plan, text: &mut String) {
+    let frame: Vec<(String, UniformType)> = plan.frame.iter().map(|field| (field.clone(), UniformType::U32)).collect();
+    block("frame", "The size of the frame and what else the host sets for it", 0, &frame, text);
+    let own: Vec<(String, UniformType)> =
+        plan.variant.uniforms.iter().map(|u| (u.name.value.clone(), u.kind.value)).collect();
+    if !own.is_empty() {
+        block("uniforms", "The description's own uniforms", 1, &own, text);
+    }
+    text.push_str(
+        "\n        /// One matrix, column after column: from positions of vertices to clip space.\n        pub mod camera {\n\
+        \x20           /// The binding.\n            pub const BINDING: u32 = 2;\n\
+        \x20           /// Bytes of the block.\n            pub const SIZE: u64 = 64;\n        }\n",
+    );
+}
+
+fn block(name: &str, summary: &str, binding: u32, fields: &[(String, UniformType)], text: &mut String) {
+    let _ = write!(text, "\n        /// {summary}.\n        pub mod {name} {{\n");
+    let _ = writeln!(text, "            /// The binding.\n            pub const BINDING: u32 = {binding};");
+    let (mut end, mut names) = (0u64, Names::with("SIZE"));
+    for (field, kind) in fields {
+        let (size, align) = layout(*kind);
+        let offset = end.next_multiple_of(align);
+        end = offset + size;
+        let constant = names.fresh(format!("{}_OFFSET", field.to_ascii_uppercase()));
+        let _ = writeln!(text, "            /// Byte offset of `{field}`, {}.", kind.wgsl_type());
+        let _ = writeln!(text, "            pub const {constant}: u64 = {offset};");
+    }
+    let size = end.next_multiple_of(16);
+    let _ =
+        writeln!(text, "            /// Bytes of the block.\n            pub const SIZE: u64 = {size};\n        }}");
+}
+
+/// Bytes and alignment in a uniform block, WGSL §14.4.1; std140 says the same of these.
+fn layout(kind: UniformType) -> (u64, u64) {
+    match kind {
+        UniformType::F32 | UniformType::U32 | UniformType::I32 => (4, 4),
+        UniformType::Vec2 => (8, 8),
+        UniformType::Vec3 => (12, 16),
+        UniformType::Vec4 => (16, 16),
+    }
+}
+
+/// Locations of the vertex stage's inputs.
+fn vertex(plan: &Plan, text: &mut String) {
+    text.push_str("\n        /// Locations of the inputs of geometry passes.\n        pub mod vertex {\n");
+    text.push_str("            /// vec3<f32>\n            pub const POSITION: u32 = 0;\n");
+    let inputs = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
+    let mut names = Names::with("POSITION");
+    for (location, attribute) in (1..).zip(inputs) {
+        let name = names.fresh(attribute.name.value.to_ascii_uppercase());
+        let kind = attribute.format.value.wgsl_type();
+        let _ = writeln!(text, "            /// {kind}\n            pub const {name}: u32 = {location};");
+    }
+    text.push_str("        }\n");
+}
+
+/// Buffers: bindings, and sizes as functions of what is known at allocation.
+fn buffers(plan: &Plan, text: &mut String) {
+    text.push_str("\n        /// What is kept in memory.\n        pub mod buffers {\n");
+    for planned in &plan.resources {
+        let (name, summary) = (rust::snake_case(&planned.resource.name), &planned.resource.summary);
+        let (parameters, words) = rust::formula(&planned.words, &plan.bound);
+        let parameters: Vec<String> = parameters.iter().map(|parameter| format!("{parameter}: u64")).collect();
+        let _ =
+            write!(text, "            /// `{}`: {summary}.\n            pub mod {name} {{\n", planned.resource.name);
+        let binding = planned.binding;
+        let _ = writeln!(text, "                /// The binding.\n                pub const BINDING: u32 = {binding};");
+        let _ = writeln!(text, "                /// Bytes: 4 * ({}).", planned.words);
+        let _ = writeln!(text, "                pub const fn bytes({}) -> u64 {{", parameters.join(", "));
+        let _ = writeln!(text, "                    4 * {words}\n                }}\n            }}");
+    }
+    text.push_str("        }\n");
+}
+
+fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], folder: &str, text: &mut String) {
+    let name = rust::snake_case(target);
+    let _ =
+        write!(text, "\n    /// The passes of a frame for the target `{target}`, in order.\n    pub mod {name} {{\n");
+    let _ = writeln!(text, "        pub use super::{plan}{};", if plan == "plan" { "" } else { " as plan" });
+    let mut names = Names::with("plan");
+    for pass in planned.plan.passes() {
+        let _ = write!(
+            text,
+            "\n        /// The pass `{0}`.\n        pub mod {1} {{\n",
+            pass.anchor,
+            names.fresh(rust::snake_case(&pass.anchor))
+        );
+        for file in files.iter().filter(|file| file.pass == pass.anchor) {
+            for (stage, entry_point) in &file.entry_points {
+                stage_constants(stage, entry_point, &format!("{folder}/{}", file.path), text);
+            }
+        }
+        text.push_str("        }\n");
+    }
+    text.push_str("    }\n");
+}
+
+/// Names in one module: Rust takes each once, and names of descriptions may differ by case alone.
+struct Names(Vec<String>);
+
+impl Names {
+    fn with(taken: &str) -> Self {
+        Names(vec![taken.to_owned()])
+    }
+
+    /// The name, with `_` appended until none before had it.
+    fn fresh(&mut self, mut name: String) -> String {
+        while self.0.contains(&name) {
+            name.push('_');
+        }
+        self.0.push(name.clone());
+        name
+    }
+}
+
+fn stage_constants(stage: &str, entry_point: &str, path: &str, text: &mut String) {
+    let constant = stage.to_ascii_uppercase();
+    let (kind, include) = if path.ends_with(".spv") { ("&[u8]", "include_bytes") } else { ("&str", "include_str") };
+    let _ = writeln!(text, "            /// The entry point of the {stage} stage.");
+    let _ = writeln!(text, "            pub const {constant}_ENTRY_POINT: &str = {entry_point:?};");
+    let _ = writeln!(text, "            /// The file of the {stage} stage.");
+    let _ = writeln!(text, "            pub const {constant}: {kind} = {include}!({path:?});");
+}

@@ -1,0 +1,272 @@
+//! `fragbuf::build` in a build script: a small crate of its own builds and runs, does no work twice, and fails where its
+//! description does. Layouts are compared with naga's reading of the generated text.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use fragbuf::build::{Build, bindings};
+use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, target};
+
+use crate::cases::{checked, named};
+
+const MANIFEST: &str = "
+[package]
+name = \"glass\"
+version = \"0.0.0\"
+edition = \"2024\"
+publish = false
+
+[build-dependencies]
+fragbuf = { path = \"ROOT\", default-features = false }
+
+[workspace]
+";
+
+const SCRIPT: &str = "
+fn main() -> Result<(), fragbuf::build::Error> {
+    fragbuf::build::Build::new()
+        .file(\"shaders/glass.fragbuf\")
+        .file(\"shaders/first_k.fragbuf\")
+        .technique(\"ab_sb\")
+        .set(\"sort\", \"bitonic\")
+        .targets(&[\"wgsl\", \"spirv\", \"glsl-vulkan\"])
+        .emit()?;
+    Ok(())
+}
+";
+
+const MAIN: &str = r##"
+#![deny(warnings)]
+include!(concat!(env!("OUT_DIR"), "/fragbuf.rs"));
+
+/// A size that is known when the program is built.
+const KEYS: u64 = glass::plan::buffers::keys::bytes(640, 480, 8);
+
+fn main() {
+    // 4 bytes, k slots of every pixel.
+    assert_eq!(KEYS, 4 * 8 * 640 * 480);
+    // Colour and identity stand beside the key.
+    assert_eq!(glass::plan::buffers::entries::bytes(640, 480, 8), 4 * 2 * 8 * 640 * 480);
+    assert_eq!(ab_sb::plan::buffers::offsets::bytes(3, 5), 4 * 16);
+    assert_eq!(ab_sb::plan::buffers::block_sums::bytes(1024, 2), 4 * 2);
+    assert_eq!(first_k::wgsl::plan::buffers::taken::bytes(7, 3), 4 * 21);
+    assert!(glass::wgsl::store::FRAGMENT.contains(glass::wgsl::store::FRAGMENT_ENTRY_POINT));
+    assert!(glass::glsl_vulkan::store::FRAGMENT.starts_with("#version 450"));
+    assert_eq!(glass::spirv::store::FRAGMENT[..4], [0x03, 0x02, 0x23, 0x07]);
+    assert_eq!(ab_sb::wgsl::scan_sums::COMPUTE_ENTRY_POINT, "scan_sums");
+    assert_eq!((glass::plan::GROUP, glass::plan::uniforms::CUT_OFFSET, glass::plan::uniforms::EYE_OFFSET), (0, 0, 16));
+    println!("ran");
+}
+"##;
+
+const GLASS: &str = "buffer Glass from kplus_array {
+    fragment { color: rgba8, depth: f32, id: u32 }
+    uniform { cut: f32, eye: vec3 }
+    where |f, u| f.depth > u.cut + u.eye.x;
+}
+";
+
+struct Crate {
+    root: PathBuf,
+    target: PathBuf,
+}
+
+impl Crate {
+    fn new() -> Self {
+        let temporary = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let this = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = temporary.join("glass");
+        let _ = std::fs::remove_dir_all(&root);
+        let made = Crate { root, target: temporary.parent().unwrap().to_owned() };
+        made.write("Cargo.toml", &MANIFEST.replace("ROOT", &this.display().to_string()));
+        made.write("build.rs", SCRIPT);
+        made.write("src/main.rs", MAIN);
+        made.write("shaders/glass.fragbuf", GLASS);
+        for name in ["first_k.fragbuf", "first_k.wgsl"] {
+            let text = std::fs::read_to_string(this.join("examples/own_storage").join(name)).unwrap();
+            made.write(&format!("shaders/{name}"), &text);
+        }
+        // The versions that this workspace was built with: no network is needed.
+        std::fs::copy(this.join("Cargo.lock"), made.root.join("Cargo.lock")).unwrap();
+        made
+    }
+
+    fn write(&self, path: &str, text: &str) {
+        let path = self.root.join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    fn edit(&self, path: &str, from: &str, to: &str) {
+        let text = std::fs::read_to_string(self.root.join(path)).unwrap();
+        assert!(text.contains(from), "{path} has no {from}");
+        self.write(path, &text.replace(from, to));
+    }
+
+    fn cargo(&self, arguments: &[&str]) -> (Output, String) {
+        let output = Command::new(env!("CARGO"))
+            .args(arguments)
+            .arg("--offline")
+            .current_dir(&self.root)
+            .env("CARGO_TARGET_DIR", &self.target)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output, said)
+    }
+
+    /// Builds, and says whether the build script ran.
+    fn ran_script(&self) -> bool {
+        let (output, said) = self.cargo(&["build", "--verbose"]);
+        assert!(output.status.success(), "{said}");
+        said.lines()
+            .any(|line| line.contains("Running") && line.contains("build-script-build") && line.contains("glass"))
+    }
+
+    /// What was written, by path, with the time of writing.
+    fn written(&self) -> BTreeMap<PathBuf, std::time::SystemTime> {
+        let mut found = BTreeMap::new();
+        let mut waiting = vec![self.target.join("debug/build")];
+        while let Some(folder) = waiting.pop() {
+            for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+                let path = entry.path();
+                match path.is_dir() {
+                    true => waiting.push(path),
+                    false
+                        if path.to_string_lossy().contains("/fragbuf")
+                            && path.to_string_lossy().contains("/glass-") =>
+                    {
+                        let _ = found.insert(path, entry.metadata().unwrap().modified().unwrap());
+                    }
+                    false => {}
+                }
+            }
+        }
+        found
+    }
+}
+
+#[test]
+fn a_crate_with_a_build_script_builds_runs_and_does_nothing_twice() {
+    let made = Crate::new();
+    let (output, said) = made.cargo(&["run"]);
+    assert!(output.status.success() && output.stdout == b"ran\n", "{said}");
+    let first = made.written();
+    assert!(first.len() > 20, "{first:?}");
+    assert!(!made.ran_script(), "nothing has changed");
+
+    // Another value in the description: the script runs, and writes what is different.
+    made.edit("shaders/glass.fragbuf", "f.depth > u.cut", "f.depth >= u.cut");
+    assert!(made.ran_script());
+    let second = made.written();
+    let touched: Vec<&PathBuf> =
+        second.iter().filter(|(path, time)| first.get(*path) != Some(time)).map(|(path, _)| path).collect();
+    assert!(!touched.is_empty());
+    assert!(
+        touched
+            .iter()
+            .all(|path| path.to_string_lossy().contains("/glass/") && path.to_string_lossy().contains("store")),
+        "{touched:?}"
+    );
+
+    // The user's own WGSL file is watched too.
+    made.edit("shaders/first_k.wgsl", "// The first k fragments", "// The k first fragments");
+    assert!(made.ran_script());
+    assert!(!made.ran_script(), "nothing has changed");
+
+    // A mistake fails the build with its place.
+    made.edit("shaders/glass.fragbuf", "u.cut", "u.cutt");
+    let (output, said) = made.cargo(&["build"]);
+    assert!(!output.status.success());
+    assert!(said.contains("error[unknown-field]") && said.contains("shaders/glass.fragbuf:4:31"), "{said}");
+    made.edit("shaders/glass.fragbuf", "u.cutt", "u.cut");
+    made.edit("shaders/first_k.wgsl", "//: offers", "//: ofers");
+    let (output, said) = made.cargo(&["build"]);
+    assert!(!output.status.success());
+    assert!(said.contains("error[row]") && said.contains("shaders/first_k.wgsl:11:5"), "{said}");
+}
+
+/// Offsets of fields and sizes of blocks, for every named case, against the layout that naga computes from the text.
+#[test]
+fn layouts_are_those_that_naga_computes() {
+    let mut compared = 0;
+    for (name, description, set) in named() {
+        let variant = checked(&description, &set).unwrap();
+        let targets: Vec<&'static Target> = vec![target("wgsl-native").unwrap()];
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 4 };
+        let Ok(generation) = generate(&variant, &request, &Registry::builtin()) else { panic!("{name}") };
+        let bound = bindings("variant", name, &generation, 4, "files");
+        for file in &generation.files {
+            let module = naga::front::wgsl::parse_str(&String::from_utf8(file.bytes.clone()).unwrap());
+            // Coherent buffers need options of naga's that this test is not about.
+            let Ok(module) = module else { continue };
+            for (_, variable) in module.global_variables.iter() {
+                let Some(binding) = &variable.binding else { continue };
+                assert_eq!(binding.group, 4);
+                let block = variable.name.as_deref().unwrap();
+                let text = part(&bound, block);
+                assert!(text.contains(&format!("BINDING: u32 = {};", binding.binding)), "{name}: {block} in {text}");
+                if let naga::TypeInner::Struct { members, .. } = &module.types[variable.ty].inner {
+                    for member in members.iter().filter(|_| block != "camera") {
+                        let field = member.name.as_deref().unwrap().to_uppercase();
+                        // Words that WGSL keeps for itself have one underscore more there.
+                        let line = |field: &str| format!("{field}_OFFSET: u64 = {};", member.offset);
+                        let (own, bare) = (line(&field), line(field.trim_end_matches('_')));
+                        assert!(text.contains(&own) || text.contains(&bare), "{name}: no `{own}` in {text}");
+                        compared += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+/// The module of this name.
+fn part<'a>(text: &'a str, name: &str) -> &'a str {
+    let start = text.find(&format!("pub mod {name} {{")).unwrap_or_else(|| panic!("no `{name}` in {text}"));
+    let rest = &text[start + 8..];
+    &rest[..rest.find("pub mod").unwrap_or(rest.len())]
+}
+
+#[test]
+fn a_build_script_that_asks_for_what_there_is_not_is_told() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bindings");
+    let said = |build: Build| build.out_dir(&out).emit().unwrap_err().to_string();
+    assert!(said(Build::new().technique("kb").targets(&["wgls"])).contains("no target `wgls`"));
+    assert!(said(Build::new().technique("kb").technique("kb")).contains("module `kb`"));
+    assert!(said(Build::new().technique("kbb")).contains("did you mean `kb`?"));
+    assert!(said(Build::new().technique("kplus_array").set("sync", "interlock")).contains("error[target]"));
+    assert!(said(Build::new().file("no/such.fragbuf")).contains("no/such.fragbuf"));
+}
+
+/// Rust's names fold cases and have keywords that descriptions do not know of.
+#[test]
+fn names_that_differ_by_case_alone_stay_apart() {
+    let text = "buffer B from ab_ll { fragment { color: rgba8, depth: f32, Color: f32, position: f32 }
+        uniform { cut: f32, Cut: u32 } where |f, u| f.Color + f.position > u.cut && u.Cut > 0; }";
+    let variant = checked(&crate::cases::text(text), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&variant, &request, &Registry::builtin()).unwrap();
+    let bound = bindings("variant", "case", &generation, 0, "files");
+    for line in
+        ["CUT_OFFSET: u64 = 0;", "CUT_OFFSET_: u64 = 4;", "COLOR: u32 = 1;", "COLOR_: u32 = 2;", "POSITION_: u32 = 3;"]
+    {
+        assert!(bound.contains(&format!("pub const {line}")), "{line} in {bound}");
+    }
+}
+
+/// Targets that follow different plans have bindings of their own plan each.
+#[test]
+fn an_alternative_has_a_plan_of_its_own() {
+    let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "interlock_else_lock").unwrap();
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&checked(&description, &set).unwrap(), &request, &Registry::builtin()).unwrap();
+    let bound = bindings("variant", "case", &generation, 0, "files");
+    let (first, rest) = bound.split_once("pub mod plan_1 {").unwrap();
+    let (second, targets) = rest.split_once("pub mod wgsl {").unwrap();
+    assert!(first.contains("pub mod locks") && !second.contains("pub mod locks"));
+    assert!(part(targets, "glsl").contains("pub use super::plan_1 as plan;"));
+}

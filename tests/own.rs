@@ -1,0 +1,297 @@
+//! Files of the user's own in place of words of the registry: what is accepted runs through every target and validator,
+//! what is refused is refused at the user's own line and column.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use fragbuf::load::{Description, load};
+use fragbuf::report::render;
+use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate, target};
+use fragbuf_model::codes;
+
+use crate::validators::validate;
+
+fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_storage").join(name);
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own").join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Everything that is wrong on the way to all targets, with the texts that were read.
+fn faults(folder: &Path) -> Result<(), (Diagnostics, Vec<(String, String)>)> {
+    let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let loaded = load(&description, &[], &[], &registry);
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    match loaded.variant.and_then(|variant| generate(&variant, &request, &registry)) {
+        Ok(generation) => {
+            assert!(generation.refusals.is_empty());
+            validate(generation.files.iter());
+            Ok(())
+        }
+        Err(faults) => Err((faults, loaded.sources)),
+    }
+}
+
+fn with(name: &str, description: &str, file: &str) -> PathBuf {
+    let folder = folder(name);
+    std::fs::write(folder.join("own.fragbuf"), description).unwrap();
+    std::fs::write(folder.join("mine.wgsl"), file).unwrap();
+    folder
+}
+
+const DESCRIPTION: &str = "buffer Own {\n    storage: wgsl(\"mine.wgsl\");\n    keep 8;\n}\n";
+
+/// A change to the example, the code, what the mistake must stand on, and a part of the way out.
+struct Bad {
+    from: &'static str,
+    to: &'static str,
+    code: &'static str,
+    at: &'static str,
+    way_out: &'static str,
+}
+
+const fn bad(from: &'static str, to: &'static str, code: &'static str, at: &'static str, way_out: &'static str) -> Bad {
+    Bad { from, to, code, at, way_out }
+}
+
+const BAD: &[Bad] = &[
+    bad("//: storage --", "// storage --", "row", "buffer taken", "//: storage -- "),
+    bad("//: storage -- the first", "//: storage the first", "row", "storage the first", "//: storage -- "),
+    bad("//: offers", "//: ofers", "row", "ofers", "did you mean `offers`?"),
+    bad("own-atomics,", "own-atomic,", "unknown-fact", "own-atomic,", "did you mean `own-atomics`?"),
+    bad("[slot < k]", "[slot k]", "row", "k]", "[pixel < pixels]"),
+    bad("[slot < k]", "[slot < k *]", "row", "k *]", "ceil_div"),
+    bad("[slot < k]", "[slot < kk]", "row", "kk]", "pixels, k"),
+    bad("]: entry", "]: entries", "row", "entries --", "`entry`"),
+    bad("clear 0", "clear zero", "row", "zero --", "digits"),
+    bad("clear 0", "cleared 0", "row", "cleared", "`clear`"),
+    bad("slots plain", "slots plainly", "row", "plainly", "`plain`"),
+    bad("slots plain", "slots plain read", "row", "read\n", "a line of its own"),
+    bad("taken read", "takn read", "unknown-resource", "takn read", "did you mean `taken`?"),
+    bad("//: buffer slots", "//: buffer slots: word\n//: buffer slots", "duplicate", "slots[slot", "leave one"),
+    bad("//: pass resolve:", "//: pass reslove:", "unknown-value", "reslove", "resolve"),
+    bad("//: pass store", "// pass store", "row", "//: storage", "//: pass store"),
+    bad("sync slot_counter", "sink slot_counter", "unknown-axis", "slot_counter\n", "sync"),
+    bad("sync slot_counter", "sync slot_count", "unknown-value", "slot_count\n", "slot_counter"),
+    bad(
+        "fn storage_read(",
+        "fn other_read(",
+        "contract",
+        "resolve:",
+        "fn storage_read(pixel: u32, cursor: u32) -> Packed",
+    ),
+    bad(
+        "fn storage_insert(",
+        "fn other_insert(",
+        "contract",
+        "//: storage",
+        "fn storage_insert(pixel: u32, entry: Packed)",
+    ),
+    bad(
+        "storage_first(pixel: u32) -> u32",
+        "storage_first(pixel: u32) -> i32",
+        "contract",
+        "storage_first(pixel: u32) -> i32",
+        "write `fn storage_first(pixel: u32) -> u32`",
+    ),
+    bad(
+        "storage_insert(pixel: u32, ",
+        "storage_insert(",
+        "contract",
+        "storage_insert(entry",
+        "pixel: u32, entry: Packed",
+    ),
+    bad("fn first_k_cursor(", "fn sync_store(", "contract", "sync_store(pixel: u32, slot", "another name"),
+    bad(
+        "fn first_k_cursor",
+        "@compute @workgroup_size(1)\nfn main() {}\n\nfn first_k_cursor",
+        "contract",
+        "fn main",
+        "function",
+    ),
+    bad(
+        "fn first_k_cursor",
+        "@group(1) @binding(0)\nvar<storage> x: array<u32>;\n\nfn first_k_cursor",
+        "contract",
+        "var<storage> x",
+        "//: buffer",
+    ),
+    bad(
+        "//: buffer taken",
+        "//: buffer counters: word\n//: buffer taken",
+        "contract",
+        "counters: word",
+        "own_counters",
+    ),
+    bad("//: buffer slots", "//: buffer my-slots: word\n//: buffer slots", "row", "my-slots", "letters"),
+    bad("[slot < k]", "[value < k]", "row", "value <", "slot"),
+    bad("[slot < k]", "[pixel < k]", "row", "pixel < pixels]: entry", "slot"),
+    bad("[slot < k]", "[fn < k]", "row", "fn <", "letters"),
+    bad("//: pass resolve", "//: pass store: slots plain\n//: pass resolve", "duplicate", "store: slots", "as"),
+    bad("//: offers", "//: parameter limit CAPACITY = 3, from 1 to 9\n//: offers", "row", "CAPACITY", "letters"),
+    bad("//: offers", "//: parameter limit LAYERS = 3, from 1 to 9\n//: offers", "contract", "LAYERS", "OWN_LAYERS"),
+    bad("//: offers", "//: parameter limit LIMIT = 3, from 9 to 1\n//: offers", "row", "1\n//: offers", "9"),
+    bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "row", "//: paper", "the file's head"),
+    bad("fn first_k_cursor", "}\nfn first_k_cursor", "refused", "}\nfn first", "every brace closed"),
+    bad("atomic_add(pixel, 1u)", "atomic_add(pixel, 1.5)", "refused", "1.5)", "accessors"),
+    bad("    return slots_load(", "    return slots_lode(", "refused", "slots_lode(", "`x_load`"),
+    bad("taken_load(pixel), frame.k", "taken_load(pixel), frame.cut", "refused", "cut)", "accessors"),
+    bad("fn first_k_cursor", "const EMPTY = 1u;\n\nfn first_k_cursor", "refused", "const EMPTY", "private ones"),
+];
+
+/// Line and column of `part` in `text`, from 1.
+fn place(text: &str, part: &str) -> (u32, u32) {
+    let at = text.find(part).unwrap_or_else(|| panic!("no `{part}` in {text}"));
+    let line = text[..at].matches('\n').count() as u32 + 1;
+    (line, (at - text[..at].rfind('\n').map_or(0, |newline| newline + 1)) as u32 + 1)
+}
+
+#[test]
+fn every_mistake_in_a_file_is_said_at_its_line_and_column() {
+    let good = example("first_k.wgsl");
+    let mut wrong = Vec::new();
+    for (index, case) in BAD.iter().enumerate() {
+        assert_eq!(good.matches(case.from).count().min(1), 1, "{}", case.from);
+        let text = good.replacen(case.from, case.to, 1);
+        let folder = with(&format!("bad-{index}"), DESCRIPTION, &text);
+        let (faults, sources) = faults(&folder).err().unwrap_or_else(|| panic!("accepted: {}", case.to));
+        let file = folder.join("mine.wgsl").display().to_string();
+        let (line, column) = place(&text, case.at);
+        let found = faults.iter().any(|fault| {
+            let at = (fault.code.name, &*fault.origin.file, fault.origin.line, fault.origin.column);
+            at == (case.code, &file, line, column) && fault.hint.contains(case.way_out)
+        });
+        if !found || faults.iter().count() > 1 {
+            wrong.push(format!("{} should be {} {line}:{column} alone:\n{faults}", case.to, case.code));
+        }
+        let drawn = render(&faults, &sources);
+        assert!(drawn.contains(&format!("mine.wgsl:{line}:{column}")) || !found, "{drawn}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn every_code_of_own_files_is_covered() {
+    let covered: BTreeSet<&str> = BAD.iter().map(|case| case.code).collect();
+    let place = |code| codes::ALL.iter().position(|other| *other == code).unwrap();
+    for code in &codes::ALL[place(codes::MISSING_FILE)..place(codes::UNKNOWN_TECHNIQUE)] {
+        assert!(covered.contains(code.name) || *code == codes::MISSING_FILE, "no case for {}", code.name);
+    }
+}
+
+#[test]
+fn a_missing_file_is_said_where_it_is_named() {
+    let folder = with("missing", &DESCRIPTION.replace("mine", "yours"), "");
+    let (faults, _) = faults(&folder).unwrap_err();
+    let found: Vec<_> = faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+    assert_eq!(found, [("missing-file", 2, 19)], "{faults}");
+    assert!(faults.to_string().contains("yours.wgsl"), "{faults}");
+}
+
+#[test]
+fn a_file_without_a_row_and_one_of_another_axis_are_refused() {
+    let none = with("rowless", DESCRIPTION, "fn storage_insert(pixel: u32, entry: Packed) {}\n");
+    let (none, _) = faults(&none).unwrap_err();
+    assert!(none.iter().all(|fault| fault.code == codes::ROW && fault.hint.contains("//: storage -- ")), "{none}");
+    let other = DESCRIPTION.replace("storage:", "storage: linked_list; sort:").replace("keep 8", "keep all");
+    let (other, _) = faults(&with("axis", &other, &example("first_k.wgsl"))).unwrap_err();
+    let found: Vec<_> = other.iter().map(|fault| (fault.code.name, fault.origin.line)).collect();
+    assert_eq!(found, [("unknown-value", 2)], "{other}");
+}
+
+#[test]
+fn mistakes_of_the_description_and_of_the_file_come_at_once() {
+    let description = DESCRIPTION.replace("keep 8", "where |f| f.deph > 0.0; keep 8");
+    let file = example("first_k.wgsl").replace("own-atomics", "atomics-of-mine");
+    let (faults, _) = faults(&with("both", &description, &file)).unwrap_err();
+    let found: BTreeSet<&str> = faults.iter().map(|fault| fault.code.name).collect();
+    assert_eq!(found, BTreeSet::from(["unknown-fact", "unknown-field"]), "{faults}");
+}
+
+/// The file is found beside the description that names it, wherever that lies; the text does not say where.
+#[test]
+fn a_good_file_goes_through_every_target_and_validator() {
+    // Comments and summaries are the user's, in whatever letters.
+    let file = example("first_k.wgsl").replace("//: pass store", "//: paper Große 2026 §3\n//: pass store");
+    let folder = with("good", DESCRIPTION, &file.replace("fragments that asked", "fragments, déjà là, that asked"));
+    assert_eq!(faults(&folder).map_err(|(faults, _)| faults.to_string()), Ok(()));
+    let texts = ["good", "good/elsewhere"].map(|name| {
+        let folder = with(name, DESCRIPTION, &example("first_k.wgsl"));
+        let loaded = load(&Description::read(&folder.join("own.fragbuf")).unwrap(), &[], &[], &Registry::builtin());
+        let targets: Vec<&'static Target> = TARGETS.iter().collect();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "own", group: 3 };
+        generate(&loaded.variant.unwrap(), &request, &Registry::builtin()).unwrap().files
+    });
+    assert!(texts[0] == texts[1]);
+    assert!(texts[0].iter().any(|file| String::from_utf8_lossy(&file.bytes).contains("// ---- mine.wgsl\n")));
+}
+
+/// Memory that is measured in k needs a k.
+#[test]
+fn a_storage_of_k_slots_does_not_keep_all() {
+    let folder = with("keep-all", &DESCRIPTION.replace("keep 8", "keep all"), &example("first_k.wgsl"));
+    let (faults, _) = faults(&folder).unwrap_err();
+    let found: Vec<_> = faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+    assert_eq!(found, [("keep-mismatch", 3, 10)], "{faults}");
+    assert!(faults.to_string().contains("write `keep 8;`"), "{faults}");
+}
+
+/// Nobody has tested the user's statements: what naga writes holds them inside their bounds.
+#[test]
+fn programs_with_a_file_are_guarded_at_run_time() {
+    let of = |description: &Description| {
+        let loaded = load(description, &[], &[], &Registry::builtin());
+        let request = Request { targets: &[target("msl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let files = generate(&loaded.variant.unwrap(), &request, &Registry::builtin()).unwrap().files;
+        files.iter().map(|file| String::from_utf8_lossy(&file.bytes).into_owned()).collect::<String>()
+    };
+    let folder = with("guarded", DESCRIPTION, &example("first_k.wgsl"));
+    let guarded = of(&Description::read(&folder.join("own.fragbuf")).unwrap());
+    let trusted = of(&Description::Technique("ab_ll".to_owned()));
+    // An index into a buffer is held below the buffer's size, a loop below 2^32 rounds.
+    for word in ["metal::min(unsigned(", "loop_bound"] {
+        assert!(guarded.contains(word) && !trusted.contains(word), "{word}");
+    }
+}
+
+/// Every axis takes a file: a sort is one without buffers or passes. Its facts count like any other row's.
+#[test]
+fn a_sort_of_the_users_own() {
+    let sort = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("templates/sort/insertion.wgsl"));
+    let head = "//: sort -- each into its place\n//: offers sorted\n\
+                //: parameter layers LAYERS = capacity, from 1 to 4096 -- fragments that a resolve pass holds\n\n";
+    let file = format!("{head}{}", sort.unwrap());
+    let description = "buffer Own from ab_ll {\n    sort: wgsl(\"mine.wgsl\") { layers: 9 };\n}\n";
+    assert_eq!(faults(&with("sort", description, &file)).map_err(|(faults, _)| faults.to_string()), Ok(()));
+    let unsorted = file.replace("//: offers sorted\n", "");
+    let (faults, _) = faults(&with("unsorted", description, &unsorted)).unwrap_err();
+    assert!(faults.iter().all(|fault| fault.code == codes::UNMET && fault.hint.contains("`sort: shell`")), "{faults}");
+}
+
+/// A hint names the file as a description would.
+#[test]
+fn hints_name_the_file_as_a_description_does() {
+    let file =
+        example("first_k.wgsl").replace("suits sync slot_counter", "suits sync spin_lock").replace("own-", "fragment-");
+    let description = DESCRIPTION.replace("keep 8", "sync: slot_counter; keep 8");
+    let (faults, _) = faults(&with("hint", &description, &file)).unwrap_err();
+    assert!(faults.to_string().contains("`storage: wgsl(\"mine.wgsl\")` does not offer it"), "{faults}");
+}
+
+/// Two storages of the same private names cannot meet in one program, but a template's names can: that is said.
+#[test]
+fn a_private_name_of_a_template_is_taken() {
+    let file = example("first_k.wgsl").replace("fn first_k_cursor", "const FREE = 1u;\n\nfn first_k_cursor");
+    let description = DESCRIPTION.replace("keep 8", "sync: spin_lock; keep 8");
+    let (faults, _) = faults(&with("private", &description, &file)).unwrap_err();
+    let found: Vec<_> = faults.iter().map(|fault| (fault.code.name, fault.message.as_str())).collect();
+    assert_eq!(found, [("refused", "`FREE` is declared in sync/spin_lock.wgsl too")], "{faults}");
+}
