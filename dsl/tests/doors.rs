@@ -115,8 +115,8 @@ fn random_descriptions_are_the_same_through_every_door() {
         whole += usize::from(parse(&description.text(), "file").diagnostics.is_empty());
     }
     // Both kinds must be there for the test to mean anything.
-    assert!(accepted >= 40, "only {accepted} of {count} are variants");
-    assert!((100..400).contains(&whole), "{whole} of {count} read without a mistake");
+    assert!(accepted >= 25, "only {accepted} of {count} are variants");
+    assert!((100..450).contains(&whole), "{whole} of {count} read without a mistake");
 }
 
 #[test]

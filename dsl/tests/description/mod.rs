@@ -121,7 +121,7 @@ impl Description {
 
     /// An expression of type `f32`; now and then with a mistake in it.
     fn number(&self, random: &mut Random, depth: usize) -> String {
-        if random.once_in(40) {
+        if random.once_in(100) {
             return random
                 .pick(&["f.deph", "1", "f.depth.round()", "true", "u.nothing", "x y", "&f.depth"])
                 .to_string();
