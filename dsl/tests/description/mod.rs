@@ -48,7 +48,8 @@ impl Description {
     }
 
     pub fn choose(&mut self, axis: &str, value: &str) {
-        self.choices.push((axis.to_owned(), vec![(value.to_owned(), Vec::new())]));
+        let alternatives = value.split(" else ").map(|value| (value.to_owned(), Vec::new()));
+        self.choices.push((axis.to_owned(), alternatives.collect()));
     }
 
     pub fn random(random: &mut Random, registry: &Registry) -> Self {
