@@ -1,0 +1,202 @@
+//! Expressions: each becomes words of the frame, or a place.
+
+use naga::{Expression, Handle, RelationalFunction, TypeInner, VectorSize};
+
+use super::constant::literal_words;
+use super::place::Spot;
+use super::{Compiler, Result, Value};
+use crate::operation::{Op, Word};
+use crate::scalar::{Binary, Ternary, Unary};
+use crate::shape::{count, is_pointer};
+
+impl Compiler<'_> {
+    /// What an expression is: what it was emitted as, or what it is anywhere.
+    pub(super) fn value(&mut self, expression: Handle<Expression>) -> Result<Value> {
+        match self.frame.values[expression.index()] {
+            Some(value) => Ok(value),
+            None => {
+                self.emit(expression)?;
+                self.frame.values[expression.index()].ok_or_else(|| "a result before its statement".to_owned())
+            }
+        }
+    }
+
+    /// Evaluates an expression where the program stands.
+    pub(super) fn emit(&mut self, expression: Handle<Expression>) -> Result<()> {
+        let value = self.evaluate(expression)?;
+        self.frame.values[expression.index()] = Some(value);
+        Ok(())
+    }
+
+    fn evaluate(&mut self, expression: Handle<Expression>) -> Result<Value> {
+        let function = self.frame.function;
+        let words = match &function.expressions[expression] {
+            Expression::Literal(literal) => self.row(&literal_words(literal)?),
+            Expression::Constant(constant) => {
+                let words = self.constant_value(self.module.constants[*constant].init)?;
+                self.row(&words)
+            }
+            Expression::Override(handle) => {
+                let init = self.module.overrides[*handle].init.ok_or("an override without a value")?;
+                let words = self.constant_value(init)?;
+                self.row(&words)
+            }
+            Expression::ZeroValue(kind) => self.zero_value(self.shapes.inner(*kind))?,
+            Expression::Compose { components, .. } => self.compose(components)?,
+            Expression::Access { base, index } => return self.access(*base, *index),
+            Expression::AccessIndex { base, index } => return self.access_at(*base, *index),
+            Expression::Splat { size, value } => self.splat(*size, *value)?,
+            Expression::Swizzle { size, vector, pattern } => {
+                let from = self.words(*vector)?;
+                let (_, width) = self.kind_of(self.type_of(*vector))?;
+                let to = self.take(count(*size) * width);
+                for (number, component) in (0..count(*size)).zip(pattern) {
+                    let from = from + *component as u32 * width;
+                    self.push(Op::Copy { to: to + number * width, from, count: width });
+                }
+                to
+            }
+            Expression::FunctionArgument(number) => {
+                return self
+                    .frame
+                    .arguments
+                    .get(*number as usize)
+                    .copied()
+                    .ok_or_else(|| "a missing argument".to_owned());
+            }
+            Expression::GlobalVariable(handle) => {
+                let spot = self.globals.get(handle).copied().ok_or("a variable that was refused")?;
+                return Ok(Value::Spot(spot));
+            }
+            Expression::LocalVariable(handle) => {
+                let place = self.frame.locals[handle.index()].ok_or("a variable that was refused")?;
+                return Ok(Value::Spot(Spot::local(place.0, place.1)));
+            }
+            Expression::Load { pointer } => {
+                let spot = self.spot(*pointer)?;
+                let inner = self.shapes.pointee(self.type_of(*pointer))?;
+                self.load(spot, &inner)?
+            }
+            Expression::Unary { op, expr } => self.unary(*op, *expr)?,
+            Expression::Binary { op, left, right } => self.binary(*op, *left, *right)?,
+            Expression::Select { condition, accept, reject } => self.select(*condition, *accept, *reject)?,
+            Expression::Relational { fun, argument } => self.relational(*fun, *argument)?,
+            Expression::Math { fun, arg, arg1, arg2, arg3 } => {
+                let arguments = [Some(*arg), *arg1, *arg2, *arg3];
+                self.math(*fun, &arguments.into_iter().flatten().collect::<Vec<_>>())?
+            }
+            Expression::As { expr, kind, convert } => self.convert(*expr, *kind, *convert)?,
+            Expression::ArrayLength(array) => self.array_length(*array)?,
+            Expression::CallResult(_)
+            | Expression::AtomicResult { .. }
+            | Expression::WorkGroupUniformLoadResult { .. } => {
+                return Err("a result before its statement".to_owned());
+            }
+            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => {
+                return Err("textures".to_owned());
+            }
+            Expression::Derivative { .. } => return Err("derivatives".to_owned()),
+            Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. } => {
+                return Err("subgroup operations".to_owned());
+            }
+            Expression::RayQueryVertexPositions { .. }
+            | Expression::RayQueryProceedResult
+            | Expression::RayQueryGetIntersection { .. } => return Err("rays".to_owned()),
+            Expression::CooperativeLoad { .. } | Expression::CooperativeMultiplyAdd { .. } => {
+                return Err("cooperative matrices".to_owned());
+            }
+        };
+        Ok(Value::Words(words))
+    }
+
+    fn row(&mut self, words: &[u32]) -> Word {
+        if let [one] = words { self.constant(*one) } else { self.constants_in_a_row(words) }
+    }
+
+    fn compose(&mut self, components: &[Handle<Expression>]) -> Result<Word> {
+        let mut parts = Vec::with_capacity(components.len());
+        for component in components {
+            let width = self.shapes.dense(self.type_of(*component))?;
+            parts.push((self.words(*component)?, width));
+        }
+        let to = self.take(parts.iter().map(|(_, width)| width).sum());
+        let mut at = to;
+        for (from, count) in parts {
+            self.push(Op::Copy { to: at, from, count });
+            at += count;
+        }
+        Ok(to)
+    }
+
+    fn splat(&mut self, size: VectorSize, value: Handle<Expression>) -> Result<Word> {
+        let from = self.words(value)?;
+        let (_, width) = self.kind_of(self.type_of(value))?;
+        let to = self.take(count(size) * width);
+        for number in 0..count(size) {
+            self.push(Op::Copy { to: to + number * width, from, count: width });
+        }
+        Ok(to)
+    }
+
+    fn select(
+        &mut self,
+        condition: Handle<Expression>,
+        accept: Handle<Expression>,
+        reject: Handle<Expression>,
+    ) -> Result<Word> {
+        let inner = self.type_of(accept);
+        let total = self.shapes.dense(inner)?;
+        let conditions = self.shapes.dense(self.type_of(condition))?;
+        // A vector of conditions decides component by component, a single one decides all.
+        let each = if conditions == 1 { total } else { total / conditions };
+        let (a, b, c) = (self.words(condition)?, self.words(accept)?, self.words(reject)?);
+        let to = self.take(total);
+        for word in 0..total {
+            let a = a + word / each.max(1);
+            self.push(Op::Ternary { op: Ternary::Select, to: to + word, a, b: b + word, c: c + word });
+        }
+        Ok(to)
+    }
+
+    fn relational(&mut self, function: RelationalFunction, argument: Handle<Expression>) -> Result<Word> {
+        let words = self.shapes.dense(self.type_of(argument))?;
+        let a = self.words(argument)?;
+        let op = match function {
+            RelationalFunction::All => Err(Binary::And),
+            RelationalFunction::Any => Err(Binary::Or),
+            RelationalFunction::IsNan => Ok(Unary::IsNan),
+            RelationalFunction::IsInf => Ok(Unary::IsInf),
+        };
+        match op {
+            Ok(op) => {
+                let to = self.take(words);
+                for word in 0..words {
+                    self.push(Op::Unary { op, to: to + word, a: a + word });
+                }
+                Ok(to)
+            }
+            Err(op) => Ok(self.fold(op, a, words)),
+        }
+    }
+
+    /// `a[0] op a[1] op …`
+    pub(super) fn fold(&mut self, op: Binary, a: Word, words: u32) -> Word {
+        let mut sum = a;
+        for word in 1..words {
+            let to = self.take(1);
+            self.push(Op::Binary { op, to, a: sum, b: a + word });
+            sum = to;
+        }
+        sum
+    }
+
+    pub(super) fn is_pointer(&self, expression: Handle<Expression>) -> bool {
+        is_pointer(self.type_of(expression))
+    }
+
+    /// What an expression points to, or its own type.
+    pub(super) fn pointee_or_own(&self, expression: Handle<Expression>) -> Result<TypeInner> {
+        let inner = self.type_of(expression);
+        if is_pointer(inner) { self.shapes.pointee(inner) } else { Ok(inner.clone()) }
+    }
+}

@@ -1,0 +1,199 @@
+//! The same shaders on a device and here: every word that they leave behind.
+#![allow(missing_docs, reason = "tests are read, not documented")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use fragbuf_interpreter::{Dispatch, Options, Program, dispatch};
+use fragbuf_runtime::headless::{Choice, Headless};
+use fragbuf_runtime::wgpu;
+use fragbuf_runtime::wgpu::util::DeviceExt;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+/// How far words may be apart.
+#[derive(Clone, Copy, PartialEq)]
+enum Judge {
+    Bits,
+    /// As floats, by this part of the larger one's size.
+    Floats(f32),
+}
+
+/// Words of a buffer whose length the shader does not say.
+const LENGTH: usize = 4096;
+
+const CORPUS: [(&str, &str, Judge, [u32; 3]); 7] = [
+    ("whole_numbers", include_str!("corpus/whole_numbers.wgsl"), Judge::Bits, [1, 1, 1]),
+    ("floats", include_str!("corpus/floats.wgsl"), Judge::Bits, [1, 1, 1]),
+    ("functions_of_floats", include_str!("corpus/functions_of_floats.wgsl"), Judge::Floats(1.0 / 2048.0), [1, 1, 1]),
+    ("memory", include_str!("corpus/memory.wgsl"), Judge::Bits, [1, 1, 1]),
+    ("atomics", include_str!("corpus/atomics.wgsl"), Judge::Bits, [1, 1, 1]),
+    ("workgroups", include_str!("corpus/workgroups.wgsl"), Judge::Bits, [2, 3, 1]),
+    ("wide_numbers", include_str!("corpus/wide_numbers.wgsl"), Judge::Bits, [1, 1, 1]),
+];
+
+fn parsed(text: &str) -> (naga::Module, ModuleInfo) {
+    let module = naga::front::wgsl::parse_str(text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(text)));
+    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
+    (module, info)
+}
+
+/// Numbers with everything in them: small, large, zero, sign bits.
+fn seeded(length: usize) -> Vec<u32> {
+    let mut state = 0x2545_f491u32;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        state
+    };
+    let edge = [0, 1, u32::MAX, 0x8000_0000, 0x7fff_ffff, 2, 31, 32];
+    (0..length).map(|at| edge.get(at).copied().unwrap_or_else(|| next() >> (next() % 32))).collect()
+}
+
+/// What each buffer of the program holds before: inputs are seeded, results are zero.
+fn before(program: &Program) -> Vec<Vec<u32>> {
+    let words = |buffer: &fragbuf_interpreter::Buffer| {
+        if buffer.words == 0 || !buffer.name.contains("fixed") { LENGTH } else { buffer.words as usize }
+    };
+    let filled = |buffer: &fragbuf_interpreter::Buffer| match buffer.name.as_str() {
+        "results" => vec![0; words(buffer)],
+        _ => seeded(words(buffer)),
+    };
+    program.buffers.iter().map(filled).collect()
+}
+
+fn interpreted(text: &str, groups: [u32; 3]) -> (Program, Vec<Vec<u32>>) {
+    let (module, info) = parsed(text);
+    let program = Program::entry_point(&module, &info, "main", &Options::default()).unwrap();
+    let mut buffers = before(&program);
+    let end = dispatch(&program, groups, &mut buffers);
+    if let Dispatch::Fault(fault) = end {
+        let lines: Vec<u32> = program.trace(fault.at).iter().map(|span| span.location(text).line_number).collect();
+        panic!("out of bounds at lines {lines:?} of\n{text}");
+    }
+    assert_eq!(end, Dispatch::Ended);
+    (program, buffers)
+}
+
+fn on_device(headless: &Headless, text: &str, program: &Program, groups: [u32; 3]) -> Vec<Vec<u32>> {
+    let device = &headless.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: None,
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
+    let bytes = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let buffers: Vec<(Option<u32>, wgpu::Buffer)> = program
+        .buffers
+        .iter()
+        .zip(before(program))
+        .map(|(buffer, words)| {
+            let contents = bytes(&words);
+            let init = wgpu::util::BufferInitDescriptor { label: None, contents: &contents, usage: storage };
+            (buffer.binding.map(|(_, binding)| binding), device.create_buffer_init(&init))
+        })
+        .collect();
+    let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
+        .iter()
+        .filter_map(|(binding, buffer)| {
+            Some(wgpu::BindGroupEntry { binding: (*binding)?, resource: buffer.as_entire_binding() })
+        })
+        .collect();
+    let layout = pipeline.get_bind_group_layout(0);
+    let group =
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
+    }
+    let read: Vec<wgpu::Buffer> = buffers
+        .iter()
+        .map(|(_, buffer)| {
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let descriptor =
+                wgpu::BufferDescriptor { label: None, size: buffer.size(), usage, mapped_at_creation: false };
+            let copy = device.create_buffer(&descriptor);
+            encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+            copy
+        })
+        .collect();
+    headless.queue.submit([encoder.finish()]);
+    read.iter().for_each(|buffer| buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap()));
+    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let words = |buffer: &wgpu::Buffer| {
+        let view = buffer.slice(..).get_mapped_range().unwrap();
+        view.chunks_exact(4).map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap())).collect()
+    };
+    read.iter().map(words).collect()
+}
+
+#[test]
+fn a_device_leaves_the_same_words() {
+    let features = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
+    let headless = Headless::open(&Choice::Cpu, features).unwrap();
+    let mut faults = Vec::new();
+    for (name, text, judge, groups) in CORPUS {
+        let (program, ours) = interpreted(text, groups);
+        let theirs = on_device(&headless, text, &program, groups);
+        for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.iter().zip(&theirs)) {
+            if buffer.binding.is_none() {
+                continue;
+            }
+            for (at, (own, other)) in ours.iter().zip(theirs).enumerate().filter(|(_, (a, b))| !agree(**a, **b, judge))
+            {
+                let floats = (f32::from_bits(*own), f32::from_bits(*other));
+                faults.push(format!("{name}: {}[{at}]: {own:#x} here, {other:#x} there ({floats:?})", buffer.name));
+            }
+        }
+        assert!(ours.iter().flatten().any(|word| *word != 0), "{name} writes nothing");
+    }
+    assert!(faults.is_empty(), "{} words:\n{}", faults.len(), faults.join("\n"));
+}
+
+fn agree(own: u32, other: u32, judge: Judge) -> bool {
+    match judge {
+        Judge::Floats(part) => {
+            let (own, other) = (f32::from_bits(own), f32::from_bits(other));
+            (own.is_nan() && other.is_nan()) || (own - other).abs() <= part * own.abs().max(other.abs()).max(1.0)
+        }
+        Judge::Bits => own == other,
+    }
+}
+
+/// The printer's corpus, one shader per node: what is not run is named.
+#[test]
+fn every_other_node_is_refused_by_name() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../glsl/tests/corpus");
+    let mut refused = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities: Capabilities::all() };
+        let module = naga::front::wgsl::Frontend::new_with_options(options).parse(&text).unwrap();
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
+        for entry in &module.entry_points {
+            if let Err(faults) = Program::entry_point(&module, &info, &entry.name, &Options::default()) {
+                let what: std::collections::BTreeSet<String> = faults.into_iter().map(|fault| fault.what).collect();
+                let file = path.file_stem().unwrap().to_string_lossy().into_owned();
+                refused.push(format!("{file} {}: {}", entry.name, what.into_iter().collect::<Vec<_>>().join("; ")));
+            }
+        }
+    }
+    refused.sort();
+    let textures = "textures; textures and samplers; writing textures";
+    let known = [
+        "fragment_io early: derivatives".to_owned(),
+        format!("texture_shapes main: {textures}"),
+        format!("textures main: {textures}"),
+    ];
+    assert_eq!(refused, known);
+}
