@@ -22,11 +22,14 @@
 //! The same description can stand in Rust, as a module with structs and callable closures ([`fragment_buffer!`]), or be put
 //! together by a program ([`builder`]).
 //!
+//! The [`guide`] goes through all of it.
+//!
 //! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
 //! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
 //! source lines. [`build`] generates inside a `build.rs`, [`snapshot`] inside tests.
 
 pub mod build;
+pub mod guide;
 pub mod load;
 pub mod own;
 pub mod report;

@@ -15,7 +15,7 @@ use crate::report::render;
 
 /// Asserts an `insta` snapshot of a description's plan and of its text for each target: `NAME.plan`, `NAME.wgsl`, …
 ///
-/// ```ignore
+/// ```
 /// #[test]
 /// fn glass() {
 ///     fragbuf::assert_variant_snapshot!("shaders/glass.fragbuf", targets = ["wgsl", "glsl"]);

@@ -139,7 +139,7 @@ fn every_technique_has_its_page() {
     for technique in &techniques {
         let path = root().join(format!("examples/techniques/{}.md", technique.key));
         let page = fragbuf(&["show", &technique.key, "--page"], root());
-        if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        if updating() {
             std::fs::write(&path, &page).unwrap();
         }
         assert_eq!(read(&path), page, "{} is out of date", path.display());
@@ -150,6 +150,53 @@ fn every_technique_has_its_page() {
         );
     }
     assert_eq!(files("examples/techniques", "md").len(), techniques.len(), "a page of no technique");
+}
+
+/// The guide's reference of the language is what the type checker's tables say. `INSTA_UPDATE=always` writes it anew.
+#[test]
+fn the_guide_has_the_computed_reference() {
+    let path = root().join("src/guide/language.md");
+    let reference = fragbuf(&["language"], root());
+    if updating() {
+        std::fs::write(&path, &reference).unwrap();
+    }
+    assert_eq!(read(&path), reference, "{} is out of date", path.display());
+}
+
+/// Every description in the guide's chapter on refusals is followed by what the command line says of it.
+#[test]
+fn the_guide_shows_real_refusals() {
+    let path = root().join("src/guide/refusals.md");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refusals");
+    std::fs::create_dir_all(&folder).unwrap();
+    let text = read(&path);
+    let mut chapters = text.split("```fragbuf\n");
+    let mut expected = chapters.next().unwrap().to_owned();
+    for chapter in chapters {
+        let (description, rest) = chapter.split_once("```\n").unwrap();
+        let (between, rest) = rest.split_once("```text\n").unwrap();
+        let (_, after) = rest.split_once("```\n").unwrap();
+        std::fs::write(folder.join("glass.fragbuf"), description).unwrap();
+        let said = fragbuf(&["show", "glass.fragbuf"], &folder);
+        assert!(said.starts_with("error["), "{description} is no mistake: {said}");
+        expected += &format!("```fragbuf\n{description}```\n{between}```text\n{}\n```\n{after}", said.trim_end());
+    }
+    if updating() {
+        std::fs::write(&path, &expected).unwrap();
+    }
+    assert_eq!(read(&path), expected, "{} is out of date", path.display());
+}
+
+/// The guide's storage is the example's.
+#[test]
+fn the_guide_builds_the_example() {
+    let guide = read(&root().join("src/guide/extend.md"));
+    let example = read(&root().join("examples/own_storage/first_k.wgsl"));
+    assert!(example.ends_with(&block(&guide, "wgsl")));
+}
+
+fn updating() -> bool {
+    std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always")
 }
 
 /// Every block of code in the README is what a person would get.

@@ -8,6 +8,7 @@ mod compare;
 mod devices;
 mod generate;
 mod input;
+mod language;
 mod list;
 mod output;
 mod page;
@@ -42,6 +43,8 @@ enum Command {
     List(list::List),
     /// One description: its plan, or any stage of its way to a target
     Show(show::Show),
+    /// The reference of the closure language
+    Language(language::Language),
     /// Writes the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
     /// A picture of a scene through one description
@@ -59,6 +62,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::List(list) => list.run(),
         Command::Show(show) => show.run(),
+        Command::Language(language) => language.run(),
         Command::Generate(generate) => generate.run(),
         #[cfg(feature = "pictures")]
         Command::Render(render) => render.run(),

@@ -25,6 +25,7 @@ mod near;
 mod nesting;
 mod parts;
 mod reads;
+mod reference;
 mod report;
 mod row;
 mod text;
@@ -34,6 +35,7 @@ mod types;
 pub use captured::Captured;
 pub use grammar::{Role, Written};
 pub use parts::{Part, Parts, assemble};
+pub use reference::reference;
 pub use row::row;
 
 use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check, codes};

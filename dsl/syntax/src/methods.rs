@@ -18,7 +18,6 @@ pub(crate) struct Method {
     pub gives: Slot,
     pub wgsl: Spelling,
     /// What to know of its meaning; the rows that say nothing mean the same to the bit or to WGSL's accuracy.
-    #[expect(dead_code, reason = "for readers of the table")]
     pub note: &'static str,
 }
 
@@ -191,7 +190,7 @@ pub(crate) const METHODS: &[Method] = &[
 
 /// Methods of Rust that are not offered: receivers, name, why, and what to write instead.
 #[rustfmt::skip]
-const REFUSED: &[(&[Type], &str, &str, &str)] = &[
+pub(crate) const REFUSED: &[(&[Type], &str, &str, &str)] = &[
     (FLOAT, "round", "rounds halves away from zero in Rust and to even in a shader", "write `round_ties_even()`, or `(x + 0.5).floor()`"),
     (VECTOR, "round", "rounds halves away from zero in Rust and to even in a shader", "round the components: `vec2(v.x.round_ties_even(), v.y.round_ties_even())`"),
     (VECTOR, "signum", "is never 0 in Rust and 0 for 0 in a shader", "take the components' signs: `v.x.signum()`"),

@@ -1,0 +1,12 @@
+//! `fragbuf language`: what closures can say, computed from the type checker's tables.
+
+use super::output::{self, Failure};
+
+#[derive(clap::Args)]
+pub(crate) struct Language {}
+
+impl Language {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        output::print(&fragbuf_syntax::reference())
+    }
+}
