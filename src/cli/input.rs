@@ -36,7 +36,6 @@ impl Input {
     }
 
     /// The variant, after `--set`, with `unless_said` on axes that nobody chose on.
-    #[cfg(feature = "pictures")]
     pub(crate) fn variant_or(
         &self,
         set: &[(String, String)],

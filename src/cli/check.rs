@@ -1,0 +1,201 @@
+//! `fragbuf check`: every interleaving of the fragments of one pixel. 0: no failure found; 1: a failure, with its schedule.
+
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use fragbuf::{Registry, TARGETS, Target, target};
+use fragbuf_checker::{Limits, Model, Report, Schedule, check_variant};
+use serde_json::{Value, json};
+
+use super::input::Input;
+use super::output::{self, Failure};
+
+/// Events that are no losses are counted too, so that every fragment is accounted for.
+const EVERYTHING: (&str, &str) = ("counters", "all");
+
+#[derive(clap::Args)]
+pub(crate) struct Check {
+    /// A technique's key, or a .fragbuf file
+    description: String,
+    /// Changes the description: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    set: Vec<(String, String)>,
+    /// The target whose program runs; the first that can express the description unless said
+    #[arg(long, value_name = "TARGET")]
+    target: Option<String>,
+    /// Fragments that come at once: 2 and 3 unless said
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
+    fragments: Option<u32>,
+    /// Entries that the pixel keeps: 1, 2 and 3 unless said
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=4))]
+    entries: Option<u32>,
+    /// How memory behaves
+    #[arg(long, value_enum, default_value_t = ModelArgument::Sc)]
+    model: ModelArgument,
+    /// Single schedules by chance, this many a case, in place of all orders
+    #[arg(long, value_name = "SEEDS")]
+    random: Option<u32>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ModelArgument {
+    /// Every access happens at once, in the order of the schedule
+    Sc,
+    /// Stores become visible late, in any order but per word; fences, interlock and the ends of passes order them
+    Late,
+}
+
+impl Check {
+    pub(crate) fn run(&self) -> Result<ExitCode, Failure> {
+        let registry = Registry::builtin();
+        let input = Input::read(&self.description, &registry)?;
+        let variant = input.variant_or(&self.set, &[EVERYTHING], &registry)?;
+        let target = self.target(&variant)?;
+        let limits = self.limits();
+        let mut told = Progress::new();
+        let checked = check_variant(&variant, target, &registry, &limits, &mut |what| told.say(what));
+        told.end();
+        let report = checked.map_err(|faults| input.failure(faults))?;
+        let text = if self.json {
+            output::json(&as_json(&self.description, target, &limits, &report))
+        } else {
+            as_text(&self.description, target, &limits, &report)
+        };
+        output::print(&text)?;
+        Ok(ExitCode::from(u8::from(report.failure.is_some())))
+    }
+
+    fn limits(&self) -> Limits {
+        let mut limits = Limits::default();
+        if let Some(count) = self.fragments {
+            limits.fragments = vec![count];
+        }
+        if let Some(k) = self.entries {
+            limits.entries = vec![k];
+        }
+        limits.seeds = self.random;
+        limits.model = match self.model {
+            ModelArgument::Sc => Model::Sequential,
+            ModelArgument::Late => Model::Late,
+        };
+        limits
+    }
+
+    fn target(&self, variant: &fragbuf::Variant) -> Result<&'static Target, Failure> {
+        let Some(name) = &self.target else {
+            let able = TARGETS.iter().find(|target| {
+                let mut offers = target.offers.to_vec();
+                offers.push(fragbuf_templates::vocabulary::Fact::OwnEntryPoints);
+                variant.select(&offers).is_ok()
+            });
+            return able.ok_or_else(|| Failure::Usage("no target can express the description".to_owned()));
+        };
+        let known = || TARGETS.iter().map(|target| target.name).collect::<Vec<_>>().join(", ");
+        target(name).ok_or_else(|| Failure::Usage(format!("no target `{name}`: give one of {}", known())))
+    }
+}
+
+fn model_name(model: Model) -> &'static str {
+    match model {
+        Model::Sequential => "sc",
+        Model::Late => "late",
+    }
+}
+
+fn as_text(key: &str, target: &Target, limits: &Limits, report: &Report) -> String {
+    let cases = format!("{} cases, {} states", report.cases, report.states);
+    let head = format!("{key} on {}, {}", target.name, model_name(limits.model));
+    let Some(schedule) = &report.failure else {
+        let scope = if report.is_whole { "in every order" } else { "in every order tried" };
+        return format!("{head}: no failure {scope} ({cases})\n");
+    };
+    let verdict = if report.is_stated { "fails, as stated" } else { "FAILS" };
+    let mut text = format!("{head}: {verdict} ({cases})\n\n");
+    if report.is_stated {
+        for (name, what) in &report.hazards {
+            text.push_str(&format!("  stated: {name}: {what}\n"));
+        }
+        text.push('\n');
+    }
+    text.push_str(&schedule_text(schedule));
+    text
+}
+
+pub(crate) fn schedule_text(schedule: &Schedule) -> String {
+    let mut text = format!("  case    {}\n", schedule.case);
+    for (number, words) in (1..).zip(&schedule.prior) {
+        text.push_str(&format!("  before  {number}: {words}\n"));
+    }
+    for (name, words) in &schedule.fragments {
+        text.push_str(&format!("  new     {name}: {words}\n"));
+    }
+    text.push('\n');
+    let width = schedule.steps.iter().map(|step| step.action.chars().count()).max().unwrap_or(0);
+    for (number, step) in (1..).zip(&schedule.steps) {
+        text.push_str(&format!("  {number:3}  {}  {:width$}  {}\n", step.fragment, step.action, step.place));
+    }
+    text.push_str(&format!("\n  {}\n", schedule.fault));
+    text
+}
+
+fn as_json(key: &str, target: &Target, limits: &Limits, report: &Report) -> Value {
+    json!({
+        "description": key,
+        "target": target.name,
+        "model": model_name(limits.model),
+        "holds": report.failure.is_none(),
+        "every_order": report.is_whole,
+        "cases": report.cases,
+        "states": report.states,
+        "as_stated": report.is_stated,
+        "hazards": report.hazards.iter().map(|(name, what)| json!({ "name": name, "what": what })).collect::<Vec<_>>(),
+        "failure": report.failure.as_ref().map(schedule_json),
+    })
+}
+
+fn schedule_json(schedule: &Schedule) -> Value {
+    let steps = schedule
+        .steps
+        .iter()
+        .map(|step| json!({ "fragment": step.fragment, "action": step.action, "place": step.place }));
+    json!({
+        "case": schedule.case,
+        "before": schedule.prior,
+        "fragments": schedule.fragments.iter().map(|(name, words)| json!({ "name": name, "words": words })).collect::<Vec<_>>(),
+        "steps": steps.collect::<Vec<_>>(),
+        "fault": schedule.fault,
+    })
+}
+
+/// A line on stderr once a second has passed, where somebody watches.
+struct Progress {
+    since: Instant,
+    last: Instant,
+    is_shown: bool,
+}
+
+impl Progress {
+    fn new() -> Self {
+        Progress { since: Instant::now(), last: Instant::now(), is_shown: false }
+    }
+
+    fn say(&mut self, what: &str) {
+        let is_due = self.since.elapsed() > Duration::from_secs(1) && self.last.elapsed() > Duration::from_millis(200);
+        if is_due && std::io::stderr().is_terminal() {
+            self.last = Instant::now();
+            self.is_shown = true;
+            // Nobody is left to tell when stderr is gone.
+            let _ = write!(std::io::stderr(), "\r\x1b[K{what}");
+        }
+    }
+
+    fn end(&self) {
+        if self.is_shown {
+            let _ = write!(std::io::stderr(), "\r\x1b[K");
+        }
+    }
+}
