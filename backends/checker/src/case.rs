@@ -23,6 +23,8 @@ pub(crate) struct Case {
     pub(crate) has_unseen: bool,
     /// Fragments that a pool has no room for.
     pub(crate) too_many: u32,
+    /// The room that was reserved in place of what the host would allocate: too little, and the neighbour's is gone too.
+    pub(crate) reserved: Option<u32>,
     /// Whether the last new fragment is a helper invocation.
     pub(crate) has_helper: bool,
     /// In words.
@@ -70,6 +72,7 @@ pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: O
                 pass: 0,
                 has_unseen: false,
                 too_many: 0,
+                reserved: None,
                 has_helper: false,
                 what,
             };
@@ -122,6 +125,11 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
         if needs_room {
             let short = with_room(1);
             cases.push(Case { what: format!("{}, room for one less", short.what), ..short });
+        }
+        if drawn_before && is_set {
+            let what = format!("{}, room reserved for one less", case.what);
+            let room = total - WIDTH;
+            cases.push(Case { too_many: 1, reserved: Some(room), what, ..with_room(0) });
         }
         if drawn_before {
             let what = format!("{}, one not seen by the pass before", case.what);

@@ -100,7 +100,7 @@ impl Search<'_, '_> {
     /// Every step from a state.
     fn follow(&mut self, state: &State, number: u32, judge: &mut dyn Judge) -> Option<Failure> {
         let fail = |search: &Self, what| Some(Failure { steps: search.path(number), what });
-        if let Some((one, other)) = racing(state) {
+        if let Some((one, other)) = racing(self.ground, state) {
             return fail(self, What::Race(one, other));
         }
         let mut is_stuck = true;
@@ -124,6 +124,7 @@ impl Search<'_, '_> {
                         failure.steps.push((fragment, choice));
                         return Some(failure);
                     }
+                    Ok((next, _)) if self.ground.is_idle(state, &next, fragment) => {}
                     Ok((next, _)) => {
                         if next.words != state.words {
                             if let Some(text) = judge.instant(&next.words) {
@@ -155,10 +156,10 @@ impl Search<'_, '_> {
     }
 }
 
-/// Two fragments that are about to race.
-pub(crate) fn racing(state: &State) -> Option<(usize, usize)> {
+/// Two fragments that are about to race. What a helper invocation reads is of no consequence.
+pub(crate) fn racing(ground: &Ground<'_>, state: &State) -> Option<(usize, usize)> {
     let access = |fragment: usize| match &state.fragments[fragment] {
-        Status::Before { event: Event::Access(access), .. } => Some(*access),
+        Status::Before { event: Event::Access(access), .. } if ground.helper != Some(fragment) => Some(*access),
         _ => None,
     };
     let count = state.fragments.len();

@@ -78,8 +78,8 @@ fn fragment(subject: &Subject, memory: &mut Memory, seed: u32, depth: u32) -> Re
         .inputs
         .iter()
         .map(|input| match is_position(input) {
-            // Depths in an order of their own, in steps that floats hold exactly.
-            true => [0.5, 0.5, (depth * 37 % TRIED) as f32 / 128.0 + 0.0625, 1.0].map(f32::to_bits).to_vec(),
+            // Depths in an order of their own, with all their bits in use.
+            true => [0.5, 0.5, (depth * 37 % TRIED) as f32 * 0.007_731 + 0.065_1, 1.0].map(f32::to_bits).to_vec(),
             false => seeded(input, seed),
         })
         .collect();

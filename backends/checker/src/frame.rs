@@ -18,6 +18,9 @@ pub(crate) const WIDTH: u32 = 2;
 /// Fragments that a walk over a pixel reads before it is said to have no end.
 const LONGEST: usize = 256;
 
+/// What memory holds before anybody has written to it: neither zero nor a sentinel, and a better key than any.
+const STALE: u32 = 17;
+
 /// Values of symbols.
 #[derive(Clone, Debug)]
 pub(crate) struct Symbols {
@@ -42,13 +45,15 @@ pub(crate) struct Frame<'s> {
     pub(crate) subject: &'s Subject,
     pub(crate) memory: Memory,
     pub(crate) symbols: Symbols,
+    /// The most that host steps allocate.
+    pub(crate) reserved: Option<u32>,
 }
 
 impl<'s> Frame<'s> {
     /// Memory before the first step. What no symbol sizes yet is empty.
     pub(crate) fn new(subject: &'s Subject, symbols: Symbols) -> Self {
         let count = FIRST_BINDING as usize + subject.plan.resources.len();
-        let mut frame = Frame { subject, memory: vec![Vec::new(); count], symbols };
+        let mut frame = Frame { subject, memory: vec![Vec::new(); count], symbols, reserved: None };
         // Every component of every uniform is 1: constraints by a bound admit something.
         frame.memory[1] = vec![1f32.to_bits(); 256];
         frame.memory[2] = vec![0; 16];
@@ -61,7 +66,7 @@ impl<'s> Frame<'s> {
         let (subject, symbols) = (self.subject, self.symbols.clone());
         for (planned, words) in subject.plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
             if let Ok(size) = planned.words.evaluate(&|symbol| value(subject, &symbols, symbol)) {
-                words.resize((size as usize).max(1), 0);
+                words.resize((size as usize).max(1), STALE);
             }
         }
         let fields = subject.plan.frame.iter();
@@ -89,7 +94,9 @@ impl<'s> Frame<'s> {
                     for (read, set) in host.reads.iter().zip(&host.sets) {
                         let decided = self.host_value(read)?;
                         match set.as_str() {
-                            "fragments" => self.symbols.fragments = Some(decided),
+                            "fragments" => {
+                                self.symbols.fragments = Some(self.reserved.map_or(decided, |room| room.min(decided)))
+                            }
                             other => return Err(format!("the checker does not know what sets `{other}`")),
                         }
                     }

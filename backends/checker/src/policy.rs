@@ -21,6 +21,8 @@ pub(crate) struct Policy {
     /// Words of every fragment of this pixel, and how many the neighbour got.
     pub(crate) fragments: Vec<Vec<u32>>,
     pub(crate) neighbours: u32,
+    /// How many of those find no room.
+    pub(crate) neighbours_lost: u32,
 }
 
 /// What the counters say.
@@ -36,7 +38,9 @@ struct Counts {
 impl Policy {
     /// What is wrong with a pixel that holds `kept`.
     pub(crate) fn fault(&self, kept: &[Vec<u32>], counters: &[u32]) -> Option<String> {
-        let counts = counts(counters);
+        let mut counts = counts(counters);
+        counts.no_room = counts.no_room.wrapping_sub(self.neighbours_lost);
+        counts.lost = counts.lost.wrapping_sub(self.neighbours_lost);
         if counts.given_up > 0 && !self.may_give_up {
             return Some(format!("{} fragments gave up waiting for the lock", counts.given_up));
         }

@@ -181,7 +181,9 @@ fn resource(subject: &Subject, case: &crate::case::Case, memory: usize, word: u3
         return format!("binding {memory}, word {word}");
     };
     if planned.resource.name == "counters" {
-        return COUNTERS.get(word as usize).map_or_else(|| format!("counter {word}"), |(name, _, _)| format!("the counter {name}"));
+        return COUNTERS
+            .get(word as usize)
+            .map_or_else(|| format!("counter {word}"), |(name, _, _)| format!("the counter {name}"));
     }
     let layout = &subject.plan.layout;
     let mut fields: Vec<&str> = layout.beside.iter().map(|word| word.field.as_str()).collect();

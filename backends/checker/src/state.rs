@@ -143,8 +143,9 @@ impl Ground<'_> {
         let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
         match (event, &state.late) {
             (Event::Access(access), _) if self.helper == Some(fragment) && access.writes() => 2,
-            // The interlock does not wait for helper invocations.
-            (Event::CriticalBegin, _) => u32::from(state.inside.is_none() || self.helper == Some(fragment)),
+            // The interlock does not wait for helper invocations, and what they read is what stands there.
+            _ if self.helper == Some(fragment) => 1,
+            (Event::CriticalBegin, _) => u32::from(state.inside.is_none()),
             (Event::Access(access), Some(late)) => {
                 self.word(access.place).map_or(1, |word| late.choices(fragment, word, access))
             }
@@ -210,10 +211,18 @@ impl Ground<'_> {
         }
     }
 
+    /// Whether a step has brought a fragment back to where it stood, and nothing else has changed: it has seen an old
+    /// value once more, and may as well not have looked.
+    pub(crate) fn is_idle(&self, before: &State, after: &State, fragment: usize) -> bool {
+        before.words == after.words
+            && before.late == after.late
+            && is_same_but_one(&before.fragments[fragment], &after.fragments[fragment])
+    }
+
     /// Whether a fragment, run alone, would come back to where it stands without having changed anything: it waits for
     /// another. Where it stands may differ in one word, the number of its tries.
     pub(crate) fn waits(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> bool {
-        let Status::Before { event, at, .. } = &state.fragments[fragment] else { return false };
+        let Status::Before { at, .. } = &state.fragments[fragment] else { return false };
         if !self.program.is_in_loop(*at) {
             return false;
         }
@@ -235,11 +244,8 @@ impl Ground<'_> {
             if words != state.words {
                 return false;
             }
-            if let Status::Before { event: again, at: there, saved: later } = &next {
-                if there == at {
-                    let changed = saved_differences(&state.fragments[fragment], later);
-                    return again == event && changed <= 1;
-                }
+            if is_same_but_one(&state.fragments[fragment], &next) {
+                return true;
             }
             now = next;
         }
@@ -247,10 +253,17 @@ impl Ground<'_> {
     }
 }
 
-fn saved_differences(status: &Status, other: &[u32]) -> usize {
-    match status {
-        Status::Before { saved, .. } => saved.iter().zip(other).filter(|(a, b)| a != b).count(),
-        Status::Ended => usize::MAX,
+/// Whether both stand before the same event, and all that matters is the same but for one word at most.
+fn is_same_but_one(one: &Status, other: &Status) -> bool {
+    match (one, other) {
+        (
+            Status::Before { event, at, saved },
+            Status::Before { event: other_event, at: other_at, saved: other_saved },
+        ) => {
+            let differences = saved.iter().zip(other_saved).filter(|(a, b)| a != b).count();
+            event == other_event && at == other_at && differences <= 1
+        }
+        _ => false,
     }
 }
 

@@ -41,6 +41,7 @@ impl<'s> Trial<'s> {
     /// Does everything that comes before the fragments under test.
     pub(crate) fn new(subject: &'s Subject, case: Case, neighbour: &Fragment, search: &Search) -> Result<Self, String> {
         let mut frame = Frame::new(subject, case.symbols.clone());
+        frame.reserved = case.reserved;
         let runnable = &subject.passes[case.pass];
         let others = |runnable: &Runnable, with_new: usize| {
             let beside = at_pixel(neighbour, &runnable.program, 1);
@@ -66,6 +67,7 @@ impl<'s> Trial<'s> {
             culls: subject.bound.is_some(),
             fragments,
             neighbours: 1,
+            neighbours_lost: u32::from(case.reserved.is_some()),
         };
         let judge = EndJudge {
             frame,
@@ -74,6 +76,7 @@ impl<'s> Trial<'s> {
             rest: real.to_vec(),
             prior: case.prior.clone(),
             neighbour: neighbour.clone(),
+            beside: case.reserved.map_or(vec![neighbour.words.clone()], |_| Vec::new()),
             policy,
             is_racy: subject.is_racy(),
             known: HashMap::new(),
@@ -165,6 +168,8 @@ struct EndJudge<'s> {
     rest: Vec<Fragment>,
     prior: Vec<Fragment>,
     neighbour: Fragment,
+    /// What the neighbouring pixel must hold.
+    beside: Vec<Vec<u32>>,
     policy: Policy,
     is_racy: bool,
     known: HashMap<Vec<u32>, Option<String>>,
@@ -196,9 +201,7 @@ impl EndJudge<'_> {
     fn fault(&mut self, words: &[u32]) -> Option<String> {
         match self.read(words) {
             Err(text) => Some(text),
-            Ok((_, beside, _)) if beside != [self.neighbour.words.clone()] => {
-                Some("the neighbouring pixel has changed".to_owned())
-            }
+            Ok((_, beside, _)) if beside != self.beside => Some("the neighbouring pixel has changed".to_owned()),
             Ok((kept, _, counters)) => self.policy.fault(&kept, &counters),
         }
     }

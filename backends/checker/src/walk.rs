@@ -38,7 +38,7 @@ impl<'p> Walker<'_, 'p> {
     fn run(&mut self, machine: &mut Machine<'p>, mut state: State, judge: &mut dyn Judge) -> Option<What> {
         let mut priorities: Vec<u32> = state.fragments.iter().map(|_| self.chance.below(1 << 20)).collect();
         while self.steps.len() < LONGEST {
-            if let Some((one, other)) = racing(&state) {
+            if let Some((one, other)) = racing(self.ground, &state) {
                 return Some(What::Race(one, other));
             }
             let running: Vec<usize> =
