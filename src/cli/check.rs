@@ -1,11 +1,12 @@
 //! `fragbuf check`: every interleaving of the fragments of one pixel. 0: no failure found; 1: a failure, with its schedule.
 
 use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use fragbuf::{Registry, TARGETS, Target, target};
-use fragbuf_checker::{Limits, Model, Report, Schedule, check_variant};
+use fragbuf_checker::{Error, Limits, Model, Report, Schedule, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
 use super::input::Input;
@@ -15,9 +16,19 @@ use super::output::{self, Failure};
 const EVERYTHING: (&str, &str) = ("counters", "all");
 
 #[derive(clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["description", "wgsl"])))]
 pub(crate) struct Check {
     /// A technique's key, or a .fragbuf file
-    description: String,
+    description: Option<String>,
+    /// Any shader instead; where it has a function `holds() -> bool`, that must be true at every end
+    #[arg(long, value_name = "FILE", requires = "entry", conflicts_with_all = ["set", "target", "entries"])]
+    wgsl: Option<PathBuf>,
+    /// The shader's entry point
+    #[arg(long, value_name = "NAME", requires = "wgsl")]
+    entry: Option<String>,
+    /// The first words of one of the shader's buffers; the others are zero
+    #[arg(long, value_name = "BUFFER=WORD[,WORD…]", requires = "wgsl", value_parser = fill)]
+    fill: Vec<(String, Vec<u32>)>,
     /// Changes the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
     set: Vec<(String, String)>,
@@ -51,19 +62,47 @@ enum ModelArgument {
 
 impl Check {
     pub(crate) fn run(&self) -> Result<ExitCode, Failure> {
+        match (&self.wgsl, &self.description) {
+            (Some(file), _) => self.shader(file),
+            (None, Some(description)) => self.variant(description),
+            (None, None) => Err(Failure::Usage("give a description, or --wgsl FILE".to_owned())),
+        }
+    }
+
+    fn shader(&self, file: &Path) -> Result<ExitCode, Failure> {
+        let text = std::fs::read_to_string(file).map_err(|error| Failure::files(file, &error))?;
+        let name = file.display().to_string();
+        let entry = self.entry.as_deref().unwrap_or_default();
+        let shader = Shader { file: &name, text: &text, entry, fill: &self.fill };
+        let limits = self.limits();
+        let report = check_shader(&shader, &limits).map_err(|error| match error {
+            Error::Unable(text) => Failure::Input(text),
+            Error::Description(faults) => Failure::Description(faults, vec![(name.clone(), text.clone())]),
+        })?;
+        self.tell(&name, entry, &limits, &report)
+    }
+
+    fn variant(&self, description: &str) -> Result<ExitCode, Failure> {
         let registry = Registry::builtin();
-        let input = Input::read(&self.description, &registry)?;
+        let input = Input::read(description, &registry)?;
         let variant = input.variant_or(&self.set, &[EVERYTHING], &registry)?;
         let target = self.target(&variant)?;
         let limits = self.limits();
         let mut told = Progress::new();
         let checked = check_variant(&variant, target, &registry, &limits, &mut |what| told.say(what));
         told.end();
-        let report = checked.map_err(|faults| input.failure(faults))?;
+        let report = checked.map_err(|error| match error {
+            Error::Description(faults) => input.failure(faults),
+            Error::Unable(text) => Failure::Input(text),
+        })?;
+        self.tell(description, target.name, &limits, &report)
+    }
+
+    fn tell(&self, what: &str, on: &str, limits: &Limits, report: &Report) -> Result<ExitCode, Failure> {
         let text = if self.json {
-            output::json(&as_json(&self.description, target, &limits, &report))
+            output::json(&as_json(what, on, limits, report))
         } else {
-            as_text(&self.description, target, &limits, &report)
+            as_text(what, on, limits, report)
         };
         output::print(&text)?;
         Ok(ExitCode::from(u8::from(report.failure.is_some())))
@@ -99,6 +138,13 @@ impl Check {
     }
 }
 
+/// `buffer=1,2,3`
+fn fill(text: &str) -> Result<(String, Vec<u32>), String> {
+    let (name, words) = text.split_once('=').ok_or("write BUFFER=WORD[,WORD…]")?;
+    let words = words.split(',').map(|word| word.trim().parse::<u32>().map_err(|error| format!("`{word}`: {error}")));
+    Ok((name.trim().to_owned(), words.collect::<Result<_, _>>()?))
+}
+
 fn model_name(model: Model) -> &'static str {
     match model {
         Model::Sequential => "sc",
@@ -106,9 +152,9 @@ fn model_name(model: Model) -> &'static str {
     }
 }
 
-fn as_text(key: &str, target: &Target, limits: &Limits, report: &Report) -> String {
+fn as_text(key: &str, on: &str, limits: &Limits, report: &Report) -> String {
     let cases = format!("{} cases, {} states", report.cases, report.states);
-    let head = format!("{key} on {}, {}", target.name, model_name(limits.model));
+    let head = format!("{key} on {on}, {}", model_name(limits.model));
     let Some(schedule) = &report.failure else {
         let scope = if report.is_whole { "in every order" } else { "in every order tried" };
         return format!("{head}: no failure {scope} ({cases})\n");
@@ -125,7 +171,7 @@ fn as_text(key: &str, target: &Target, limits: &Limits, report: &Report) -> Stri
     text
 }
 
-pub(crate) fn schedule_text(schedule: &Schedule) -> String {
+fn schedule_text(schedule: &Schedule) -> String {
     let mut text = format!("  case    {}\n", schedule.case);
     for (number, words) in (1..).zip(&schedule.prior) {
         text.push_str(&format!("  before  {number}: {words}\n"));
@@ -142,10 +188,10 @@ pub(crate) fn schedule_text(schedule: &Schedule) -> String {
     text
 }
 
-fn as_json(key: &str, target: &Target, limits: &Limits, report: &Report) -> Value {
+fn as_json(key: &str, on: &str, limits: &Limits, report: &Report) -> Value {
     json!({
         "description": key,
-        "target": target.name,
+        "on": on,
         "model": model_name(limits.model),
         "holds": report.failure.is_none(),
         "every_order": report.is_whole,

@@ -8,7 +8,7 @@
 //!
 //! The programs are those that a target gets, run by `fragbuf-interpreter` from one shared access to the next. What counts
 //! as right is what the variant states: the k best, ties, losses counted exactly, the bound of an early cull never too low,
-//! nobody waiting for ever, no data race. Memory behaves as one of two models says ([`Model`]). Nothing here knows a
+//! nobody waiting for ever, no data race. Memory behaves as one of two models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. Nothing here knows a
 //! technique by name.
 
 mod case;
@@ -18,6 +18,7 @@ mod frame;
 mod model;
 mod policy;
 mod report;
+mod shader;
 mod state;
 mod subject;
 mod trial;
@@ -26,4 +27,5 @@ mod walk;
 
 pub use model::Model;
 pub use report::{Line, Schedule};
-pub use verdict::{Limits, Report, check_variant};
+pub use shader::{Shader, check_shader};
+pub use verdict::{Error, Limits, Report, check_variant};

@@ -128,7 +128,8 @@ pub(crate) fn place(program: &Program, at: u32, source: &Source) -> String {
             _ => {}
         }
     }
-    lines.first().map_or_else(String::new, |line| format!("line {line}"))
+    let file = if source.file.is_empty() { "generated" } else { &source.file };
+    lines.first().map_or_else(String::new, |line| format!("{file}:{line}"))
 }
 
 /// What went wrong, in words.

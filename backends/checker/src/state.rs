@@ -8,6 +8,7 @@ use std::hash::{Hash, Hasher};
 use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
 
 use crate::model::{Late, Model};
+use crate::subject::Subject;
 
 /// What every state of a search shares.
 #[derive(Debug)]
@@ -93,6 +94,29 @@ pub(crate) enum Mishap {
 }
 
 impl Ground<'_> {
+    /// Where each buffer of the program lies; the moving words, those whose order matters first; how many those are.
+    pub(crate) fn lay_out(program: &Program, memory: &[Vec<u32>]) -> (Vec<Home>, Vec<u32>, usize) {
+        let mut homes = vec![Home::Fixed(0); program.buffers.len()];
+        let mut words: Vec<u32> = Vec::new();
+        let mut ordered = 0;
+        for commutes in [false, true] {
+            for (number, buffer) in program.buffers.iter().enumerate() {
+                let home = Subject::memory_of(buffer.binding);
+                if !buffer.is_written {
+                    homes[number] = Home::Fixed(home);
+                } else if buffer.commutes == commutes {
+                    let own = &memory[home];
+                    homes[number] = Home::Moving { first: words.len(), words: own.len(), commutes };
+                    words.extend_from_slice(own);
+                }
+            }
+            if !commutes {
+                ordered = words.len();
+            }
+        }
+        (homes, words, ordered)
+    }
+
     /// The number of a place among the moving words.
     pub(crate) fn word(&self, place: Place) -> Option<usize> {
         match self.homes[usize::from(place.buffer)] {

@@ -71,6 +71,8 @@ pub(crate) struct FragmentPrograms {
 pub(crate) struct Source {
     pub(crate) text: String,
     pub(crate) lines: LineMap,
+    /// What lines of no known origin are in; empty for generated text.
+    pub(crate) file: String,
 }
 
 impl Subject {
@@ -136,9 +138,9 @@ impl Subject {
         self.plan.soundness == Soundness::Racy
     }
 
-    /// The number of the memory that a binding is.
+    /// The number of the memory that a binding is; groups follow each other.
     pub(crate) fn memory_of(binding: Option<(u32, u32)>) -> usize {
-        binding.map_or(usize::MAX, |(_, binding)| binding as usize)
+        binding.map_or(usize::MAX, |(group, binding)| (group * 64 + binding) as usize)
     }
 }
 
@@ -197,7 +199,7 @@ fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>
         }),
         _ => None,
     };
-    let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone() };
+    let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
     Ok(Runnable { pass: pass.clone(), program, fragment, source })
 }
 

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use fragbuf_codegen::FIRST_BINDING;
-use fragbuf_interpreter::{Exit, Machine, Program, Space};
+use fragbuf_interpreter::{Exit, Machine, Program};
 
 use crate::case::Case;
 use crate::explore::{Failure, Found, Judge, What, explore};
@@ -126,26 +126,9 @@ fn machine<'p>(program: &'p Program, inputs: &[Vec<u32>]) -> Machine<'p> {
     machine
 }
 
-/// Where each buffer of the program lies, and the moving words: those whose order matters first.
+/// What the states of a trial share, and the words of the first.
 fn ground<'s>(subject: &Subject, program: &'s Program, memory: &Memory, model: Model) -> (Ground<'s>, Vec<u32>) {
-    let mut homes = vec![Home::Fixed(0); program.buffers.len()];
-    let mut words: Vec<u32> = Vec::new();
-    let mut ordered = 0;
-    for commutes in [false, true] {
-        for (number, buffer) in program.buffers.iter().enumerate() {
-            let home = Subject::memory_of(buffer.binding);
-            if !buffer.is_written || buffer.space == Space::Workgroup {
-                homes[number] = Home::Fixed(home);
-            } else if buffer.commutes == commutes {
-                let own = &memory[home];
-                homes[number] = Home::Moving { first: words.len(), words: own.len(), commutes };
-                words.extend_from_slice(own);
-            }
-        }
-        if !commutes {
-            ordered = words.len();
-        }
-    }
+    let (homes, words, ordered) = Ground::lay_out(program, memory);
     let has_fences = subject.has_fences && model == Model::Late;
     (Ground { program, homes, fixed: memory.clone(), ordered, model, has_fences, helper: None }, words)
 }

@@ -3,7 +3,7 @@
 //! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure ends it.
 
 use fragbuf_backends::Target;
-use fragbuf_model::{Diagnostic, Diagnostics, Variant, codes};
+use fragbuf_model::{Diagnostics, Variant};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Kind;
 
@@ -61,6 +61,35 @@ pub struct Report {
     pub is_stated: bool,
 }
 
+/// Why there is no report.
+#[derive(Clone, Debug)]
+pub enum Error {
+    /// The description is at fault, or the target cannot express it.
+    Description(Diagnostics),
+    /// The checker cannot run it, in words.
+    Unable(String),
+}
+
+impl From<Diagnostics> for Error {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Error::Description(diagnostics)
+    }
+}
+
+impl Report {
+    /// Nothing tried, nothing found.
+    pub(crate) fn new(limits: &Limits) -> Self {
+        Report {
+            cases: 0,
+            states: 0,
+            is_whole: limits.seeds.is_none(),
+            failure: None,
+            hazards: Vec::new(),
+            is_stated: false,
+        }
+    }
+}
+
 /// Checks a variant on a target. `progress` is told what is being tried.
 pub fn check_variant(
     variant: &Variant,
@@ -68,23 +97,13 @@ pub fn check_variant(
     registry: &Registry,
     limits: &Limits,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report, Diagnostics> {
-    let mut report = Report {
-        cases: 0,
-        states: 0,
-        is_whole: limits.seeds.is_none(),
-        failure: None,
-        hazards: Vec::new(),
-        is_stated: false,
-    };
+) -> Result<Report, Error> {
+    let mut report = Report::new(limits);
     for tries in [Tries::AsStated, Tries::Least] {
         let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_owned(), hazard.what.to_owned())).collect();
-        try_all(&subject, limits, tries, &mut report, progress).map_err(|text| {
-            let hint = "give other bounds, or check a description that the checker can run";
-            Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, text, hint))
-        })?;
+        try_all(&subject, limits, tries, &mut report, progress).map_err(Error::Unable)?;
         if report.failure.is_some() {
             break;
         }

@@ -4,7 +4,7 @@
 
 use std::sync::Mutex;
 
-use fragbuf_checker::Model;
+use fragbuf_checker::{Error, Model};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Row, Template};
 
@@ -162,7 +162,8 @@ fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
         match report(technique, set, target, &limits(2, *model), &registry) {
             Ok(report) if report.failure.is_some() => return Outcome::Noticed,
             Ok(_) => {}
-            Err(faults) => {
+            Err(Error::Unable(_)) => return Outcome::Noticed,
+            Err(Error::Description(faults)) => {
                 let text: String = faults.iter().map(|fault| fault.message.clone()).collect();
                 let illegal = text.contains("naga refuses") || text.contains("not a declaration");
                 return if illegal { Outcome::Illegal } else { Outcome::Noticed };

@@ -1,7 +1,7 @@
 //! Techniques with changes, checked in one line.
 
 use fragbuf_backends::{TARGETS, Target};
-use fragbuf_checker::{Limits, Model, Report, check_variant};
+use fragbuf_checker::{Error, Limits, Model, Report, check_variant};
 use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check};
 use fragbuf_templates::Registry;
 
@@ -30,7 +30,7 @@ pub(crate) fn report(
     target_name: &str,
     limits: &Limits,
     registry: &Registry,
-) -> Result<Report, Diagnostics> {
+) -> Result<Report, Error> {
     let variant = variant(key, set, registry)?;
     check_variant(&variant, target(target_name), registry, limits, &mut |_| {})
 }
