@@ -6,7 +6,8 @@
 //! load sees any write from there on; a store takes any place behind the view in the order of the word's writes, so that
 //! it may become visible after writes that were made later. Only what the view orders is ordered:
 //! a fence takes the views of all writes seen before it into the fragment's own, and gives its own to all writes after it;
-//! an interlock hands the view on; the end of a pass orders all. An atomic operation that reads and writes works on the
+//! an interlock hands the view on; the end of a pass orders all. Words that are neither atomic nor declared coherent are not
+//! ordered for others by anything but the end of the pass. An atomic operation that reads and writes works on the
 //! last write and hands the view of that on. This is the relaxed part of the memory models of C++, Vulkan and WGSL, except
 //! that no load sees a store that its own fragment, or a later cause, has yet to make.
 
@@ -30,6 +31,8 @@ pub(crate) struct Late {
     words: Vec<Vec<Write>>,
     fragments: Vec<Views>,
     critical: View,
+    /// Words that are neither atomic nor coherent: nothing but the end of the pass makes another fragment see them.
+    private: Vec<bool>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -51,12 +54,13 @@ struct Views {
 }
 
 impl Late {
-    /// Histories of one write each.
-    pub(crate) fn new(words: &[u32], fragments: usize) -> Self {
+    /// Histories of one write each; `private` words are no fragment's but the writer's until the pass ends.
+    pub(crate) fn new(words: &[u32], fragments: usize, private: &[bool]) -> Self {
         let zero = vec![0; words.len()];
         let views = Views { own: zero.clone(), seen: zero.clone(), given: zero.clone() };
         let history = |word: &u32| vec![Write { value: u64::from(*word), follows: false, view: zero.clone() }];
-        Late { words: words.iter().map(history).collect(), fragments: vec![views; fragments], critical: zero.clone() }
+        let words = words.iter().map(history).collect();
+        Late { words, fragments: vec![views; fragments], critical: zero.clone(), private: private.to_vec() }
     }
 
     /// In how many ways the access can happen.
@@ -134,11 +138,12 @@ impl Late {
         let views = &mut self.fragments[fragment];
         match event {
             Event::Fence => {
-                join(&mut views.own, &views.seen);
+                let seen = views.seen.clone();
+                join_shared(&mut views.own, &seen, &self.private);
                 views.given.clone_from(&views.own);
             }
             Event::CriticalBegin => {
-                join(&mut views.own, &self.critical);
+                join_shared(&mut views.own, &self.critical, &self.private);
                 views.given.clone_from(&views.own);
             }
             Event::CriticalEnd => join(&mut self.critical, &views.own),
@@ -168,6 +173,13 @@ impl Late {
     /// The last write of a word.
     pub(crate) fn last(&self, word: usize) -> u64 {
         self.words[word].last().map_or(0, |write| write.value)
+    }
+}
+
+/// Takes in what another view says of words that fragments share.
+fn join_shared(view: &mut View, other: &View, private: &[bool]) {
+    for ((own, other), _) in view.iter_mut().zip(other).zip(private).filter(|(_, private)| !**private) {
+        *own = (*own).max(*other);
     }
 }
 

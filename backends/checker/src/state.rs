@@ -117,6 +117,17 @@ impl Ground<'_> {
         (homes, words, ordered)
     }
 
+    /// Per ordered word, whether its buffer is neither atomic nor coherent.
+    fn private(&self) -> Vec<bool> {
+        let mut private = vec![false; self.ordered];
+        for (buffer, home) in self.program.buffers.iter().zip(&self.homes) {
+            if let Home::Moving { first, words, commutes: false } = home {
+                private[*first..first + words].fill(!buffer.is_coherent);
+            }
+        }
+        private
+    }
+
     /// The number of a place among the moving words.
     pub(crate) fn word(&self, place: Place) -> Option<usize> {
         match self.homes[usize::from(place.buffer)] {
@@ -127,7 +138,8 @@ impl Ground<'_> {
 
     /// The state before the first event of each machine.
     pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, Mishap> {
-        let late = (self.model == Model::Late).then(|| Box::new(Late::new(&words[..self.ordered], machines.len())));
+        let late = (self.model == Model::Late)
+            .then(|| Box::new(Late::new(&words[..self.ordered], machines.len(), &self.private())));
         let mut state = State { words, fragments: Vec::new(), inside: None, late };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
             let status = self.run(&mut machine, fragment, None, &mut state.words)?;

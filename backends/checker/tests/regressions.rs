@@ -46,6 +46,22 @@ fn atomic(row: &mut Row, resource: &str) {
     }
 }
 
+#[test]
+fn a_lock_is_not_enough_for_words_that_are_not_coherent() {
+    let registry = Registry::builtin();
+    let mut row = registry.row("storage", "max_array").unwrap().clone();
+    for step in &mut row.steps {
+        if let Step::Pass(pass) = step {
+            for usage in pass.uses.iter_mut().filter(|usage| usage.access == Access::Coherent) {
+                usage.access = Access::Plain;
+            }
+        }
+    }
+    let registry = registry.with(row);
+    assert_eq!(checked(&registry, "spirv", Model::Sequential).failure, None);
+    assert!(checked(&registry, "spirv", Model::Late).failure.is_some());
+}
+
 fn assert_fails_at(report: &Report, text: &str, path: &str, statement: &str) {
     let schedule = report.failure.as_ref().expect("a failure");
     let line = text.lines().position(|line| line.contains(statement)).unwrap() + 1;
