@@ -9,6 +9,7 @@
 )]
 
 mod cases;
+mod check;
 mod command_line;
 mod diagnostics;
 mod fuzz;

@@ -153,7 +153,8 @@ fn model_name(model: Model) -> &'static str {
 }
 
 fn as_text(key: &str, on: &str, limits: &Limits, report: &Report) -> String {
-    let cases = format!("{} cases, {} states", report.cases, report.states);
+    let plural = if report.cases == 1 { "" } else { "s" };
+    let cases = format!("{} case{plural}, {} states", report.cases, report.states);
     let head = format!("{key} on {on}, {}", model_name(limits.model));
     let Some(schedule) = &report.failure else {
         let scope = if report.is_whole { "in every order" } else { "in every order tried" };

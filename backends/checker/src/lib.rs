@@ -10,6 +10,20 @@
 //! as right is what the variant states: the k best, ties, losses counted exactly, the bound of an early cull never too low,
 //! nobody waiting for ever, no data race. Memory behaves as one of two models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. Nothing here knows a
 //! technique by name.
+//!
+//! ```
+//! use fragbuf_backends::TARGETS;
+//! use fragbuf_checker::{Limits, check_variant};
+//! use fragbuf_model::{Draft, Origin, check};
+//! use fragbuf_templates::Registry;
+//!
+//! // `.with(row)` adds a row of your own.
+//! let registry = Registry::builtin();
+//! let draft = Draft::from_technique("ab_ll", &Origin::new("mine", 1, 1));
+//! let variant = check(&draft, &registry).expect("a legal description");
+//! let report = check_variant(&variant, &TARGETS[0], &registry, &Limits::default(), &mut |_| {}).expect("a report");
+//! assert!(report.failure.is_none() && report.is_whole);
+//! ```
 
 mod case;
 mod explore;

@@ -11,7 +11,20 @@
 //! last write and hands the view of that on. This is the relaxed part of the memory models of C++, Vulkan and WGSL, except
 //! that no load sees a store that its own fragment, or a later cause, has yet to make.
 
-use fragbuf_interpreter::{Access, Event, Operation};
+use fragbuf_interpreter::{Access, Event, Operation, Program};
+
+impl Model {
+    /// Why the model cannot be asked about a program, if it cannot.
+    pub(crate) fn refusal(self, program: &Program) -> Option<String> {
+        let wide = program.buffers.iter().find(|buffer| buffer.is_written && buffer.is_wide);
+        wide.filter(|_| self == Model::Late).map(|buffer| {
+            format!(
+                "the late model knows words of 32 bits alone, and `{}` has accesses of 64: check it with sc",
+                buffer.name
+            )
+        })
+    }
+}
 
 /// How memory behaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

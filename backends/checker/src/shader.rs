@@ -57,6 +57,9 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
             "the checker runs no workgroup variables: invocations share buffers alone".to_owned(),
         ));
     }
+    if let Some(text) = limits.model.refusal(&program) {
+        return Err(Error::Unable(text));
+    }
     let memory = memory(&[Some(&program), holds.as_ref()], shader);
     let source = Source { text: shader.text.to_owned(), lines: LineMap::default(), file: shader.file.to_owned() };
     let mut report = Report::new(limits);

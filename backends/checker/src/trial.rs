@@ -43,6 +43,9 @@ impl<'s> Trial<'s> {
         let mut frame = Frame::new(subject, case.symbols.clone());
         frame.reserved = case.reserved;
         let runnable = &subject.passes[case.pass];
+        if let Some(text) = search.model.refusal(&runnable.program) {
+            return Err(text);
+        }
         let others = |runnable: &Runnable, with_new: usize| {
             let beside = at_pixel(neighbour, &runnable.program, 1);
             let all = std::iter::once(&beside).chain(&case.prior).chain(case.new.iter().take(with_new));

@@ -1,6 +1,6 @@
 //! The models of memory themselves, by the small programs that tell models apart.
 
-use fragbuf_checker::{Limits, Model, Report, Shader, check_shader};
+use fragbuf_checker::{Error, Limits, Model, Report, Shader, check_shader};
 
 fn run(text: &str, invocations: u32, model: Model) -> Report {
     let shader = Shader { file: "litmus.wgsl", text, entry: "main", fill: &[] };
@@ -121,4 +121,21 @@ fn two_locks_taken_in_two_orders_wait_for_ever() {
     let failure = run(&text, 2, Model::Sequential).failure.unwrap();
     assert!(failure.fault.contains("waits for ever"), "{}", failure.fault);
     assert_eq!(failure.steps.len(), 2);
+}
+
+#[test]
+fn an_index_out_of_bounds_is_said_and_what_is_not_run_is_refused() {
+    let beyond = "
+@group(0) @binding(0) var<storage, read_write> x: array<atomic<u32>, 4>;
+@compute @workgroup_size(1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) { atomicStore(&x[atomicAdd(&x[0], 3u)], id.x); }";
+    let failure = run(beyond, 3, Model::Sequential).failure.unwrap();
+    assert!(failure.fault.contains("out of bounds at litmus.wgsl:4"), "{}", failure.fault);
+    let derivative = "
+@group(0) @binding(0) var<storage, read_write> x: f32;
+@fragment
+fn main(@location(0) a: f32) { x = dpdx(a); }";
+    let shader = Shader { file: "litmus.wgsl", text: derivative, entry: "main", fill: &[] };
+    let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else { panic!("it is run") };
+    assert_eq!(text, "litmus.wgsl:4: the interpreter does not run derivatives");
 }
