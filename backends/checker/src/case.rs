@@ -82,28 +82,56 @@ pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: O
     cases
 }
 
-/// Numbers of entries, and what they are called.
+/// What may be there before, by rank in the order of arrival, and what it is called: every order of up to three, two of
+/// more.
 fn priors(k: Option<u32>) -> Vec<(Vec<usize>, String)> {
     let mut counts: Vec<usize> = match k {
-        Some(k) => vec![0, k as usize - 1, k as usize],
+        Some(k) => vec![0, k as usize - 1, k as usize, k as usize + 1],
         None => vec![0, 2],
     };
     counts.dedup();
     let mut priors = Vec::new();
     for count in counts {
-        let ranks: Vec<usize> = PRIOR.iter().copied().take(count).collect();
-        let full = if Some(count as u32) == k { ", full" } else { "" };
-        match count {
-            0 => priors.push((ranks, "empty before".to_owned())),
-            1 => priors.push((ranks, format!("1 before{full}"))),
-            _ => {
-                let reversed = ranks.iter().rev().copied().collect();
-                priors.push((ranks, format!("{count} before{full}, best first")));
-                priors.push((reversed, format!("{count} before{full}, worst first")));
-            }
+        let full = match k.map(|k| count.cmp(&(k as usize))) {
+            Some(std::cmp::Ordering::Equal) => ", full",
+            Some(std::cmp::Ordering::Greater) => ", one displaced",
+            _ => "",
+        };
+        for order in orders(count.min(PRIOR.len())) {
+            let ranks = order.iter().map(|at| PRIOR[*at]).collect();
+            let arrival: Vec<String> = order.iter().map(|at| (at + 1).to_string()).collect();
+            priors.push((
+                ranks,
+                match count {
+                    0 => "empty before".to_owned(),
+                    1 => format!("1 before{full}"),
+                    _ => format!("{count} before{full}, best {} in order of arrival", arrival.join(" ")),
+                },
+            ));
         }
     }
     priors
+}
+
+/// The orders of `count` things.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    if count > 3 {
+        return vec![(0..count).collect(), (0..count).rev().collect()];
+    }
+    let mut orders = vec![Vec::new()];
+    for next in 0..count {
+        orders = orders
+            .into_iter()
+            .flat_map(|order: Vec<usize>| {
+                (0..=order.len()).map(move |at| {
+                    let mut longer = order.clone();
+                    longer.insert(at, next);
+                    longer
+                })
+            })
+            .collect();
+    }
+    orders
 }
 
 /// The same case for every pass that draws, with enough room, too little, and a fragment that was not seen before.

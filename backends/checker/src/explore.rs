@@ -3,7 +3,8 @@
 //! In: a first state and a judge. Out: how many states there are, or how the first failure is reached. States are known
 //! again by a fingerprint of 128 bits; a state is kept only until it has been followed.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, VecDeque};
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use fragbuf_interpreter::{Event, Machine};
@@ -47,6 +48,8 @@ pub(crate) enum What {
     Race(usize, usize),
     /// Nobody can go on: these wait.
     Waiting(Vec<usize>),
+    /// From here no order of steps leads to an end: these go round for ever.
+    Circling(Vec<usize>),
     Mishap(usize, Mishap),
 }
 
@@ -55,33 +58,51 @@ pub(crate) fn explore(ground: &Ground<'_>, first: State, judge: &mut dyn Judge, 
     let mut search = Search {
         ground,
         machine: Machine::new(ground.program),
-        seen: HashSet::default(),
+        seen: HashMap::default(),
         parents: Vec::new(),
+        edges: Vec::new(),
+        ends: Vec::new(),
         waiting: VecDeque::new(),
         states: 0,
     };
+    let running = (0..first.fragments.len()).filter(|fragment| first.fragments[*fragment] != Status::Ended).collect();
     search.visit(first, None);
-    let failure = search.run(judge, limit);
+    let mut failure = search.run(judge, limit);
+    if failure.is_none() && search.waiting.is_empty() {
+        failure = search.dead_end().map(|steps| Failure { steps, what: What::Circling(running) });
+    }
     Found { states: search.states, is_whole: search.waiting.is_empty() || failure.is_some(), failure }
 }
 
 struct Search<'a, 'p> {
     ground: &'a Ground<'p>,
     machine: Machine<'p>,
-    seen: HashSet<u128, BuildHasherDefault<Identity>>,
+    seen: HashMap<u128, u32, BuildHasherDefault<Identity>>,
     /// Per state, the state before it and the step from there.
     parents: Vec<(u32, u8, u8)>,
+    /// Every step, from state to state.
+    edges: Vec<(u32, u32)>,
+    ends: Vec<u32>,
     waiting: VecDeque<(State, u32)>,
     states: usize,
 }
 
 impl Search<'_, '_> {
     fn visit(&mut self, state: State, from: Option<(u32, Step)>) {
-        if self.seen.insert(fingerprint(&state)) {
-            let (parent, (fragment, choice)) = from.unwrap_or((u32::MAX, (0, 0)));
-            self.waiting.push_back((state, self.parents.len() as u32));
-            self.parents.push((parent, fragment as u8, choice as u8));
-            self.states += 1;
+        let number = self.parents.len() as u32;
+        let known = match self.seen.entry(fingerprint(&state)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(place) => {
+                place.insert(number);
+                let (parent, (fragment, choice)) = from.unwrap_or((u32::MAX, (0, 0)));
+                self.parents.push((parent, fragment as u8, choice as u8));
+                self.waiting.push_back((state, number));
+                self.states += 1;
+                number
+            }
+        };
+        if let Some((parent, _)) = from {
+            self.edges.push((parent, known));
         }
     }
 
@@ -107,6 +128,7 @@ impl Search<'_, '_> {
         let running: Vec<usize> =
             (0..state.fragments.len()).filter(|fragment| state.fragments[*fragment] != Status::Ended).collect();
         if running.is_empty() {
+            self.ends.push(number);
             return judge.end(&state.words).and_then(|text| fail(self, What::Outcome(text)));
         }
         for &fragment in &running {
@@ -139,6 +161,24 @@ impl Search<'_, '_> {
             }
         }
         if is_stuck { fail(self, What::Waiting(running)) } else { None }
+    }
+
+    /// The steps to a first state that no steps lead to an end from.
+    fn dead_end(&mut self) -> Option<Vec<Step>> {
+        let count = self.parents.len();
+        self.edges.sort_unstable_by_key(|(_, to)| *to);
+        let mut ends = vec![false; count];
+        let mut waiting = std::mem::take(&mut self.ends);
+        waiting.iter().for_each(|end| ends[*end as usize] = true);
+        while let Some(state) = waiting.pop() {
+            let first = self.edges.partition_point(|(_, to)| *to < state);
+            for (from, _) in self.edges[first..].iter().take_while(|(_, to)| *to == state) {
+                if !std::mem::replace(&mut ends[*from as usize], true) {
+                    waiting.push(*from);
+                }
+            }
+        }
+        ends.iter().position(|reaches| !reaches).map(|state| self.path(state as u32))
     }
 
     /// The steps that lead to a state.

@@ -146,6 +146,10 @@ pub(crate) fn fault(what: &What, ground: &Ground<'_>, source: &Source) -> String
             let names: Vec<String> = fragments.iter().map(|fragment| letter(*fragment)).collect();
             format!("{} waits for ever: nobody is left to change what it waits for", names.join(", "))
         }
+        What::Circling(fragments) => {
+            let names: Vec<String> = fragments.iter().map(|fragment| letter(*fragment)).collect();
+            format!("from here no order of steps lets all of {} end: they go round for ever", names.join(", "))
+        }
         What::Mishap(fragment, mishap) => {
             let what = match mishap {
                 Mishap::OutOfBounds(at) => format!("goes out of bounds at {}", place(ground.program, *at, source)),

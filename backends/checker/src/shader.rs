@@ -126,7 +126,9 @@ fn refused(faults: &[Unsupported], shader: &Shader<'_>) -> Error {
         true => format!("{}:{}: {fault}", shader.file, fault.span.location(shader.text).line_number),
         false => format!("{}: {fault}", shader.file),
     };
-    Error::Unable(faults.iter().map(text).collect::<Vec<_>>().join("\n"))
+    let mut texts: Vec<String> = faults.iter().map(text).collect();
+    texts.dedup();
+    Error::Unable(texts.join("\n"))
 }
 
 /// What every binding holds before.

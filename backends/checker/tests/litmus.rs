@@ -124,6 +124,17 @@ fn two_locks_taken_in_two_orders_wait_for_ever() {
 }
 
 #[test]
+fn fragments_that_undo_each_other_go_round_for_ever() {
+    let text = litmus(
+        "loop { if atomicExchange(&x, 1u) == 3u { break; } }",
+        "loop { if atomicExchange(&x, 2u) == 3u { break; } }",
+        "true",
+    );
+    let failure = run(&text, 2, Model::Sequential).failure.unwrap();
+    assert!(failure.fault.contains("go round for ever"), "{}", failure.fault);
+}
+
+#[test]
 fn an_index_out_of_bounds_is_said_and_what_is_not_run_is_refused() {
     let beyond = "
 @group(0) @binding(0) var<storage, read_write> x: array<atomic<u32>, 4>;
