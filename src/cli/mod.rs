@@ -2,6 +2,7 @@
 
 #[cfg(feature = "pictures")]
 mod attributes;
+mod check;
 #[cfg(feature = "pictures")]
 mod compare;
 #[cfg(feature = "pictures")]
@@ -30,6 +31,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use output::Failure;
+
 #[derive(Parser)]
 #[command(name = "fragbuf", version, about = "Fragment buffers as GPU passes in WGSL, GLSL and SPIR-V")]
 struct Arguments {
@@ -47,6 +50,8 @@ enum Command {
     Language(language::Language),
     /// Writes the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
+    /// Every order in which the fragments of one pixel can run: does a technique keep what it promises?
+    Check(check::Check),
     /// A picture of a scene through one description
     #[cfg(feature = "pictures")]
     Render(render::Render),
@@ -64,6 +69,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Show(show) => show.run(),
         Command::Language(language) => language.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Check(check) => return check.run().unwrap_or_else(Failure::report),
         #[cfg(feature = "pictures")]
         Command::Render(render) => render.run(),
         #[cfg(feature = "pictures")]

@@ -15,8 +15,7 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file could not be read or written.
     Files(String),
-    /// A scene is at fault.
-    #[cfg(feature = "pictures")]
+    /// A scene or a shader is at fault.
     Input(String),
     /// The device cannot do it.
     #[cfg(feature = "pictures")]
@@ -35,7 +34,6 @@ impl Failure {
             Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
             Failure::Usage(text) => (format!("error: {text}\n"), 2),
             Failure::Files(text) => (format!("error: {text}\n"), 3),
-            #[cfg(feature = "pictures")]
             Failure::Input(text) => (format!("error: {text}\n"), 1),
             #[cfg(feature = "pictures")]
             Failure::Device(text) => (format!("error: {text}\n"), 3),

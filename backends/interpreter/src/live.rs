@@ -96,6 +96,9 @@ fn after(ops: &[Op], at: usize, before: &[Words], words: u32, result: &Range<usi
 
 /// From what is live after an instruction to what is live before it.
 fn step(mut op: Op, words: u32, live: &mut Words) {
+    if op.is_pure() && !writes_any(&mut op, words, live) {
+        return;
+    }
     let mut read: Vec<u32> = Vec::new();
     op.touches(&mut |touch, first, count| {
         let range = *first..*first + count;
@@ -107,6 +110,17 @@ fn step(mut op: Op, words: u32, live: &mut Words) {
         }
     });
     read.into_iter().for_each(|word| live.insert(word));
+}
+
+/// Whether the instruction writes a word that matters.
+fn writes_any(op: &mut Op, words: u32, live: &Words) -> bool {
+    let mut found = false;
+    op.touches(&mut |touch, first, count| {
+        if touch != Touch::Read {
+            found |= (*first..*first + count).any(|word| word < words && live.contains(word));
+        }
+    });
+    found
 }
 
 /// Whether each instruction lies between a jump backwards and where it goes.

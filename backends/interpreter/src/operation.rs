@@ -241,6 +241,12 @@ impl Op {
         }
     }
 
+    /// Whether all that it does is to write words.
+    pub(crate) fn is_pure(&self) -> bool {
+        let flows = matches!(self, Op::Jump { .. } | Op::JumpUnless { .. } | Op::Discard | Op::End);
+        !flows && !self.is_stop()
+    }
+
     /// Where a machine can stop.
     pub(crate) fn is_stop(&self) -> bool {
         matches!(

@@ -75,6 +75,8 @@ pub struct Buffer {
     pub commutes: bool,
     /// Whether it is declared coherent, or atomic.
     pub is_coherent: bool,
+    /// Whether some access to it is of 64 bits.
+    pub is_wide: bool,
 }
 
 /// An argument of an entry point, or of the function.

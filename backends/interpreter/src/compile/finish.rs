@@ -70,6 +70,12 @@ impl Compiler<'_> {
             let mut only: Option<Atomic> = None;
             let mut commutes = true;
             for (at, op) in self.ops.iter().enumerate() {
+                if let Op::Load { buffer: own, words: 2, .. }
+                | Op::Store { buffer: own, words: 2, .. }
+                | Op::Atomic { buffer: own, words: 2, .. } = *op
+                {
+                    buffer.is_wide |= own == number;
+                }
                 match *op {
                     Op::Store { buffer: own, is_atomic, .. } if own == number => {
                         buffer.is_written = true;

@@ -208,6 +208,7 @@ impl<'m> Compiler<'m> {
             is_written: false,
             commutes: false,
             is_coherent: variable.memory_decorations.contains(naga::MemoryDecorations::COHERENT),
+            is_wide: false,
         });
         Ok(Spot::shared(number))
     }

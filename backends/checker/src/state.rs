@@ -1,0 +1,373 @@
+//! One state of a search: the words in memory, and where each fragment stands.
+//!
+//! In: a state and a choice. Out: the state after it. Machines are run here and nowhere else in a search; between two
+//! states exactly one shared access, fence or end of an interlock happens.
+
+use std::hash::{Hash, Hasher};
+
+use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
+
+use crate::model::{Late, Model};
+use crate::subject::Subject;
+
+/// What every state of a search shares.
+#[derive(Debug)]
+pub(crate) struct Ground<'p> {
+    pub(crate) program: &'p Program,
+    /// Per buffer of the program, its memory.
+    pub(crate) homes: Vec<Home>,
+    /// Memory that the program never writes, by number.
+    pub(crate) fixed: Vec<Vec<u32>>,
+    /// Moving words whose order matters come first; how many.
+    pub(crate) ordered: usize,
+    pub(crate) model: Model,
+    /// Whether fences are events: the target has them and the model cares.
+    pub(crate) has_fences: bool,
+    /// A helper invocation: nothing that it writes has any effect, and what its atomic operations give is anything.
+    pub(crate) helper: Option<usize>,
+}
+
+/// Where a buffer lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Home {
+    /// In `Ground::fixed`.
+    Fixed(usize),
+    /// In the words of states: the first, and how many.
+    Moving { first: usize, words: usize, commutes: bool },
+}
+
+/// One state.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct State {
+    /// The words that the program can write, as the last write left them.
+    pub(crate) words: Vec<u32>,
+    pub(crate) fragments: Vec<Status>,
+    /// Who is inside the interlock.
+    pub(crate) inside: Option<usize>,
+    pub(crate) late: Option<Box<Late>>,
+}
+
+/// Where a fragment stands.
+#[derive(Clone, Debug)]
+pub(crate) enum Status {
+    /// Before an event.
+    Before {
+        event: Event,
+        at: u32,
+        /// What a machine is loaded from.
+        saved: Vec<u32>,
+    },
+    Ended,
+}
+
+// The event follows from what is saved.
+impl PartialEq for Status {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Status::Before { saved, .. }, Status::Before { saved: other, .. }) => saved == other,
+            (Status::Ended, Status::Ended) => true,
+            _ => false,
+        }
+    }
+}
+
+impl Eq for Status {}
+
+impl Hash for Status {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match self {
+            Status::Before { saved, .. } => saved.hash(state),
+            Status::Ended => state.write_u8(1),
+        }
+    }
+}
+
+/// What can go wrong in one step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mishap {
+    /// An index out of bounds, at this instruction.
+    OutOfBounds(u32),
+    /// A fragment goes round for ever without touching memory.
+    Endless,
+    /// An event that a fragment has no business with.
+    Barrier,
+}
+
+impl Ground<'_> {
+    /// Where each buffer of the program lies; the moving words, those whose order matters first; how many those are.
+    pub(crate) fn lay_out(program: &Program, memory: &[Vec<u32>]) -> (Vec<Home>, Vec<u32>, usize) {
+        let mut homes = vec![Home::Fixed(0); program.buffers.len()];
+        let mut words: Vec<u32> = Vec::new();
+        let mut ordered = 0;
+        for commutes in [false, true] {
+            for (number, buffer) in program.buffers.iter().enumerate() {
+                let home = Subject::memory_of(buffer.binding);
+                if !buffer.is_written {
+                    homes[number] = Home::Fixed(home);
+                } else if buffer.commutes == commutes {
+                    let own = &memory[home];
+                    homes[number] = Home::Moving { first: words.len(), words: own.len(), commutes };
+                    words.extend_from_slice(own);
+                }
+            }
+            if !commutes {
+                ordered = words.len();
+            }
+        }
+        (homes, words, ordered)
+    }
+
+    /// Per ordered word, whether its buffer is neither atomic nor coherent.
+    fn private(&self) -> Vec<bool> {
+        let mut private = vec![false; self.ordered];
+        for (buffer, home) in self.program.buffers.iter().zip(&self.homes) {
+            if let Home::Moving { first, words, commutes: false } = home {
+                private[*first..first + words].fill(!buffer.is_coherent);
+            }
+        }
+        private
+    }
+
+    /// The number of a place among the moving words.
+    pub(crate) fn word(&self, place: Place) -> Option<usize> {
+        match self.homes[usize::from(place.buffer)] {
+            Home::Moving { first, .. } => Some(first + place.word as usize),
+            Home::Fixed(_) => None,
+        }
+    }
+
+    /// The state before the first event of each machine.
+    pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, Mishap> {
+        let late = (self.model == Model::Late)
+            .then(|| Box::new(Late::new(&words[..self.ordered], machines.len(), &self.private())));
+        let mut state = State { words, fragments: Vec::new(), inside: None, late };
+        for (fragment, mut machine) in machines.into_iter().enumerate() {
+            let status = self.run(&mut machine, fragment, None, &mut state.words)?;
+            state.fragments.push(status);
+        }
+        Ok(state)
+    }
+
+    /// Lets a machine run to its next event.
+    fn run(
+        &self,
+        machine: &mut Machine<'_>,
+        fragment: usize,
+        reply: Option<u64>,
+        words: &mut [u32],
+    ) -> Result<Status, Mishap> {
+        machine.is_helper = self.helper == Some(fragment);
+        let is_idle = machine.is_helper;
+        let exit = machine.run(&mut Pausing { ground: self, reply, words, is_idle });
+        if let Some(fault) = machine.fault.take() {
+            return Err(Mishap::OutOfBounds(fault.at));
+        }
+        match exit {
+            Exit::Ended | Exit::Discarded => Ok(Status::Ended),
+            Exit::Endless => Err(Mishap::Endless),
+            Exit::Stopped(Event::Barrier) => Err(Mishap::Barrier),
+            Exit::Stopped(event) => {
+                let mut saved = Vec::new();
+                machine.save(&mut saved);
+                Ok(Status::Before { event, at: machine.at(), saved })
+            }
+        }
+    }
+
+    /// In how many ways a fragment's event can happen; 0: it has ended, or must wait for the interlock.
+    pub(crate) fn choices(&self, state: &State, fragment: usize) -> u32 {
+        let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
+        match (event, &state.late) {
+            (Event::Access(access), _) if self.helper == Some(fragment) && access.writes() => 2,
+            // The interlock does not wait for helper invocations, and what they read is what stands there.
+            _ if self.helper == Some(fragment) => 1,
+            (Event::CriticalBegin, _) => u32::from(state.inside.is_none()),
+            (Event::Access(access), Some(late)) => {
+                self.word(access.place).map_or(1, |word| late.choices(fragment, word, access))
+            }
+            _ => 1,
+        }
+    }
+
+    /// The state after a fragment's event has happened in the way of this number, and what the event saw.
+    pub(crate) fn step(
+        &self,
+        machine: &mut Machine<'_>,
+        state: &State,
+        fragment: usize,
+        choice: u32,
+    ) -> Result<(State, u64), Mishap> {
+        let Status::Before { event, saved, .. } = &state.fragments[fragment] else { return Ok((state.clone(), 0)) };
+        let mut next = state.clone();
+        let old = self.perform(&mut next, fragment, event, choice);
+        machine.load(saved);
+        next.fragments[fragment] = self.run(machine, fragment, Some(old), &mut next.words)?;
+        if let Some(late) = &mut next.late {
+            let running: Vec<bool> = next.fragments.iter().map(|status| *status != Status::Ended).collect();
+            late.forget(&running);
+        }
+        Ok((next, old))
+    }
+
+    fn perform(&self, state: &mut State, fragment: usize, event: &Event, choice: u32) -> u64 {
+        if self.helper == Some(fragment) {
+            return self.seen_by_helper(state, event, choice);
+        }
+        match event {
+            Event::CriticalBegin => state.inside = Some(fragment),
+            Event::CriticalEnd => state.inside = None,
+            _ => {}
+        }
+        let Event::Access(access) = event else {
+            if let Some(late) = &mut state.late {
+                late.order(fragment, event);
+            }
+            return 0;
+        };
+        let Some(word) = self.word(access.place) else { return 0 };
+        match &mut state.late {
+            None => apply(access, &mut state.words[word..]),
+            Some(late) => {
+                let old = late.perform(fragment, word, access, choice);
+                if access.writes() {
+                    state.words[word] = late.last(word) as u32;
+                }
+                old
+            }
+        }
+    }
+
+    /// What a helper invocation is given: what stands there, or, by an operation that writes, anything else.
+    fn seen_by_helper(&self, state: &State, event: &Event, choice: u32) -> u64 {
+        match event {
+            Event::Access(access) if choice == 0 => {
+                self.word(access.place).map_or(0, |word| joined(&state.words[word..], access.words))
+            }
+            _ => u64::from(u32::MAX),
+        }
+    }
+
+    /// Whether a step has brought a fragment back to where it stood, and nothing else has changed: it has seen an old
+    /// value once more, and may as well not have looked.
+    pub(crate) fn is_idle(&self, before: &State, after: &State, fragment: usize) -> bool {
+        before.words == after.words
+            && before.late == after.late
+            && is_same_but_one(&before.fragments[fragment], &after.fragments[fragment])
+    }
+
+    /// Whether a fragment, run alone, would come back to where it stands without having changed anything: it waits for
+    /// another. Where it stands may differ in one word, the number of its tries.
+    pub(crate) fn waits(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> bool {
+        let Status::Before { at, .. } = &state.fragments[fragment] else { return false };
+        if !self.program.is_in_loop(*at) {
+            return false;
+        }
+        let mut words = state.words.clone();
+        let mut now = state.fragments[fragment].clone();
+        // A round of a wait reads no more words than this.
+        for _ in 0..32 {
+            let Status::Before { event: Event::Access(access), saved, .. } = &now else { return false };
+            let Some(word) = self.word(access.place) else { return false };
+            let before = joined(&words[word..], access.words);
+            let is_helper = self.helper == Some(fragment);
+            if access.new_value(before) != before && !is_helper {
+                return false;
+            }
+            // The worst that a helper invocation can be given: it never sees what it hopes for.
+            let reply = if is_helper && access.writes() { u64::from(u32::MAX) } else { before };
+            machine.load(saved);
+            let Ok(next) = self.run(machine, fragment, Some(reply), &mut words) else { return false };
+            if words != state.words {
+                return false;
+            }
+            if is_same_but_one(&state.fragments[fragment], &next) {
+                return true;
+            }
+            now = next;
+        }
+        false
+    }
+}
+
+/// Whether both stand before the same event, and all that matters is the same but for one word at most.
+fn is_same_but_one(one: &Status, other: &Status) -> bool {
+    match (one, other) {
+        (
+            Status::Before { event, at, saved },
+            Status::Before { event: other_event, at: other_at, saved: other_saved },
+        ) => {
+            let differences = saved.iter().zip(other_saved).filter(|(a, b)| a != b).count();
+            event == other_event && at == other_at && differences <= 1
+        }
+        _ => false,
+    }
+}
+
+fn joined(words: &[u32], count: u8) -> u64 {
+    let low = u64::from(words[0]);
+    if count == 2 { low | u64::from(words[1]) << 32 } else { low }
+}
+
+/// Lets an access happen at once; the old value.
+fn apply(access: &Access, words: &mut [u32]) -> u64 {
+    let old = joined(words, access.words);
+    if access.writes() {
+        let new = access.new_value(old);
+        words[0] = new as u32;
+        if access.words == 2 {
+            words[1] = (new >> 32) as u32;
+        }
+    }
+    old
+}
+
+/// Answers one event, then stops. What commutes happens at once: no order of it can be told from another.
+struct Pausing<'a, 'p> {
+    ground: &'a Ground<'p>,
+    reply: Option<u64>,
+    words: &'a mut [u32],
+    is_idle: bool,
+}
+
+impl Shared for Pausing<'_, '_> {
+    fn length(&self, buffer: u16) -> u32 {
+        match self.ground.homes[usize::from(buffer)] {
+            Home::Fixed(number) => self.ground.fixed[number].len() as u32,
+            Home::Moving { words, .. } => words as u32,
+        }
+    }
+
+    fn constant(&self, place: Place) -> u32 {
+        match self.ground.homes[usize::from(place.buffer)] {
+            Home::Fixed(number) => self.ground.fixed[number].get(place.word as usize).copied().unwrap_or(0),
+            Home::Moving { first, .. } => self.words.get(first + place.word as usize).copied().unwrap_or(0),
+        }
+    }
+
+    fn event(&mut self, event: &Event) -> Reply {
+        match event {
+            Event::Access(access) => {
+                if let Home::Moving { first, commutes: true, .. } = self.ground.homes[usize::from(access.place.buffer)]
+                {
+                    if self.is_idle {
+                        return Reply::Done(0);
+                    }
+                    return Reply::Done(apply(access, &mut self.words[first + access.place.word as usize..]));
+                }
+            }
+            Event::Fence if !self.ground.has_fences => return Reply::Done(0),
+            _ => {}
+        }
+        self.reply.take().map_or(Reply::Stop, Reply::Done)
+    }
+}
+
+/// Whether two accesses that are about to happen are a data race: the same word, one of them writes, not both atomic.
+pub(crate) fn race(one: &Access, other: &Access) -> bool {
+    let meets = |a: &Access, b: &Access| {
+        a.place.buffer == b.place.buffer && (a.place.word..a.place.word + u32::from(a.words)).contains(&b.place.word)
+    };
+    let same = meets(one, other) || meets(other, one);
+    same && (one.operation != Operation::Load || other.operation != Operation::Load)
+        && !(one.is_atomic && other.is_atomic)
+}

@@ -1,0 +1,214 @@
+//! What is checked: a variant on a target, as the programs that really run there.
+//!
+//! In: a variant, a target, the registry. Out: the plan, one program per stage of every pass, and the functions that read
+//! a storage out. The marker functions of the templates become fences and interlocks here, as the target has them.
+
+use fragbuf_backends::{Checked, Target, check};
+use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, plan};
+use fragbuf_interpreter::{Marker, Options, Program, Unsupported};
+use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+
+/// `templates/shared/markers.wgsl`.
+pub(crate) const MARKERS: [(&str, Marker); 4] = [
+    ("memory_fence", Marker::Fence),
+    ("is_helper_lane", Marker::HelperLane),
+    ("critical_begin", Marker::CriticalBegin),
+    ("critical_end", Marker::CriticalEnd),
+];
+
+/// Names of the passes that are added to a plan to ask questions.
+const READ_OUT: &str = "read_out";
+const READ_BOUND: &str = "read_bound";
+
+/// From a fragment to the words that are stored.
+const PACK: &str = "fragment_pack";
+
+/// How often a fragment tries before it gives up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tries {
+    /// As the description says; a fragment that waits is taken to wait until something changes.
+    AsStated,
+    /// As seldom as the row allows: the way of giving up is tried.
+    Least,
+}
+
+/// A variant on a target, ready to run.
+#[derive(Debug)]
+pub(crate) struct Subject {
+    pub(crate) plan: Plan,
+    pub(crate) passes: Vec<Runnable>,
+    pub(crate) first: Program,
+    pub(crate) next: Program,
+    pub(crate) read: Program,
+    /// The bound of the storage, where a cull rests on it.
+    pub(crate) bound: Option<Program>,
+    pub(crate) has_fences: bool,
+}
+
+/// A pass that computes or draws.
+#[derive(Debug)]
+pub(crate) struct Runnable {
+    pub(crate) pass: Pass,
+    pub(crate) program: Program,
+    /// From what the rasteriser gives to words: for a geometry pass.
+    pub(crate) fragment: Option<FragmentPrograms>,
+    pub(crate) source: Source,
+}
+
+/// How a fragment is made of what the rasteriser gives.
+#[derive(Debug)]
+pub(crate) struct FragmentPrograms {
+    pub(crate) unpack: Program,
+    pub(crate) admit: Program,
+    /// Not for a pass that only counts.
+    pub(crate) pack: Option<Program>,
+}
+
+/// A text and where its lines come from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Source {
+    pub(crate) text: String,
+    pub(crate) lines: LineMap,
+    /// What lines of no known origin are in; empty for generated text.
+    pub(crate) file: String,
+}
+
+impl Subject {
+    /// Makes everything; the mistakes are the description's, the target's or ours. `None`: there are no bounded tries to
+    /// make the least of.
+    pub(crate) fn new(
+        variant: &Variant,
+        target: &Target,
+        registry: &Registry,
+        tries: Tries,
+    ) -> Result<Option<Self>, Diagnostics> {
+        let mut offers = target.offers.to_vec();
+        offers.push(Fact::OwnEntryPoints);
+        let mut selection = variant.select(&offers).map_err(|refusal| {
+            let hint = "choose another target, or add an `else` to the axis";
+            let text = format!("{} cannot express it: {refusal}", target.name);
+            Diagnostics::from(Diagnostic::new(codes::TARGET, &variant.name.origin, text, hint))
+        })?;
+        if tries == Tries::Least && !make_least(&mut selection) {
+            return Ok(None);
+        }
+        let registry = registry
+            .clone()
+            .with(row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
+            .with(row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"));
+        let plan = plan(variant, &selection, &registry)?;
+        let wants_bound = selection.rows.iter().any(|row| row.row.requires.contains(&Fact::BoundAnyInstant));
+        let mut asking = plan.clone();
+        asking.steps.push(Step::Pass(question(&plan, READ_OUT)));
+        if wants_bound {
+            asking.steps.push(Step::Pass(question(&plan, READ_BOUND)));
+        }
+        let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
+        let origin = &variant.name.origin;
+        let mut passes = Vec::new();
+        let mut asked = Vec::new();
+        for (text, pass) in link(&asking, &linking, &registry)?.passes.into_iter().zip(asking.passes()) {
+            let checked = check(text, target.profile, origin)?;
+            match pass.anchor.as_str() {
+                READ_OUT | READ_BOUND => asked.push(checked),
+                _ if pass.kind == Kind::Fullscreen => {}
+                _ => passes.push(runnable(pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?),
+            }
+        }
+        let ask = |number: usize, name: &str| {
+            let checked: &Checked = &asked[number];
+            Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
+                .map_err(|faults| refused(checked, &faults, origin))
+        };
+        Ok(Some(Subject {
+            passes,
+            first: ask(0, "storage_first")?,
+            next: ask(0, "storage_next")?,
+            read: ask(0, "storage_read")?,
+            bound: if wants_bound { Some(ask(1, "storage_bound")?) } else { None },
+            has_fences: target.offers.contains(&Fact::Fences),
+            plan,
+        }))
+    }
+
+    /// Whether fragments may be lost, doubled or torn by design.
+    pub(crate) fn is_racy(&self) -> bool {
+        self.plan.soundness == Soundness::Racy
+    }
+
+    /// The number of the memory that a binding is; groups follow each other.
+    pub(crate) fn memory_of(binding: Option<(u32, u32)>) -> usize {
+        binding.map_or(usize::MAX, |(group, binding)| (group * 64 + binding) as usize)
+    }
+}
+
+/// Sets every number of rows that lock to its least; whether there was one.
+fn make_least(selection: &mut Selection) -> bool {
+    let mut found = false;
+    for selected in selection.rows.iter_mut().filter(|selected| selected.row.soundness == Soundness::Lock) {
+        found |= !selected.row.parameters.is_empty();
+        selected.options = selected.row.parameters.iter().map(|one| (one.name.to_string(), one.range.0)).collect();
+    }
+    found
+}
+
+fn row(key: &str, text: &'static str, path: &'static str) -> Row {
+    Row {
+        template: Some(Template::new(path, text)),
+        calls: vec!["addressing", "storage"],
+        ..Row::new("pass", key, "what the checker asks", "")
+    }
+}
+
+/// A pass that reads everything that the plan's passes touch, with their roles.
+fn question(plan: &Plan, anchor: &str) -> Pass {
+    let mut pass = Pass::compute(anchor, anchor, "1", "1");
+    for other in plan.passes() {
+        for role in &other.roles {
+            if !pass.roles.iter().any(|known| known.contract == role.contract) {
+                pass.roles.push(role.clone());
+            }
+        }
+        for usage in &other.uses {
+            let in_shader = matches!(usage.access, Access::Read | Access::Plain | Access::Atomic | Access::Coherent);
+            if in_shader && !pass.uses.iter().any(|known| known.resource == usage.resource) {
+                pass.uses.push(Use::new(&usage.resource, Access::Read));
+            }
+        }
+    }
+    pass
+}
+
+fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
+    let (module, info) = (checked.module(), checked.info());
+    let options = Options { markers: &MARKERS };
+    let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
+    let entry = |entry: &&EntryPoint| entry.stage == stage;
+    let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
+    let program = Program::entry_point(module, info, name, &options)?;
+    let fragment = match stage {
+        Stage::Fragment => Some(FragmentPrograms {
+            unpack: Program::function(module, info, "varyings_fragment", &options)?,
+            admit: Program::function(module, info, "admit", &options)?,
+            pack: match module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(PACK)) {
+                true => Some(Program::function(module, info, PACK, &options)?),
+                false => None,
+            },
+        }),
+        _ => None,
+    };
+    let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
+    Ok(Runnable { pass: pass.clone(), program, fragment, source })
+}
+
+fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {
+    let mut diagnostics = Diagnostics::new();
+    for fault in faults {
+        let line = fault.span.location(&checked.pass().text).line_number;
+        let text = format!("pass `{}`, line {line}: {fault}", checked.pass().anchor);
+        diagnostics.push(Diagnostic::new(codes::INTERNAL, origin, text, "what it does run is in its documentation"));
+    }
+    diagnostics
+}

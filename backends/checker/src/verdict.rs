@@ -1,0 +1,157 @@
+//! A whole check: every case of a variant on a target, and the tier that follows from what held.
+//!
+//! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure ends it.
+
+use fragbuf_backends::Target;
+use fragbuf_model::{Diagnostics, Variant};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Kind;
+
+use crate::case::cases;
+use crate::explore::What;
+use crate::fragments::Candidates;
+use crate::frame::{Frame, Symbols};
+use crate::model::Model;
+use crate::report::{Schedule, schedule};
+use crate::subject::{Subject, Tries};
+use crate::trial::{Search, Trial};
+
+/// How far to go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Numbers of fragments that come at once.
+    pub fragments: Vec<u32>,
+    /// Numbers of entries; more than the variant's capacity are left out.
+    pub entries: Vec<u32>,
+    /// How memory behaves.
+    pub model: Model,
+    /// This many single schedules by chance in place of all orders.
+    pub seeds: Option<u32>,
+    /// States of one case.
+    pub states: usize,
+}
+
+impl Default for Limits {
+    /// Two and three fragments, one to three entries, every order, memory at once.
+    fn default() -> Self {
+        Limits {
+            fragments: vec![2, 3],
+            entries: vec![1, 2, 3],
+            model: Model::Sequential,
+            seeds: None,
+            states: 4_000_000,
+        }
+    }
+}
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// Cases that were tried.
+    pub cases: usize,
+    /// States that were visited, or steps of walks.
+    pub states: usize,
+    /// Whether every order of every case was tried.
+    pub is_whole: bool,
+    /// The first failure.
+    pub failure: Option<Schedule>,
+    /// What can go wrong by design, as (name, what); a failure is then as stated.
+    pub hazards: Vec<(String, String)>,
+    /// Whether the failure is one of those.
+    pub is_stated: bool,
+}
+
+/// Why there is no report.
+#[derive(Clone, Debug)]
+pub enum Error {
+    /// The description is at fault, or the target cannot express it.
+    Description(Diagnostics),
+    /// The checker cannot run it, in words.
+    Unable(String),
+}
+
+impl From<Diagnostics> for Error {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Error::Description(diagnostics)
+    }
+}
+
+impl Report {
+    /// Nothing tried, nothing found.
+    pub(crate) fn new(limits: &Limits) -> Self {
+        Report {
+            cases: 0,
+            states: 0,
+            is_whole: limits.seeds.is_none(),
+            failure: None,
+            hazards: Vec::new(),
+            is_stated: false,
+        }
+    }
+}
+
+/// Checks a variant on a target. `progress` is told what is being tried.
+pub fn check_variant(
+    variant: &Variant,
+    target: &Target,
+    registry: &Registry,
+    limits: &Limits,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report, Error> {
+    let mut report = Report::new(limits);
+    for tries in [Tries::AsStated, Tries::Least] {
+        let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
+        let hazards = subject.plan.hazards.iter();
+        report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.what.to_string())).collect();
+        try_all(&subject, limits, tries, &mut report, progress).map_err(Error::Unable)?;
+        if report.failure.is_some() {
+            break;
+        }
+    }
+    Ok(report)
+}
+
+fn try_all(
+    subject: &Subject,
+    limits: &Limits,
+    tries: Tries,
+    report: &mut Report,
+    progress: &mut dyn FnMut(&str),
+) -> Result<(), String> {
+    let mut frame = Frame::new(subject, Symbols { k: Some(1), fragments: Some(16) });
+    let candidates = Candidates::new(subject, &mut frame.memory)?;
+    let search =
+        Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
+    let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();
+    if drawn == 0 {
+        return Err("no pass of the plan draws the scene".to_owned());
+    }
+    let capacity = subject.plan.bound.value("capacity").unwrap_or(1) as u32;
+    let entries: Vec<Option<u32>> = match subject.keeps_best() {
+        true => limits.entries.iter().copied().filter(|k| *k <= capacity).map(Some).collect(),
+        false => vec![None],
+    };
+    for &count in &limits.fragments {
+        for &k in &entries {
+            for case in cases(subject, &candidates, count, k) {
+                let k = k.map_or(String::new(), |k| format!("k = {k}, "));
+                progress(&format!("{k}{}", case.what));
+                let case = crate::case::Case { what: format!("{k}{}", case.what), ..case };
+                let mut trial = Trial::new(subject, case, &candidates.ranked[11], &search)?;
+                let found = trial.run(&search);
+                report.cases += 1;
+                report.states += found.states;
+                report.is_whole &= found.is_whole;
+                if let Some(failure) = found.failure {
+                    report.is_stated = subject.is_racy() && matches!(failure.what, What::Outcome(_)) && {
+                        let end = trial.end_of(&failure);
+                        trial.is_within_hazards(&end)
+                    };
+                    report.failure = Some(schedule(&trial, &failure));
+                    return Ok(());
+                }
+            }
+        }
+    }
+    Ok(())
+}

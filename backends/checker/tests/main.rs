@@ -1,0 +1,16 @@
+//! What the checker says of the techniques, of templates that are wrong on purpose, and of every small change to one.
+#![allow(missing_docs, reason = "tests are read, not documented")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints what it counted"
+)]
+
+mod compiles;
+mod litmus;
+mod mutation;
+mod regressions;
+mod subjects;
+mod verdicts;

@@ -1,0 +1,130 @@
+//! Templates that are wrong on purpose: errors of the papers, and some that are easily made. Each must fail, and its
+//! schedule must lead to the line that is wrong.
+
+use fragbuf_checker::{Model, Report};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Access, Element, Resource, Row, Step, Template, Use};
+
+use crate::subjects::{limits, report};
+
+const REPLACE: &str = include_str!("rows/replace_then_find.wgsl");
+const COUNTER: &str = include_str!("rows/counter_before_insert.wgsl");
+const TWO_WORDS: &str = include_str!("rows/two_word_bound.wgsl");
+const REVISED: &str = include_str!("rows/revised_array.wgsl");
+const PRINTED: &str = include_str!("rows/revised_sync.wgsl");
+const MENDED: &str = include_str!("rows/mended_sync.wgsl");
+
+/// The built-in registry with another text for one row, and a change to how its passes touch memory.
+fn with(
+    registry: Registry,
+    axis: &str,
+    key: &str,
+    path: &'static str,
+    text: &'static str,
+    change: fn(&mut Row),
+) -> Registry {
+    let old = registry.row(axis, key).unwrap();
+    let mut row = Row { template: Some(Template::new(path, text)), ..old.clone() };
+    change(&mut row);
+    registry.with(row)
+}
+
+fn checked(registry: &Registry, target: &str, model: Model) -> Report {
+    report("kplus_array", &[], target, &limits(3, model), registry).unwrap()
+}
+
+/// Every use of a resource becomes atomic.
+fn atomic(row: &mut Row, resource: &str) {
+    for step in &mut row.steps {
+        if let Step::Pass(pass) = step {
+            for usage in
+                pass.uses.iter_mut().filter(|usage| usage.resource == resource && usage.access == Access::Coherent)
+            {
+                usage.access = Access::Atomic;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lock_is_not_enough_for_words_that_are_not_coherent() {
+    let registry = Registry::builtin();
+    let mut row = registry.row("storage", "max_array").unwrap().clone();
+    for step in &mut row.steps {
+        if let Step::Pass(pass) = step {
+            for usage in pass.uses.iter_mut().filter(|usage| usage.access == Access::Coherent) {
+                usage.access = Access::Plain;
+            }
+        }
+    }
+    let registry = registry.with(row);
+    assert_eq!(checked(&registry, "spirv", Model::Sequential).failure, None);
+    assert!(checked(&registry, "spirv", Model::Late).failure.is_some());
+}
+
+fn assert_fails_at(report: &Report, text: &str, path: &str, statement: &str) {
+    let schedule = report.failure.as_ref().expect("a failure");
+    let line = text.lines().position(|line| line.contains(statement)).unwrap() + 1;
+    let place = format!("{path}:{line}");
+    assert!(schedule.steps.iter().any(|step| step.place == place), "no step at {place} in {schedule:#?}");
+}
+
+#[test]
+fn slot_zero_replaced_before_the_new_worst_is_found() {
+    let registry = with(Registry::builtin(), "storage", "max_array", "rows/replace_then_find.wgsl", REPLACE, |_| {});
+    let report = checked(&registry, "wgsl", Model::Sequential);
+    // The write goes through the template's own function; what calls it is the line after in the trace.
+    assert_fails_at(&report, REPLACE, "rows/replace_then_find.wgsl", "keys_store(slot, pixel, entry.key);");
+    assert!(report.failure.unwrap().fault.contains("storage_bound"));
+}
+
+#[test]
+fn a_counter_that_says_full_too_early() {
+    let registry =
+        with(Registry::builtin(), "storage", "max_array", "rows/counter_before_insert.wgsl", COUNTER, |row| {
+            atomic(row, "filled");
+        });
+    let report = checked(&registry, "wgsl", Model::Sequential);
+    assert_fails_at(&report, COUNTER, "rows/counter_before_insert.wgsl", "filled_store(pixel, frame.k);");
+}
+
+#[test]
+fn a_bound_of_two_words_is_read_torn() {
+    let registry = with(Registry::builtin(), "storage", "max_array", "rows/two_word_bound.wgsl", TWO_WORDS, |row| {
+        let halves = Resource::new("halves", Element::Word, "the key of slot 0").by("half", "2").by("pixel", "pixels");
+        row.resources.push(halves);
+        for step in &mut row.steps {
+            if let Step::Pass(pass) = step {
+                let access = if pass.anchor == "store" { Access::Atomic } else { Access::Plain };
+                pass.uses.push(Use::new("halves", access));
+            }
+        }
+    });
+    let report = checked(&registry, "wgsl", Model::Sequential);
+    assert_fails_at(&report, TWO_WORDS, "rows/two_word_bound.wgsl", "halves_store(0u, pixel, entry.key >> 16u);");
+}
+
+fn revised(sync: &'static str) -> Registry {
+    let registry = with(Registry::builtin(), "storage", "max_array", "rows/revised_array.wgsl", REVISED, |row| {
+        atomic(row, "filled");
+    });
+    with(registry, "sync", "spin_lock", "rows/revised_sync.wgsl", sync, |_| {})
+}
+
+#[test]
+fn the_second_algorithm_of_the_k_plus_buffer_loses_fragments_as_printed() {
+    let report = checked(&revised(PRINTED), "wgsl", Model::Sequential);
+    assert_fails_at(&report, PRINTED, "rows/revised_sync.wgsl", "let reserved = filled_atomic_add(pixel, 1u);");
+}
+
+#[test]
+fn the_second_algorithm_holds_mended() {
+    // With late stores a wait over several words is a long one: two entries have one to wait for.
+    let two_entries = fragbuf_checker::Limits { entries: vec![1, 2], ..limits(3, Model::Late) };
+    for (target, limits) in [("wgsl", limits(3, Model::Sequential)), ("spirv", two_entries)] {
+        let report = report("kplus_array", &[], target, &limits, &revised(MENDED)).unwrap();
+        assert!(report.is_whole);
+        let fault = report.failure.map(|schedule| (schedule.case, schedule.fault, schedule.steps.len()));
+        assert_eq!(fault, None, "{target}");
+    }
+}

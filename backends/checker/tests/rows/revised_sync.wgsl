@@ -1,0 +1,25 @@
+// K15 Alg. 2 as printed: a slot is reserved by the counter and written later, while the holder of the lock may read it.
+
+const FREE = 0u;
+const TAKEN = 1u;
+
+fn sync_store(pixel: u32, entry: Packed) {
+    if is_helper_lane() {
+        return;
+    }
+    let reserved = filled_atomic_add(pixel, 1u);
+    if reserved + 1u < frame.k {
+        max_array_write(pixel, frame.k - 1u - reserved, entry);
+        return;
+    }
+    for (var attempt = 0u; attempt < SPIN_LIMIT; attempt++) {
+        if locks_atomic_exchange(pixel, TAKEN) == FREE {
+            memory_fence();
+            storage_insert(pixel, entry);
+            memory_fence();
+            locks_store(pixel, FREE);
+            return;
+        }
+    }
+    on_lost(entry, SPIN_EXHAUSTED);
+}

@@ -1,0 +1,18 @@
+// Four slots for one pixel, given out by a counter that is read and written apart: two fragments can take one slot.
+
+@group(0) @binding(0) var<storage, read_write> used: atomic<u32>;
+@group(0) @binding(1) var<storage, read_write> slots: array<atomic<u32>, 4>;
+
+@fragment
+fn store(@builtin(position) position: vec4<f32>) {
+    let slot = atomicLoad(&used);
+    atomicStore(&used, slot + 1u);
+    if slot < 4u {
+        atomicStore(&slots[slot], bitcast<u32>(position.z));
+    }
+}
+
+/// Two fragments came, so two slots are taken and written.
+fn holds() -> bool {
+    return atomicLoad(&used) == 2u && atomicLoad(&slots[0]) != 0u && atomicLoad(&slots[1]) != 0u;
+}

@@ -1,0 +1,71 @@
+//! `fragbuf check` as scripts and readers meet it: exit codes, JSON, and every block of the guide.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn fragbuf(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fragbuf"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+fn text(output: &[u8]) -> String {
+    String::from_utf8(output.to_vec()).unwrap()
+}
+
+/// A command is followed by what it prints; the one that is not stands for a page of JSON.
+#[test]
+fn the_guide_shows_what_is_printed() {
+    let guide = std::fs::read_to_string("docs/guide/check_your_own_storage.md").unwrap();
+    let mut shown = 0;
+    for part in guide.split("```sh\n").skip(1) {
+        let (command, rest) = part.split_once("\n```\n\n").unwrap();
+        let Some(expected) = rest.strip_prefix("```text\n") else { continue };
+        let arguments: Vec<&str> = command.split(' ').skip(1).collect();
+        assert_eq!(text(&fragbuf(&arguments).stdout), expected.split("```").next().unwrap(), "{command}");
+        shown += 1;
+    }
+    assert_eq!(shown, 6);
+    let shader = std::fs::read_to_string("docs/guide/slots.wgsl").unwrap();
+    assert!(guide.contains(&format!("```wgsl\n{shader}```")));
+}
+
+#[test]
+fn the_exit_code_is_the_verdict() {
+    for (arguments, code) in [
+        (&["check", "ab_ll", "--fragments", "2"][..], 0),
+        (&["check", "kb", "--fragments", "2"], 1),
+        (&["check", "no_such_thing"], 1),
+        (&["check", "kplus_array", "--set", "sync=interlock", "--target", "wgsl"], 1),
+        (&["check", "--wgsl", "docs/guide/slots.wgsl", "--entry", "no_such_entry"], 1),
+        (&["check", "--wgsl", "docs/guide/slots.wgsl"], 2),
+        (&["check", "kb", "--target", "no_such_target"], 2),
+        (&["check"], 2),
+        (&["check", "--wgsl", "no/such/file.wgsl", "--entry", "main"], 3),
+    ] {
+        let output = fragbuf(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", text(&output.stderr));
+        assert_eq!(output.stderr.is_empty(), code == 0 || !output.stdout.is_empty(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn programs_read_the_verdict_as_json() {
+    let holds: Value = serde_json::from_slice(&fragbuf(&["check", "ab_sb", "--json"]).stdout).unwrap();
+    assert_eq!((&holds["holds"], &holds["every_order"]), (&Value::Bool(true), &Value::Bool(true)));
+    let fails: Value = serde_json::from_slice(&fragbuf(&["check", "kb", "--json"]).stdout).unwrap();
+    assert_eq!((&fails["holds"], &fails["as_stated"]), (&Value::Bool(false), &Value::Bool(true)));
+    let step = &fails["failure"]["steps"][0];
+    assert!(step["place"].as_str().unwrap().starts_with("storage/sorted_array.wgsl:"), "{step}");
+}
+
+/// A description's own criterion and closures are part of what runs.
+#[test]
+fn a_description_with_closures_is_checked() {
+    let output = fragbuf(&["check", "examples/most_visible.fragbuf", "--fragments", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("no failure in every order"));
+}
