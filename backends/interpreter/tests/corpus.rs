@@ -73,7 +73,15 @@ fn interpreted(text: &str, groups: [u32; 3]) -> (Program, Vec<Vec<u32>>) {
     (program, buffers)
 }
 
-fn on_device(headless: &Headless, text: &str, program: &Program, groups: [u32; 3]) -> Vec<Vec<u32>> {
+/// What a device makes of `before`, in the program's order of buffers.
+fn on_device(
+    headless: &Headless,
+    text: &str,
+    entry: &str,
+    program: &Program,
+    groups: [u32; 3],
+    before: &[Vec<u32>],
+) -> Vec<Vec<u32>> {
     let device = &headless.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
@@ -83,7 +91,7 @@ fn on_device(headless: &Headless, text: &str, program: &Program, groups: [u32; 3
         label: None,
         layout: None,
         module: &module,
-        entry_point: Some("main"),
+        entry_point: Some(entry),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     });
@@ -92,9 +100,9 @@ fn on_device(headless: &Headless, text: &str, program: &Program, groups: [u32; 3
     let buffers: Vec<(Option<u32>, wgpu::Buffer)> = program
         .buffers
         .iter()
-        .zip(before(program))
+        .zip(before)
         .map(|(buffer, words)| {
-            let contents = bytes(&words);
+            let contents = bytes(words);
             let init = wgpu::util::BufferInitDescriptor { label: None, contents: &contents, usage: storage };
             (buffer.binding.map(|(_, binding)| binding), device.create_buffer_init(&init))
         })
@@ -143,7 +151,7 @@ fn a_device_leaves_the_same_words() {
     let mut faults = Vec::new();
     for (name, text, judge, groups) in CORPUS {
         let (program, ours) = interpreted(text, groups);
-        let theirs = on_device(&headless, text, &program, groups);
+        let theirs = on_device(&headless, text, "main", &program, groups, &before(&program));
         for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.iter().zip(&theirs)) {
             if buffer.binding.is_none() {
                 continue;
@@ -196,4 +204,83 @@ fn every_other_node_is_refused_by_name() {
         format!("textures main: {textures}"),
     ];
     assert_eq!(refused, known);
+}
+
+/// Frames of fragbuf's own linked passes, by the names of their snapshots, and what follows the size in the frame's uniform
+/// buffer: entries, or room. Fragments go in one after the other.
+const FRAMES: [(&str, u32, &[&str]); 4] = [
+    ("kplus_array", 8, &["reset", "store", "resolve"]),
+    ("kb", 8, &["reset", "store", "resolve"]),
+    ("ab_ll", 300, &["store", "resolve"]),
+    ("ab_sb", 300, &["count", "scan_blocks", "scan_sums", "scan_add", "store", "resolve"]),
+];
+
+/// What stands in for the rasteriser: the same fragments, from one invocation.
+const DRAWN: &str = "
+@compute @workgroup_size(1)
+fn wrapped() {
+    for (var i = 0u; i < 300u; i++) {
+        let at = vec2<f32>(vec2<u32>(i * 7u % 5u, i * 3u % 4u)) + 0.5;
+        let share = f32(i * 37u % 101u) / 128.0;
+        FUNCTION(at, Fragment(vec4<f32>(share, 1.0 - share, 0.25, 0.5), share * share));
+    }
+}
+";
+
+/// `pass/resolve.wgsl` without the target.
+const RESOLVED: &str = "
+@group(0) @binding(20) var<storage, read_write> shown: array<vec4<f32>>;
+@compute @workgroup_size(1)
+fn wrapped(@builtin(global_invocation_id) id: vec3<u32>) {
+    let pixel = pixel_index(vec2<f32>(id.xy) + 0.5);
+    gathered = 0u;
+    var cursor = storage_first(pixel);
+    while cursor != END {
+        sort_gather(storage_read(pixel, cursor));
+        cursor = storage_next(pixel, cursor);
+    }
+    sort_finish();
+    shown[pixel] = resolve_layers();
+}
+";
+
+#[test]
+fn a_device_leaves_the_same_words_after_every_pass_of_a_frame() {
+    let headless = Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap();
+    for (technique, third, passes) in FRAMES {
+        let mut memory = std::collections::BTreeMap::from([(0, vec![5, 4, third, 0])]);
+        for pass in passes {
+            let path = format!(
+                "{}/../../tests/snapshots/all__snapshots__{technique}.{pass}.wgsl.snap",
+                env!("CARGO_MANIFEST_DIR")
+            );
+            let snapshot = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+            let text = snapshot.splitn(3, "---\n").nth(2).unwrap();
+            let (text, entry, groups) = match *pass {
+                "count" | "store" => {
+                    (format!("{text}{}", DRAWN.replace("FUNCTION", &format!("{pass}_fragment"))), "wrapped", [1, 1, 1])
+                }
+                "resolve" => (format!("{text}{RESOLVED}"), "wrapped", [5, 4, 1]),
+                other => (text.to_owned(), other, [1, 1, 1]),
+            };
+            let (module, info) = parsed(&text);
+            let program = Program::entry_point(&module, &info, entry, &Options::default()).unwrap();
+            let home = |buffer: &fragbuf_interpreter::Buffer| buffer.binding.map(|(_, binding)| binding);
+            let mut ours: Vec<Vec<u32>> = program
+                .buffers
+                .iter()
+                .map(|buffer| home(buffer).and_then(|at| memory.get(&at).cloned()).unwrap_or_else(|| vec![0; LENGTH]))
+                .collect();
+            let theirs = on_device(&headless, &text, entry, &program, groups, &ours);
+            assert_eq!(dispatch(&program, groups, &mut ours), Dispatch::Ended, "{technique} {pass}");
+            for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.into_iter().zip(theirs)) {
+                let Some(at) = home(buffer) else { continue };
+                let judge = if buffer.name == "shown" { Judge::Floats(1.0 / 4096.0) } else { Judge::Bits };
+                let differ = ours.iter().zip(&theirs).position(|(own, other)| !agree(*own, *other, judge));
+                assert_eq!(differ, None, "{technique} {pass}: a word of {}", buffer.name);
+                memory.insert(at, ours);
+            }
+        }
+        assert!(memory[&20].iter().filter(|word| **word != 0).count() > 40, "{technique} shows nothing");
+    }
 }
