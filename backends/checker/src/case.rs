@@ -138,7 +138,7 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
 fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
     let frame = &subject.plan.frame;
     let is_set = subject.plan.steps.iter().any(|step| matches!(step, Step::Host(_)));
-    let needs_room = frame.iter().any(|field| field == "fragments") && !is_set;
+    let needs_room = frame.iter().any(|field| field == "fragments" || field == "n") && !is_set;
     let total = (base.prior.len() + base.new.len()) as u32 + WIDTH - 1;
     let mut drawn_before = false;
     for (pass, runnable) in subject.passes.iter().enumerate().filter(|(_, pass)| pass.pass.kind == Kind::Geometry) {
@@ -159,7 +159,7 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
             let room = total - WIDTH;
             cases.push(Case { too_many: 1, reserved: Some(room), what, ..with_room(0) });
         }
-        if drawn_before {
+        if drawn_before && is_set {
             let what = format!("{}, one not seen by the pass before", case.what);
             cases.push(Case { has_unseen: true, what, ..with_room(0) });
         }

@@ -35,6 +35,8 @@ pub(crate) fn value(subject: &Subject, symbols: &Symbols, symbol: &str) -> Optio
         "height" => Some(1),
         "k" => symbols.k.map(u64::from),
         "fragments" => symbols.fragments.map(u64::from),
+        // Slots of each pixel: the one under test gets all the room but the neighbour's.
+        "n" => symbols.fragments.map(|fragments| u64::from(fragments.saturating_sub(WIDTH - 1))),
         _ => subject.plan.bound.value(symbol),
     }
 }
@@ -73,20 +75,20 @@ impl<'s> Frame<'s> {
         self.memory[0] = fields.map(|field| value(subject, &symbols, field).unwrap_or(0) as u32).collect();
     }
 
-    /// Does the steps from `from` up to the pass of this number, or all that are left. Geometry passes insert `fragments`.
+    /// Does the steps from `from` up to that of the number `to`. Geometry passes insert `fragments`.
     pub(crate) fn advance(
         &mut self,
         from: usize,
-        to: Option<&str>,
+        to: usize,
         fragments: &dyn Fn(&Runnable) -> Vec<Vec<Vec<u32>>>,
-    ) -> Result<usize, String> {
+    ) -> Result<(), String> {
         let subject = self.subject;
-        for (number, step) in subject.plan.steps.iter().enumerate().skip(from) {
+        for (number, (step, round)) in subject.steps.iter().enumerate().take(to).skip(from) {
+            self.enter(*round);
             match step {
                 Step::Clear { resource, value } => self.resource(resource)?.fill(*value),
-                Step::Pass(pass) if Some(pass.anchor.as_str()) == to => return Ok(number),
-                Step::Pass(pass) => {
-                    if let Some(runnable) = subject.passes.iter().find(|other| other.pass.anchor == pass.anchor) {
+                Step::Pass(_) => {
+                    if let Some(runnable) = subject.passes.iter().find(|other| other.step == number) {
                         self.pass(runnable, fragments)?;
                     }
                 }
@@ -103,11 +105,21 @@ impl<'s> Frame<'s> {
                     self.allocate();
                 }
                 Step::Copy { .. } | Step::Swap(..) | Step::Repeat(_) => {
-                    return Err("the checker does not run copies, exchanges or loops of passes yet".to_owned());
+                    return Err("the checker does not run copies, exchanges or loops of unknown length yet".to_owned());
                 }
             }
         }
-        Ok(subject.plan.steps.len())
+        Ok(())
+    }
+
+    /// Tells the programs the round of the loop that they are in.
+    pub(crate) fn enter(&mut self, round: u32) {
+        let fields = self.subject.plan.frame.iter();
+        for (field, word) in fields.zip(&mut self.memory[0]) {
+            if field == "iteration" {
+                *word = round;
+            }
+        }
     }
 
     fn resource(&mut self, name: &str) -> Result<&mut Vec<u32>, String> {

@@ -8,7 +8,7 @@ use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, pla
 use fragbuf_interpreter::{Marker, Options, Program, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Until, Use};
 
 /// `templates/shared/markers.wgsl`.
 pub(crate) const MARKERS: [(&str, Marker); 4] = [
@@ -38,6 +38,8 @@ pub(crate) enum Tries {
 #[derive(Debug)]
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
+    /// The plan's steps, loops unrolled, each with its round.
+    pub(crate) steps: Vec<(Step, u32)>,
     pub(crate) passes: Vec<Runnable>,
     pub(crate) first: Program,
     pub(crate) next: Program,
@@ -51,6 +53,9 @@ pub(crate) struct Subject {
 #[derive(Debug)]
 pub(crate) struct Runnable {
     pub(crate) pass: Pass,
+    /// Its place among the subject's steps, and the round of the loop that it is in.
+    pub(crate) step: usize,
+    pub(crate) round: u32,
     pub(crate) program: Program,
     /// From what the rasteriser gives to words: for a geometry pass.
     pub(crate) fragment: Option<FragmentPrograms>,
@@ -107,6 +112,7 @@ impl Subject {
         }
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let origin = &variant.name.origin;
+        let steps = unrolled(&plan);
         let mut passes = Vec::new();
         let mut asked = Vec::new();
         for (text, pass) in link(&asking, &linking, &registry)?.passes.into_iter().zip(asking.passes()) {
@@ -114,9 +120,15 @@ impl Subject {
             match pass.anchor.as_str() {
                 READ_OUT | READ_BOUND => asked.push(checked),
                 _ if pass.kind == Kind::Fullscreen => {}
-                _ => passes.push(runnable(pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?),
+                _ => {
+                    for (step, (_, round)) in steps.iter().enumerate().filter(|(_, (step, _))| is_pass(step, pass)) {
+                        let made = runnable(pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?;
+                        passes.push(Runnable { step, round: *round, ..made });
+                    }
+                }
             }
         }
+        passes.sort_by_key(|runnable| runnable.step);
         let ask = |number: usize, name: &str| {
             let checked: &Checked = &asked[number];
             Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
@@ -129,6 +141,7 @@ impl Subject {
             read: ask(0, "storage_read")?,
             bound: if wants_bound { Some(ask(1, "storage_bound")?) } else { None },
             has_fences: target.offers.contains(&Fact::Fences),
+            steps,
             plan,
         }))
     }
@@ -142,6 +155,32 @@ impl Subject {
     pub(crate) fn memory_of(binding: Option<(u32, u32)>) -> usize {
         binding.map_or(usize::MAX, |(group, binding)| (group * 64 + binding) as usize)
     }
+}
+
+fn is_pass(step: &Step, pass: &Pass) -> bool {
+    matches!(step, Step::Pass(other) if other.anchor == pass.anchor)
+}
+
+/// The steps of a plan, those of loops of a known number of rounds once for each.
+fn unrolled(plan: &Plan) -> Vec<(Step, u32)> {
+    let mut steps = Vec::new();
+    for step in &plan.steps {
+        let rounds = match step {
+            Step::Repeat(repeat) => match &repeat.until {
+                Until::Times(times) => times.evaluate(&|symbol| plan.bound.value(symbol)).ok(),
+                _ => None,
+            },
+            _ => None,
+        };
+        match (step, rounds) {
+            (Step::Repeat(repeat), Some(rounds)) => {
+                let round = |round| repeat.body.iter().map(move |step| (step.clone(), round));
+                steps.extend((0..rounds as u32).flat_map(round));
+            }
+            _ => steps.push((step.clone(), 0)),
+        }
+    }
+    steps
 }
 
 /// Sets every number of rows that lock to its least; whether there was one.
@@ -200,7 +239,7 @@ fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>
         _ => None,
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
-    Ok(Runnable { pass: pass.clone(), program, fragment, source })
+    Ok(Runnable { pass: pass.clone(), step: 0, round: 0, program, fragment, source })
 }
 
 fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {

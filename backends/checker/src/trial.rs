@@ -52,7 +52,8 @@ impl<'s> Trial<'s> {
             all.map(|fragment| fragment.inputs.clone()).collect::<Vec<_>>()
         };
         let seen = case.new.len() - usize::from(case.has_unseen || case.has_helper);
-        let step = frame.advance(0, Some(&runnable.pass.anchor), &|runnable| others(runnable, seen))?;
+        frame.advance(0, runnable.step, &|runnable| others(runnable, seen))?;
+        frame.enter(runnable.round);
         for inputs in others(runnable, 0) {
             frame.insert(runnable, &inputs)?;
         }
@@ -74,7 +75,7 @@ impl<'s> Trial<'s> {
         };
         let judge = EndJudge {
             frame,
-            step: step + 1,
+            step: runnable.step + 1,
             homes: homes_by_memory(&runnable.program, &ground),
             rest: real.to_vec(),
             prior: case.prior.clone(),
@@ -171,7 +172,8 @@ impl EndJudge<'_> {
         for (memory, first, count) in &self.homes {
             frame.memory[*memory].copy_from_slice(&words[*first..first + count]);
         }
-        frame.advance(self.step, None, &|runnable| {
+        let end = frame.subject.steps.len();
+        frame.advance(self.step, end, &|runnable| {
             let beside = at_pixel(&self.neighbour, &runnable.program, 1);
             let all = std::iter::once(&beside).chain(&self.prior).chain(&self.rest);
             all.map(|fragment| fragment.inputs.clone()).collect()

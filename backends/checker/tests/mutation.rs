@@ -4,7 +4,7 @@
 
 use std::sync::Mutex;
 
-use fragbuf_checker::{Error, Model};
+use fragbuf_checker::{Error, Limits, Model};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Row, Template};
 
@@ -25,7 +25,15 @@ const SORTED: &[Check] = &[
 const LIST: &[Check] = &[("ab_ll", &[], "wgsl", Model::Sequential), ("ab_ll", &[], "wgsl", Model::Late)];
 const REGIONS: &[Check] = &[("ab_sb", &[], "wgsl", Model::Sequential), ("ab_sb", &[], "wgsl", Model::Late)];
 
-const MUTATED: [(&str, &str, &[Check]); 6] = [
+const HEAP: &[Check] = &[("kplus_heap", &[], "wgsl", Model::Sequential), ("kplus_heap", &[], "spirv", Model::Late)];
+const CASCADE: &[Check] =
+    &[("mdt32_coplanar", &[], "wgsl", Model::Sequential), ("mdt32_coplanar", &[], "wgsl", Model::Late)];
+const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_array", &[], "wgsl", Model::Late)];
+
+const MUTATED: [(&str, &str, &[Check]); 9] = [
+    ("storage", "max_heap", HEAP),
+    ("storage", "cascade", CASCADE),
+    ("storage", "fixed_array", ARRAY),
     ("storage", "max_array", KPLUS),
     ("storage", "sorted_array", SORTED),
     ("storage", "linked_list", LIST),
@@ -152,6 +160,11 @@ enum Outcome {
     Illegal,
 }
 
+/// Two fragments at once; four entries, because a heap of three has no second level.
+fn deep(model: Model) -> Limits {
+    Limits { entries: vec![1, 2, 3, 4], ..limits(2, model) }
+}
+
 fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     let registry = Registry::builtin();
     let old: &Row = registry.row(axis, key).unwrap();
@@ -159,7 +172,7 @@ fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     let row = Row { template: Some(Template::new(path, mutant.text.clone())), ..old.clone() };
     let registry = registry.with(row);
     for (technique, set, target, model) in checks {
-        match report(technique, set, target, &limits(2, *model), &registry) {
+        match report(technique, set, target, &deep(*model), &registry) {
             Ok(report) if report.failure.is_some() => return Outcome::Noticed,
             Ok(_) => {}
             Err(Error::Unable(_)) => return Outcome::Noticed,
