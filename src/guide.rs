@@ -6,7 +6,8 @@
 //! 4. [`run`]: pictures and figures from the command line.
 //! 5. [`embed`]: frames in an engine of yours.
 //! 6. [`extend`]: a storage of your own, snapshots.
-//! 7. [`refusals`]: what goes wrong, and how to read it.
+//! 7. [`check`]: every order in which fragments of a pixel can come, tried.
+//! 8. [`refusals`]: what goes wrong, and how to read it.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -21,5 +22,7 @@ pub mod run {}
 pub mod embed {}
 #[doc = include_str!("guide/extend.md")]
 pub mod extend {}
+#[doc = include_str!("guide/check.md")]
+pub mod check {}
 #[doc = include_str!("guide/refusals.md")]
 pub mod refusals {}

@@ -19,17 +19,26 @@ fn text(output: &[u8]) -> String {
 /// A command is followed by what it prints; the one that is not stands for a page of JSON.
 #[test]
 fn the_guide_shows_what_is_printed() {
-    let guide = std::fs::read_to_string("docs/guide/check_your_own_storage.md").unwrap();
-    let mut shown = 0;
+    let guide = std::fs::read_to_string("src/guide/check.md").unwrap();
+    let (mut shown, mut real) = (0, guide.split("```sh\n").next().unwrap().to_owned());
     for part in guide.split("```sh\n").skip(1) {
         let (command, rest) = part.split_once("\n```\n\n").unwrap();
-        let Some(expected) = rest.strip_prefix("```text\n") else { continue };
+        real += &format!("```sh\n{command}\n```\n\n");
+        let Some(expected) = rest.strip_prefix("```text\n") else {
+            real += rest;
+            continue;
+        };
         let arguments: Vec<&str> = command.split(' ').skip(1).collect();
-        assert_eq!(text(&fragbuf(&arguments).stdout), expected.split("```").next().unwrap(), "{command}");
+        let (_, after) = expected.split_once("```").unwrap();
+        real += &format!("```text\n{}```{after}", text(&fragbuf(&arguments).stdout));
         shown += 1;
     }
     assert_eq!(shown, 6);
-    let shader = std::fs::read_to_string("docs/guide/slots.wgsl").unwrap();
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        std::fs::write("src/guide/check.md", &real).unwrap();
+    }
+    assert_eq!(guide, real, "the guide is out of date: INSTA_UPDATE=always writes it anew");
+    let shader = std::fs::read_to_string("examples/checked/slots.wgsl").unwrap();
     assert!(guide.contains(&format!("```wgsl\n{shader}```")));
 }
 
@@ -40,8 +49,8 @@ fn the_exit_code_is_the_verdict() {
         (&["check", "kb", "--fragments", "2"], 1),
         (&["check", "no_such_thing"], 1),
         (&["check", "kplus_array", "--set", "sync=interlock", "--target", "wgsl"], 1),
-        (&["check", "--wgsl", "docs/guide/slots.wgsl", "--entry", "no_such_entry"], 1),
-        (&["check", "--wgsl", "docs/guide/slots.wgsl"], 2),
+        (&["check", "--wgsl", "examples/checked/slots.wgsl", "--entry", "no_such_entry"], 1),
+        (&["check", "--wgsl", "examples/checked/slots.wgsl"], 2),
         (&["check", "kb", "--target", "no_such_target"], 2),
         (&["check"], 2),
         (&["check", "--wgsl", "no/such/file.wgsl", "--entry", "main"], 3),

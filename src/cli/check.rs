@@ -39,7 +39,7 @@ pub(crate) struct Check {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
     fragments: Option<u32>,
     /// Entries that the pixel keeps: 1, 2 and 3 unless said
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=4))]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=7))]
     entries: Option<u32>,
     /// How memory behaves
     #[arg(long, value_enum, default_value_t = ModelArgument::Sc)]

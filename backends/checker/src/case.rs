@@ -35,7 +35,7 @@ pub(crate) struct Case {
 const PATTERNS: [(&str, [Pick; 4]); 5] = [
     ("keys between those kept", [Pick::Rank(4), Pick::Rank(2), Pick::Rank(6), Pick::Rank(1)]),
     ("keys better than all kept", [Pick::Rank(0), Pick::Rank(1), Pick::Rank(2), Pick::Rank(0)]),
-    ("keys worse than all kept", [Pick::Rank(8), Pick::Rank(9), Pick::Rank(10), Pick::Rank(11)]),
+    ("keys worse than all kept", [Pick::Rank(20), Pick::Rank(21), Pick::Rank(22), Pick::Rank(23)]),
     ("one key, two payloads", [Pick::Rank(5), Pick::Twin(5), Pick::Rank(5), Pick::Twin(5)]),
     ("all alike", [Pick::Rank(5), Pick::Rank(5), Pick::Rank(5), Pick::Rank(5)]),
 ];
@@ -47,7 +47,7 @@ enum Pick {
 }
 
 /// What a pixel may hold before.
-const PRIOR: [usize; 4] = [3, 5, 7, 9];
+const PRIOR: [usize; 8] = [3, 5, 7, 9, 13, 15, 17, 19];
 
 /// Every case for `count` new fragments and `k` entries; `k` is `None` where all are kept.
 pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: Option<u32>) -> Vec<Case> {
@@ -82,8 +82,8 @@ pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: O
     cases
 }
 
-/// What may be there before, by rank in the order of arrival, and what it is called: every order of up to three, two of
-/// more.
+/// What may be there before, by rank in the order of arrival, and what it is called: every order of up to three, five
+/// of more.
 fn priors(k: Option<u32>) -> Vec<(Vec<usize>, String)> {
     let mut counts: Vec<usize> = match k {
         Some(k) => vec![0, k as usize - 1, k as usize, k as usize + 1],
@@ -116,7 +116,10 @@ fn priors(k: Option<u32>) -> Vec<(Vec<usize>, String)> {
 /// The orders of `count` things.
 fn orders(count: usize) -> Vec<Vec<usize>> {
     if count > 3 {
-        return vec![(0..count).collect(), (0..count).rev().collect()];
+        let riffled = |first: usize| (first..count).step_by(2).chain((1 - first..count).step_by(2)).collect();
+        // Neither sorted nor nearly so: what a tree of slots makes of it has its second level the wrong way round.
+        let crossed = (0..count).map(|at| [0, 3, 2, 1].get(at).copied().unwrap_or(at)).collect();
+        return vec![(0..count).collect(), (0..count).rev().collect(), riffled(0), riffled(1), crossed];
     }
     let mut orders = vec![Vec::new()];
     for next in 0..count {

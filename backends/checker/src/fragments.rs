@@ -23,6 +23,9 @@ pub(crate) struct Fragment {
 /// Candidates that are tried.
 const TRIED: u32 = 96;
 
+/// Candidates that are taken.
+const RANKS: usize = 24;
+
 /// Admitted fragments of different keys, best first; and one of the same key as each, which differs beside it if it can.
 pub(crate) struct Candidates {
     pub(crate) ranked: Vec<Fragment>,
@@ -38,15 +41,15 @@ impl Candidates {
         }
         ranked.sort_by(|a, b| a.words.cmp(&b.words));
         ranked.dedup_by_key(|fragment| fragment.words[0]);
-        if ranked.len() < 12 {
+        if ranked.len() < RANKS {
             return Err(format!(
                 "only {} of {TRIED} tried fragments are admitted and have different keys",
                 ranked.len()
             ));
         }
         // Spread over the whole range, so that there is room between any two.
-        let step = ranked.len() / 12;
-        let ranked: Vec<Fragment> = ranked.into_iter().step_by(step).take(12).collect();
+        let step = ranked.len() / RANKS;
+        let ranked: Vec<Fragment> = ranked.into_iter().step_by(step).take(RANKS).collect();
         let twins = ranked.iter().map(|fragment| twin(subject, memory, fragment)).collect::<Result<_, _>>()?;
         Ok(Candidates { ranked, twins })
     }
