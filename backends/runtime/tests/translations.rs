@@ -107,6 +107,15 @@ fn exact_regions() {
 }
 
 #[test]
+fn minima_links_ranges_and_slots_without_a_lock() {
+    for key in ["kb_mdt32", "kb_ll", "kplus_array_revised", "kplus_ab_sb"] {
+        check(&technique(key, &[("k", "3"), ("counters", "all")]), |_| {});
+    }
+    // wgpu knows no interlock.
+    check(&technique("depth_partition", &[("k", "3"), ("counters", "all"), ("sync", "spin_lock")]), |_| {});
+}
+
+#[test]
 fn functions_of_the_descriptions_own() {
     check(&glass("kplus_array", GLASS_KEEPS), set_uniforms);
 }
