@@ -62,6 +62,7 @@ pub fn named() -> Vec<Case> {
         ("ab_array", technique("ab_array"), vec![]),
         ("kb_ab_ll", technique("kb_ab_ll"), vec![]),
         ("kb_mdt32", technique("kb_mdt32"), vec![]),
+        ("kb_mdt64", technique("kb_mdt64"), vec![]),
         ("kplus_array_revised", technique("kplus_array_revised"), vec![]),
         ("kb_ll", technique("kb_ll"), vec![]),
         ("depth_partition", technique("depth_partition"), vec![("storage.near", "100000")]),

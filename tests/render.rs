@@ -155,10 +155,24 @@ fn a_storage_of_the_users_own_loses_what_its_file_says() {
     }
 }
 
+/// But for those whose slots have no room for more than the papers' payload: they are drawn with that.
 #[test]
 fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
-    for key in techniques(KeepDefault::Best(8)) {
+    let registry = Registry::builtin();
+    let narrow = |key: &String| {
+        let storage = registry.technique(key).unwrap().choices.iter().find(|(axis, _)| *axis == "storage").unwrap().1;
+        registry.row("storage", storage).unwrap().requires.contains(&Fact::OneWordBesideDepth)
+    };
+    let (narrow, others): (Vec<String>, Vec<String>) = techniques(KeepDefault::Best(8)).into_iter().partition(narrow);
+    for key in others {
         check(&key, Some(8), 60, 7, Colors::Thin, [0.0; 3]);
+    }
+    let folder = folder("narrow");
+    let model = write(&folder, &quads(60, 7, Colors::Thin));
+    for key in narrow {
+        let pixels = render(&folder, &[&key, "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"]);
+        let papers = ["kplus_array", "--set", "fragment.color=rgba8", "--scene", model.to_str().unwrap()];
+        assert_eq!(pixels, render(&folder, &[&papers[..], &["--background", "0,0,0,1"]].concat()), "{key}");
     }
     for key in techniques(KeepDefault::All) {
         check(&key, None, 60, 8, Colors::Thin, [0.0; 3]);

@@ -18,6 +18,7 @@ pub(crate) fn rows() -> Vec<Row> {
         worst_first::max_heap(),
         minima::cascade(),
         minima::distinct_cascade(),
+        minima::wide_cascade(),
         worst_first::revised_array(),
         list::ordered_list(),
         ranges::depth_ranges(),

@@ -128,6 +128,14 @@ pub(crate) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "kb_mdt64".to_owned(),
+            title: "KB-MDT₆₄",
+            paper: "K15 §2; Liu et al. 2010",
+            summary: "the k nearest by 64-bit atomic minima of depth and color, equal depths included, in one pass",
+            keep: KeepDefault::Best(8),
+            choices: vec![("storage", "wide_cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
+        },
+        Technique {
             key: "kplus_array_revised".to_owned(),
             title: "K⁺B-Array-R",
             paper: "K15 §3.2.1, Alg. 2, mended",

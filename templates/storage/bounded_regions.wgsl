@@ -1,12 +1,12 @@
-// The k+-buffer in exact regions (K15 sec. 4.1, Alg. 3, mended). One geometry pass counts, a prefix sum over min(f, k)
-// turns counts into offsets, a second geometry pass stores. Where a pixel has no more than k fragments, its count is
-// counted down and gives every one a slot of its own, without a lock. Where it has more, it is crowded: its region is a
-// max array, or for k > ARRAY_MOST a max heap, and writers take turns. The count is not bounded while it is taken: the
-// printed check before the addition overshoots k, and cannot tell f = k from f > k.
+// The k+-buffer in exact regions (K15 sec. 4.1, Alg. 3, mended). One geometry pass counts, a prefix sum over min(f,
+// k) turns counts into offsets, a second geometry pass stores. Where a pixel has no more than k fragments, its count
+// is counted down and gives every one a slot of its own, without a lock. Where it has more, it is crowded: its region
+// is a max array, or for k > ARRAY_MOST a max heap, and writers take turns. The count is not bounded while it is
+// taken: the printed check before the addition overshoots k, and cannot tell f = k from f > k.
 //
-// Invariant: at every instant the key of slot 0 is EMPTY, or no fragment still to come of the final k best exceeds it. In
-// a crowded pixel that is the array's, or the heap's, whose slot 0 is EMPTY until k fragments are in. In any other, slot 0
-// goes to the fragment that asks last. So the cull needs no separate word.
+// Invariant: at every instant the key of slot 0 is EMPTY, or no fragment still to come of the final k best exceeds
+// it. In a crowded pixel that is the array's, or the heap's, whose slot 0 is EMPTY until k fragments are in. In any
+// other, slot 0 goes to the fragment that asks last. So the cull needs no separate word.
 //
 // Memory: entry_words words for each of min(f, k) fragments, 2 per pixel, and the lock's.
 

@@ -1,10 +1,10 @@
-// Depth partitioning (B06 sec. 4.2): the depths from NEAR_MILLIONTHS to FAR_MILLIONTHS are cut into k equal ranges, and
-// each keeps its nearest fragment, in one pass. Range i holds the depths from its beginning to just before the next
-// one's; what lies before the first or beyond the last counts as theirs. Borders are exact: depths are cut down to whole
-// millionths and compared as whole numbers, on every device alike.
+// Depth partitioning (B06 sec. 4.2): the depths from NEAR_MILLIONTHS to FAR_MILLIONTHS are cut into k equal ranges,
+// and each keeps its nearest fragment, in one pass. Range i holds the depths from its beginning to just before the
+// next one's; what lies before the first or beyond the last counts as theirs. Borders are exact: depths are cut down
+// to whole millionths and compared as whole numbers, on every device alike.
 //
-// Invariant: a slot only ever changes to a better fragment, inside the critical section, and holds nothing but fragments
-// of its range. No one key bounds all ranges, so there is no early cull.
+// Invariant: a slot only ever changes to a better fragment, inside the critical section, and holds nothing but
+// fragments of its range. No one key bounds all ranges, so there is no early cull.
 //
 // Memory: k * entry_words words per pixel, and the lock's.
 

@@ -1,14 +1,14 @@
 // The 32-bit multidepth buffer (Liu et al. 2010; K15 sec. 2, KB-MDT32). A cascade of atomic minima brings the k least
 // keys into order: each slot keeps the lesser of what it holds and what comes, the greater goes on to the next slot.
-// Of equal keys one slot is kept. The scene is then drawn once more, and each fragment whose key stands in a slot writes
-// what it carries beside it. Keys are the bits of the depth, whole: no precision is lost.
+// Of equal keys one slot is kept. The scene is then drawn once more, and each fragment whose key stands in a slot
+// writes what it carries beside it. Keys are the bits of the depth, whole: no precision is lost.
 //
-// Fragments with equal keys write to the same slot: the last one wins, word by word, so that an entry of several words
-// may be of several fragments. storage/cascade keeps equal keys, and settles them.
+// Fragments with equal keys write to the same slot: the last one wins, word by word, so that an entry of several
+// words may be of several fragments. storage/cascade keeps equal keys, and settles them.
 //
 // Invariant: slots only fall, and a key that has gone past a slot stays greater than what the slot holds. So no key
-// ever stands in two slots, no key of the k least distinct ones is dropped, and the key of slot k-1 is never below the
-// k-th of them: it may be read at any time.
+// ever stands in two slots, no key of the k least distinct ones is dropped, and the key of slot k-1 is never below
+// the k-th of them: it may be read at any time.
 //
 // Memory: k * entry_words words per pixel. Geometry passes: 2.
 

@@ -1,17 +1,17 @@
-// A list per pixel that is in order at every instant (Yu et al. 2012; K15 sec. 2, KB-LL). A fragment goes along the list
-// from the best on, past all that are no worse, and is linked in there by one compare and exchange. If another came
-// first, it looks again from the same node. Once k nodes are ahead of it, it is dropped.
+// A list per pixel that is in order at every instant (Yu et al. 2012; K15 sec. 2, KB-LL). A fragment goes along the
+// list from the best on, past all that are no worse, and is linked in there by one compare and exchange. If another
+// came first, it looks again from the same node. Once k nodes are ahead of it, it is dropped.
 //
-// Invariant: the list only grows, nodes never move, are never freed and never change but for their link; a link is only
-// ever replaced by that of a node which belongs between its two ends. So what is ahead of a fragment stays ahead of
-// it, the k best are the first k nodes at the end, and a link that is seen unchanged is unchanged (no ABA).
+// Invariant: the list only grows, nodes never move, are never freed and never change but for their link; a link is
+// only ever replaced by that of a node which belongs between its two ends. So what is ahead of a fragment stays ahead
+// of it, the k best are the first k nodes at the end, and a link that is seen unchanged is unchanged (no ABA).
 //
-// A node is stored before it is linked, and a link is read before the node: the fences keep it so. Plain WGSL has none
-// in a fragment shader (tier T4). Tries are bounded, because each failure is another's success, but no one promises
-// that one's own turn comes; a fragment that is given up is counted, and its node stays unused.
+// A node is stored before it is linked, and a link is read before the node: the fences keep it so. Plain WGSL has
+// none in a fragment shader (tier T4). Tries are bounded, because each failure is another's success, but no one
+// promises that one's own turn comes; a fragment that is given up is counted, and its node stays unused.
 //
-// Memory: entry_words + 1 words per fragment that is linked, 1 per pixel. (The papers' two sentinel nodes, 6 words per
-// pixel, are a head of one word here, and a fragment that is dropped takes no node.)
+// Memory: entry_words + 1 words per fragment that is linked, 1 per pixel. (The papers' two sentinel nodes, 6 words
+// per pixel, are a head of one word here, and a fragment that is dropped takes no node.)
 
 /// No node, as links are stored: plus one.
 const NO_NODE = 0u;

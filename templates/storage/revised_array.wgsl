@@ -1,14 +1,15 @@
-// The revised k+-buffer's array (K15 sec. 3.2.1, Alg. 2, mended). A counter gives the first k-1 fragments slots k-1, k-2,
-// ... 1 of their own, stored without a lock; those after them take turns and keep the worst at slot 0.
+// The revised k+-buffer's array (K15 sec. 3.2.1, Alg. 2, mended). A counter gives the first k-1 fragments slots k-1,
+// k-2, ... 1 of their own, stored without a lock; those after them take turns and keep the worst at slot 0.
 //
-// As printed, who is inside reads slots that have been given out and not yet stored, and loses fragments. So every slot
-// begins EMPTY, what stands beside a key is stored before the key, and whoever comes after the first k-1 waits, before
-// the lock, until no slot but slot 0 is EMPTY. The wait is bounded, because no API promises that the others ever run
-// again; a fragment that is given up is counted. (The printed index k-counter-2 is mended too.)
+// As printed, who is inside reads slots that have been given out and not yet stored, and loses fragments. So every
+// slot begins EMPTY, what stands beside a key is stored before the key, and whoever comes after the first k-1 waits,
+// before the lock, until no slot but slot 0 is EMPTY. The wait is bounded, because no API promises that the others
+// ever run again; a fragment that is given up is counted. (The printed index k-counter-2 is mended too.)
 //
-// Invariants. Slots 1 ... k-1 are each written by one invocation outside the lock, and by those inside only after they
-// have been seen written. At every instant the key of slot 0 is EMPTY, or at least the k-th best key so far: it is
-// written once per insert, straight to the new worst, which is found first, and not before slots 1 ... k-1 are full.
+// Invariants. Slots 1 ... k-1 are each written by one invocation outside the lock, and by those inside only after
+// they have been seen written. At every instant the key of slot 0 is EMPTY, or at least the k-th best key so far: it
+// is written once per insert, straight to the new worst, which is found first, and not before slots 1 ... k-1 are
+// full.
 //
 // Memory: k * entry_words + 1 words per pixel, and the lock's.
 

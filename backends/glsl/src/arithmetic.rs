@@ -103,10 +103,8 @@ impl FunctionPrinter<'_, '_> {
             (BinaryOperator::And | BinaryOperator::InclusiveOr, ScalarKind::Bool) => {
                 Some(self.boolean(op, lanes, left, right))
             }
-            (BinaryOperator::Divide | BinaryOperator::Modulo, _) if scalar.width > 4 => {
-                (!self.is_safe_divisor(right))
-                    .then(|| Text::primary(self.error("a division of u64 values by what may be zero", expression)))
-            }
+            (BinaryOperator::Divide | BinaryOperator::Modulo, _) if scalar.width > 4 => (!self.is_safe_divisor(right))
+                .then(|| Text::primary(self.error("a division of u64 values by what may be zero", expression))),
             (BinaryOperator::Divide, ScalarKind::Uint) if !self.is_safe_divisor(right) => {
                 Some(self.help(Helper::DivideUint(lanes), &[left, right]))
             }

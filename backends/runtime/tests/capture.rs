@@ -93,8 +93,13 @@ pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, 
 
 /// Every case in every order, by the shaders of the target `wgsl`.
 fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
+    check_as("wgsl", variant, settings, rules, prepare);
+}
+
+/// Every case in every order, by the shaders of a target.
+fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
     let stage = stage::device();
-    let mut renderer = renderer(&stage, &shaders(variant, "wgsl"), settings).unwrap();
+    let mut renderer = renderer(&stage, &shaders(variant, target), settings).unwrap();
     prepare(&mut renderer);
     for (name, quads) in cases() {
         let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
@@ -155,6 +160,14 @@ fn the_cascade() {
 fn the_array_whose_first_fragments_need_no_lock() {
     for k in ["1", "2", "4"] {
         check(&technique("kplus_array_revised", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+/// Portable WGSL has no 64-bit atomics.
+#[test]
+fn the_cascade_of_64_bits() {
+    for k in ["1", "4"] {
+        check_as("wgsl-native", &technique("kb_mdt64", &[("k", k)]), &settings(), &PLAIN, |_| {});
     }
 }
 

@@ -49,6 +49,14 @@ pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Ve
                 assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "pixel {pixel} is not in strict order: {kept:?}");
                 kept
             }
+            "wide_cascade" => {
+                let wide = |index: usize| &buffer("slots")[2 * (index * PIXELS + pixel)..][..2];
+                let slots = (0..k).map(wide).take_while(|wide| wide[1] != EMPTY);
+                // Without a word beside the key the lower one is nobody's.
+                let kept: Vec<Words> = slots.map(|wide| [wide[1], wide[0]][..words].to_vec()).collect();
+                assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
+                kept
+            }
             "revised_array" => {
                 let asked = (buffer("tickets")[pixel] as usize).min(k);
                 let slots: Vec<Words> = (0..k).map(|index| slot(index, pixel)).collect();

@@ -10,7 +10,7 @@ use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, 
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
-const COUNTERS: u64 = 6;
+const COUNTERS: u64 = 7;
 
 fn open(stage: &Headless, key: &str, set: &[(&str, &str)], sizing: Sizing) -> Result<Renderer, Error> {
     renderer(stage, &shaders(&technique(key, set), "wgsl"), &Settings { sizing, ..settings() })
@@ -22,10 +22,17 @@ fn allocated_bytes_are_what_the_papers_say() {
     let quads = scattered(8, 3);
     let fragments = total(&PLAIN, &quads) as u64;
     let reserve = Sizing::Reserve(Room::Fragments(1000));
-    // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1 and 2f + 2 words per pixel.
+    let best: u64 = kept_words(&PLAIN, &quads, Some(5)).iter().map(|kept| kept.len() as u64).sum();
+    // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1, 2f + 2 and 2 min(f, k) + 3 words per
+    // pixel.
     let expected = [
         ("kplus_array", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
         ("kb", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
+        ("kb_mdt32", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
+        ("kplus_array_revised", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
+        ("depth_partition", "5", Sizing::Auto, (2 * 5 + 1) * PIXELS + COUNTERS),
+        ("kplus_ab_sb", "5", Sizing::Exact, 3 * PIXELS + 1 + 1 + 2 * best + COUNTERS),
+        ("kb_ll", "5", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", Sizing::Auto, PIXELS + 1 + 3 * 8 * PIXELS + COUNTERS),
         ("ab_sb", "all", reserve, PIXELS + (PIXELS + 1) + 1 + 2 * 1000 + COUNTERS),

@@ -78,6 +78,35 @@ pub(super) fn distinct_cascade() -> Row {
     }
 }
 
+/// The papers' 64-bit multidepth: key and payload move together.
+pub(super) fn wide_cascade() -> Row {
+    let slots = Resource::new(
+        "slots",
+        Element::Word64,
+        "the k least fragments in ascending order, the key above what stands beside it; all ones past the last",
+    );
+    let row = by_minima(Row::new(
+        "storage",
+        "wide_cascade",
+        "k entries of at most two words per pixel in order, by a cascade of 64-bit atomic minima",
+        "K15 §2 (KB-MDT64)",
+    ));
+    Row {
+        template: Some(template!("storage/wide_cascade")),
+        resources: vec![slots.by("slot", "k").by("pixel", "pixels")],
+        steps: vec![
+            Step::Pass(reset_pass().uses("slots", Access::Plain)),
+            Step::Pass(Pass::geometry("store", "store").uses("slots", Access::Atomic)),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve").uses("slots", Access::Read).target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow"],
+        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::DepthKey, Fact::OneWordBesideDepth],
+        ..row
+    }
+}
+
 /// What storages share whose keys are settled by a cascade of minima.
 fn by_minima(row: Row) -> Row {
     Row {
