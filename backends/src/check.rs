@@ -36,7 +36,12 @@ impl Checked {
 pub(crate) fn capabilities(profile: Profile) -> Capabilities {
     match profile {
         Profile::Portable => Capabilities::empty(),
-        Profile::Native => Capabilities::MEMORY_DECORATION_COHERENT,
+        Profile::Native => {
+            Capabilities::MEMORY_DECORATION_COHERENT
+                | Capabilities::SHADER_INT64
+                | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
+                | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS
+        }
     }
 }
 

@@ -71,7 +71,8 @@ pub struct File {
 }
 
 /// What both dialects of GLSL offer.
-const GLSL_FACTS: &[Fact] = &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::Linkable];
+const GLSL_FACTS: &[Fact] =
+    &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics, Fact::Linkable];
 
 /// Every target, in the order in which files and manifests list them.
 pub const TARGETS: &[Target] = &[
@@ -84,9 +85,9 @@ pub const TARGETS: &[Target] = &[
     },
     Target {
         name: "wgsl-native",
-        summary: "WGSL with naga's coherent buffers: wgpu on native back ends",
+        summary: "WGSL with naga's coherent buffers and 64-bit atomics: wgpu on native back ends",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -107,7 +108,7 @@ pub const TARGETS: &[Target] = &[
         name: "spirv",
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock],
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics],
         emit: spirv::emit,
     },
     Target {

@@ -22,6 +22,18 @@ pub struct Contract {
 pub const CONTRACTS: &[Contract] = &[
     row("storage", "storage_reset", "(pixel: u32)", "brings the pixel to its empty state"),
     row("storage", "storage_count", "(pixel: u32)", "counts a fragment that a later pass will store"),
+    row(
+        "storage",
+        "storage_size",
+        "(pixel: u32) -> u32",
+        "entries that the pixel needs room for, once it has been counted",
+    ),
+    row(
+        "storage",
+        "storage_reserve",
+        "(pixel: u32, entry: Packed) -> bool",
+        "outside any lock: stores a fragment that has a place of its own, or hands it to on_lost; false: insert it",
+    ),
     row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment or hands one to on_lost"),
     row("storage", "storage_settle", "(pixel: u32, entry: Packed)", "settles more of a fragment that was stored"),
     row(

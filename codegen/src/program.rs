@@ -203,7 +203,8 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
     let mut sources = emit::sources(plan, pass, linking, &atomics);
     sources.extend(templates);
-    let export = format!("{}_fragment", pass.skeleton);
+    // Forms of a skeleton (`store_reserving`) offer a caller's shader the same function.
+    let export = format!("{}_fragment", pass.skeleton.split('_').next().unwrap_or_default());
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };
     let notes = Notes { generated: generated(plan), algorithms: instances::algorithms(pass, plan, registry)? };

@@ -48,9 +48,15 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     let registry = Registry::builtin();
     let mut input = Input::read(wish.description, &registry)?;
     let rounded = stage.exact && !in_255ths(&stage.scene);
-    let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
-    let unless_said: Vec<(&str, &str)> =
-        unless_said.into_iter().filter(|(wanted, _)| *wanted).map(|(_, set)| set).collect();
+    let mut unless_said: Vec<(&str, &str)> = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, set)| set)
+        .collect();
+    // A storage whose slots hold no more than the papers' payload rounds as the papers do.
+    if rounded && input.variant_or(wish.set, &unless_said, &registry).is_err() {
+        unless_said.retain(|set| *set != UNROUNDED);
+    }
     let (mut set, mut frames) = (wish.set.to_vec(), 0);
     let (mut said, mut room) = (None, None);
     loop {

@@ -1,5 +1,5 @@
-// Exclusive prefix sums of the counts inside each block of 1024 pixels: every invocation adds up four neighbours,
-// the workgroup scans the 256 sums. The block's total goes to `block_sums`.
+// Exclusive prefix sums, inside each block of 1024 pixels, of what pixels need room for: every invocation adds up four
+// neighbours, the workgroup scans the 256 sums. The block's total goes to `block_sums`.
 
 const PIXELS_EACH = 4u;
 
@@ -12,12 +12,12 @@ fn scan_blocks(
     let end = min(first + PIXELS_EACH, pixel_count());
     var own = 0u;
     for (var pixel = first; pixel < end; pixel++) {
-        own += counts_load(pixel);
+        own += storage_size(pixel);
     }
     var offset = workgroup_scan(local, own) - own;
     for (var pixel = first; pixel < end; pixel++) {
         offsets_store(pixel, offset);
-        offset += counts_load(pixel);
+        offset += storage_size(pixel);
     }
     if local == 255u {
         block_sums_store(group.x, offset);

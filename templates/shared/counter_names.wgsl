@@ -6,3 +6,4 @@ const DISPLACED = 2u;
 const POOL_EXHAUSTED = 3u;
 const SPIN_EXHAUSTED = 4u;
 const LAYERS_EXCEEDED = 5u;
+const EQUAL_KEYS = 6u;

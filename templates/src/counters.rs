@@ -4,13 +4,14 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 6] = [
+pub const COUNTERS: [(&str, bool, &str); 7] = [
     ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
     ("culled", false, "fragments turned away by the cull"),
-    ("displaced", true, "fragments rejected or replaced because k better ones were there"),
+    ("displaced", true, "fragments rejected or replaced because better ones were there"),
     ("pool_exhausted", true, "fragments that found no room in the storage"),
-    ("spin_exhausted", true, "fragments given up because the lock was not free in time"),
+    ("spin_exhausted", true, "fragments given up because the lock, a slot or a link was not free in time"),
     ("layers_exceeded", true, "kept fragments beyond what the resolve pass can hold; the farthest are left out"),
+    ("equal_keys", true, "fragments dropped because one with an equal key was kept"),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -27,7 +28,9 @@ fn counting(key: &str, summary: &'static str, template: Template) -> Row {
     Row {
         template: Some(template),
         resources: vec![
-            Resource::new("counters", Element::Word, "events of the frame, by counter").by("counter", "6").cleared(0),
+            Resource::new("counters", Element::Word, "events of the frame, by counter")
+                .by("counter", COUNTERS.len().to_string())
+                .cleared(0),
         ],
         uses: vec![Use::new("counters", Access::Atomic)],
         ..Row::new("counters", key, summary, "")

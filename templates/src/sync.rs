@@ -55,7 +55,7 @@ fn interlock() -> Row {
     Row {
         offers: vec![Fact::Critical],
         requires: vec![Fact::Interlock, Fact::Coherent, Fact::FragmentAtomics, Fact::OwnEntryPoints],
-        edits: vec![Edit::SetSkeleton("store".to_owned(), "store_ordered".to_owned())],
+        edits: vec![Edit::FormOfSkeleton("store".to_owned(), "ordered".to_owned())],
         soundness: Soundness::Interlock,
         ..Row::new(
             "sync",

@@ -18,17 +18,10 @@ pub(super) fn registry() -> Registry {
         .with(front_to_back())
         .with(dual())
         .with(repeated_array())
-        .with(bounded_regions())
-        .with(Row {
-            template: template_of("max_array"),
-            ..Row::new("storage", "region_array", "in a region: array", "")
-        })
-        .with(Row { template: template_of("max_array"), ..Row::new("storage", "region_heap", "in a region: heap", "") })
         .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
         .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
         .with_technique(technique("kb_multi", KeepDefault::Best(8), vec![("storage", "repeated_array")]))
-        .with_technique(technique("kplus_ab_sb", KeepDefault::Best(8), vec![("storage", "bounded_regions")]))
         .with_technique(technique(
             "predict_k",
             KeepDefault::Best(8),
@@ -38,10 +31,6 @@ pub(super) fn registry() -> Registry {
 
 fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static str)>) -> Technique {
     Technique { key: key.to_owned(), title: "", paper: "", summary: "", keep, choices }
-}
-
-fn template_of(storage: &str) -> Option<fragbuf_templates::vocabulary::Template> {
-    Registry::builtin().row("storage", storage).and_then(|row| row.template.clone())
 }
 
 fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {
@@ -225,60 +214,6 @@ fn repeated_array() -> Row {
         defaults: vec![("sync".into(), "none".into())],
         soundness: Soundness::Racy,
         ..Row::new("storage", "repeated_array", "k entries, repaired by the next pass", "Liu et al. 2009")
-    }
-}
-
-/// K15 Alg. 3: regions of min(f, k); array or heap by the pixel.
-fn bounded_regions() -> Row {
-    let scan = |anchor: &str, groups: &'static str| {
-        Step::Pass(
-            Pass::compute(anchor, anchor, groups, "1")
-                .uses("counts", Access::Read)
-                .uses("offsets", Access::Plain)
-                .uses("block_sums", Access::Plain),
-        )
-    };
-    Row {
-        resources: vec![
-            Resource::new("counts", Element::Word, "fragments of the pixel; then its lock and how many are in")
-                .by("pixel", "pixels")
-                .cleared(0),
-            Resource::new("offsets", Element::Word, "where the pixel's region begins").by("pixel", "pixels + 1"),
-            Resource::new("bounds", Element::Word, "key of the worst kept fragment, EMPTY until the region is full")
-                .by("pixel", "pixels"),
-            Resource::new("block_sums", Element::Word, "sums of blocks").by("block", "ceil_div(pixels, 1024)"),
-            Resource::new("regions", Element::Entry, "the fragments, pixel after pixel").by("place", "kept"),
-        ],
-        steps: vec![
-            Step::Pass(Pass::geometry("count", "count").uses("counts", Access::Atomic)),
-            scan("scan_blocks", "ceil_div(pixels, 1024)"),
-            scan("scan_sums", "1"),
-            scan("scan_add", "ceil_div(pixels, 1024)"),
-            Step::Host(Host {
-                function: "allocate".to_owned(),
-                reads: vec!["offsets[pixels]".to_owned()],
-                sets: vec!["kept".to_owned()],
-            }),
-            Step::Pass(
-                Pass::geometry("store", "store_by_size")
-                    .role("array", "region_array", "array")
-                    .role("heap", "region_heap", "heap")
-                    .uses("counts", Access::Atomic)
-                    .uses("offsets", Access::Read)
-                    .uses_rechecked("bounds")
-                    .uses("regions", Access::Coherent),
-            ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("offsets", Access::Read)
-                    .uses("regions", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        offers: vec![Fact::KeepsBest, Fact::Counted, Fact::BoundAnyInstant, Fact::OwnAtomics],
-        defaults: vec![("sync".into(), "slot_counter".into()), ("cull".into(), "early".into())],
-        soundness: Soundness::Lock,
-        ..Row::new("storage", "bounded_regions", "regions of min(f, k) per pixel", "K15 Alg. 3")
     }
 }
 

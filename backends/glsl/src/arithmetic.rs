@@ -103,6 +103,8 @@ impl FunctionPrinter<'_, '_> {
             (BinaryOperator::And | BinaryOperator::InclusiveOr, ScalarKind::Bool) => {
                 Some(self.boolean(op, lanes, left, right))
             }
+            (BinaryOperator::Divide | BinaryOperator::Modulo, _) if scalar.width > 4 => (!self.is_safe_divisor(right))
+                .then(|| Text::primary(self.error("a division of u64 values by what may be zero", expression))),
             (BinaryOperator::Divide, ScalarKind::Uint) if !self.is_safe_divisor(right) => {
                 Some(self.help(Helper::DivideUint(lanes), &[left, right]))
             }
@@ -148,35 +150,38 @@ impl FunctionPrinter<'_, '_> {
     fn is_safe_divisor(&self, divisor: Handle<Expression>) -> bool {
         match self.known(divisor) {
             Some(Literal::U32(value)) => value != 0,
+            Some(Literal::U64(value)) => value != 0,
             Some(Literal::I32(value)) => value != 0 && value != -1,
             _ => false,
         }
     }
 
-    /// WGSL shifts by the amount modulo 32; GLSL by less than 32 only.
+    /// WGSL shifts by the amount modulo the bits of what is shifted; GLSL by less than those only.
     fn shift(&mut self, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Text {
         let (symbol, level) = symbol(op);
-        let harmless = matches!(self.known(right), Some(Literal::U32(amount)) if amount < 32) || self.is_masked(right);
+        let bits = self.shape(left).map_or(32, |(_, scalar)| 8 * u32::from(scalar.width));
+        let known = matches!(self.known(right), Some(Literal::U32(amount)) if amount < bits);
+        let harmless = known || self.is_masked(right, bits);
         let left = self.text(left);
         let right_text = self.text(right);
         if harmless {
             return join(symbol, level, left, right_text);
         }
         let mask = if self.shape(right).is_some_and(|(lanes, _)| lanes > 1) {
-            self.type_name(right) + "(31u)"
+            format!("{}({}u)", self.type_name(right), bits - 1)
         } else {
-            "31u".to_owned()
+            format!("{}u", bits - 1)
         };
         let masked = join("&", Level::BitAnd, right_text, Text::primary(mask));
         join(symbol, level, left, masked)
     }
 
-    /// Already `x & 31u` or less.
-    fn is_masked(&self, amount: Handle<Expression>) -> bool {
+    /// Already `x & 31u` or less, for 32 bits.
+    fn is_masked(&self, amount: Handle<Expression>, bits: u32) -> bool {
         let Expression::Binary { op: BinaryOperator::And, left, right } = self.function.expressions[amount] else {
             return false;
         };
-        [left, right].into_iter().any(|side| matches!(self.known(side), Some(Literal::U32(mask)) if mask < 32))
+        [left, right].into_iter().any(|side| matches!(self.known(side), Some(Literal::U32(mask)) if mask < bits))
     }
 
     pub fn unary(&mut self, op: UnaryOperator, operand: Handle<Expression>) -> Text {

@@ -12,6 +12,7 @@ use crate::function::FunctionPrinter;
 use crate::types::numeric;
 
 const MEMORY_SCOPE: &str = "GL_KHR_memory_scope_semantics";
+const WIDE_ATOMICS: &str = "GL_EXT_shader_atomic_int64";
 
 impl FunctionPrinter<'_, '_> {
     fn root_global(&self, pointer: Handle<Expression>) -> Option<Handle<GlobalVariable>> {
@@ -30,7 +31,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// `0` or `0u`, as the atomic's scalar has it; 64-bit and float atomics have none.
+    /// `0`, `0u` or `0ul`, as the atomic's scalar has it; signed 64-bit and float atomics have none.
     fn atomic_zero(&mut self, pointer: Handle<Expression>) -> String {
         let scalar = match *self.order.inner(pointer) {
             naga::TypeInner::Pointer { base, .. } => numeric(&self.printer.module.types[base].inner),
@@ -39,7 +40,10 @@ impl FunctionPrinter<'_, '_> {
         match scalar.map(|(_, scalar)| (scalar.kind, scalar.width)) {
             Some((ScalarKind::Uint, 4)) => "0u".to_owned(),
             Some((ScalarKind::Sint, 4)) => "0".to_owned(),
-            Some((ScalarKind::Uint, 8)) => self.error("u64 atomics", pointer),
+            Some((ScalarKind::Uint, 8)) => {
+                self.printer.needs.extensions.insert(WIDE_ATOMICS);
+                "0ul".to_owned()
+            }
             _ => self.error("atomics of this type", pointer),
         }
     }

@@ -1,7 +1,7 @@
 //! Conversions and reinterpretations.
 //!
 //! In: `As` expressions. Out: constructors and `floatBitsToUint` and kin. A float becomes an integer through a saturating
-//! helper, unless its range is known to fit: GLSL leaves the rest undefined.
+//! helper, unless its range is known to fit: GLSL leaves the rest undefined. u64 is converted to and from u32 only.
 
 use naga::{BinaryOperator, BuiltIn, Expression, Handle, Literal, MathFunction, Scalar, ScalarKind, TypeInner};
 
@@ -30,8 +30,12 @@ impl FunctionPrinter<'_, '_> {
                 return Text::primary(self.error(unsupported_scalar(scalar), expression));
             }
         }
-        if from.kind == to.kind {
+        if from == to {
             return self.text(operand);
+        }
+        let wide = [from, to].contains(&Scalar::U64);
+        if wide && !(from.kind == to.kind && width.is_some()) {
+            return Text::primary(self.error("a conversion between u64 and another type than u32", expression));
         }
         match (width, from.kind, to.kind) {
             (None, ScalarKind::Float, ScalarKind::Uint) => self.call("floatBitsToUint", &[operand]),

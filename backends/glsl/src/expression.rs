@@ -133,6 +133,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
     }
 
     fn literal(&mut self, value: Literal, expression: Handle<Expression>) -> Text {
+        self.printer.need_width(value.scalar());
         let Some(text) = literal(value, self.written(expression)) else {
             let what = crate::types::unsupported_scalar(value.scalar());
             return Text::primary(self.error(what, expression));

@@ -36,6 +36,7 @@ impl Printer<'_> {
         match module.global_expressions[expression] {
             Expression::Literal(value) => {
                 let written = span.to_range().and_then(|range| self.source.get(range)).unwrap_or_default();
+                self.need_width(value.scalar());
                 match literal(value, written) {
                     Some(text) => {
                         let level = if text.starts_with('-') { Level::Unary } else { Level::Primary };

@@ -1,6 +1,6 @@
 //! Literals: a value in, the shortest GLSL text that reads back as the same bits out.
 //!
-//! 64-bit, 16-bit and abstract values have no text here.
+//! 64-bit signed, 16-bit and abstract values have no text here.
 
 use naga::Literal;
 
@@ -10,6 +10,7 @@ pub fn literal(value: Literal, written: &str) -> Option<String> {
         Literal::Bool(value) => Some(value.to_string()),
         Literal::U32(value) => Some(unsigned(value, written)),
         Literal::I32(value) => Some(signed(value)),
+        Literal::U64(value) => Some(format!("{value}ul")),
         Literal::F32(value) => Some(float(value)),
         _ => None,
     }

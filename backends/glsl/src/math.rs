@@ -83,7 +83,12 @@ impl FunctionPrinter<'_, '_> {
         };
         let operands: Vec<_> = [Some(arg), arg1, arg2, arg3].into_iter().flatten().collect();
         operands.iter().for_each(|operand| self.check_scalar(*operand));
-        let kind = self.shape(arg).map(|(_, scalar)| scalar.kind);
+        let scalar = self.shape(arg).map(|(_, scalar)| scalar);
+        let kind = scalar.map(|scalar| scalar.kind);
+        let takes_wide = matches!(fun, MathFunction::Abs | MathFunction::Min | MathFunction::Max | MathFunction::Clamp);
+        if scalar.is_some_and(|scalar| scalar.width > 4) && !takes_wide {
+            return Text::primary(self.error(format!("the built-in function {fun:?} of u64 values"), expression));
+        }
         match fun {
             MathFunction::Abs if kind == Some(ScalarKind::Uint) => self.text(arg),
             MathFunction::Clamp => self.clamp(&operands),

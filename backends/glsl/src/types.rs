@@ -7,10 +7,11 @@ use naga::{ArraySize, Handle, Scalar, ScalarKind, Span, Type, TypeInner, VectorS
 
 use crate::printer::Printer;
 
-/// `uint`, `int`, `float` or `bool`; nothing for other widths.
+/// `uint`, `int`, `float`, `bool` or `uint64_t`; nothing for other widths.
 pub fn scalar_name(scalar: Scalar) -> Option<&'static str> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Uint, 4) => Some("uint"),
+        (ScalarKind::Uint, 8) => Some("uint64_t"),
         (ScalarKind::Sint, 4) => Some("int"),
         (ScalarKind::Float, 4) => Some("float"),
         (ScalarKind::Bool, _) => Some("bool"),
@@ -41,10 +42,11 @@ pub fn vector_stem(scalar: Scalar) -> &'static str {
     }
 }
 
-/// `sized("vec", Some(Quad))` is `vec4`; with no size, the scalar's name.
+/// `sized("vec", Some(Quad))` is `vec4`; with no size, the scalar's name. Vectors of 64-bit components have no name here.
 pub fn numeric_name(size: Option<VectorSize>, scalar: Scalar) -> Option<String> {
     let name = scalar_name(scalar)?;
     Some(match size {
+        Some(_) if scalar.width > 4 => return None,
         Some(size) => format!("{}{}", vector_stem(scalar), size as u8),
         None => name.to_owned(),
     })
@@ -112,6 +114,7 @@ impl Printer<'_> {
 
     pub fn inner_name(&mut self, inner: &TypeInner, span: Span) -> String {
         if let Some((size, scalar)) = numeric(inner) {
+            self.need_width(scalar);
             let name = numeric_name(size, scalar);
             return name.unwrap_or_else(|| self.error(unsupported_scalar(scalar), span));
         }
@@ -130,6 +133,14 @@ impl Printer<'_> {
             }
             TypeInner::Matrix { scalar, .. } => self.error(format!("matrices of {}", unsupported_scalar(scalar)), span),
             _ => self.error(format!("a value of type {inner:?}"), span),
+        }
+    }
+
+    /// Notes the extension that a scalar's type needs.
+    pub fn need_width(&mut self, scalar: Scalar) {
+        if scalar == Scalar::U64 {
+            let vulkan = "GL_EXT_shader_explicit_arithmetic_types_int64";
+            self.needs.extensions.insert(if self.vulkan() { vulkan } else { "GL_ARB_gpu_shader_int64" });
         }
     }
 
@@ -157,6 +168,7 @@ impl Printer<'_> {
 
 pub fn zero_scalar(scalar: Scalar) -> &'static str {
     match scalar.kind {
+        ScalarKind::Uint if scalar.width == 8 => "0ul",
         ScalarKind::Uint => "0u",
         ScalarKind::Sint => "0",
         ScalarKind::Bool => "false",

@@ -19,10 +19,17 @@ fn refused(source: &str, expected: &[&str]) {
 #[test]
 fn wide_integers() {
     refused(
-        "@group(0) @binding(0) var<storage, read_write> a: array<u64>;
-        @group(0) @binding(1) var<storage, read_write> b: atomic<u64>;
-        @compute @workgroup_size(1) fn main() { a[0] = a[1] + 1lu; atomicMax(&b, 3lu); }",
-        &["u64 values", "u64 atomics"],
+        "@group(0) @binding(0) var<storage, read_write> a: array<i64>;
+        @group(0) @binding(1) var<storage, read_write> b: atomic<i64>;
+        @group(0) @binding(2) var<storage, read_write> c: array<u64>;
+        @compute @workgroup_size(1) fn main() {
+            a[0] = a[1] + 1li;
+            atomicMax(&b, 3li);
+            c[0] = c[1] / c[2];
+            c[3] = u64(f32(c[4]));
+            c[5] = countOneBits(c[6]);
+        }",
+        &["i64 values", "atomics of this type", "a division of u64", "between u64", "CountOneBits of u64"],
     );
 }
 
@@ -76,7 +83,7 @@ fn whole_compare_exchange_results() {
 
 #[test]
 fn errors_have_a_place() {
-    let source = "@group(0) @binding(0) var<storage, read_write> a: array<u64>;
+    let source = "@group(0) @binding(0) var<storage, read_write> a: array<i64>;
         @compute @workgroup_size(1) fn main() { a[0] = a[1]; }";
     let errors = print(source, Unit::EntryPoint("main"), Dialect::Vulkan450).unwrap_err();
     assert!(errors.iter().any(|error| error.span.is_defined()), "{errors:?}");

@@ -93,8 +93,13 @@ pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, 
 
 /// Every case in every order, by the shaders of the target `wgsl`.
 fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
+    check_as("wgsl", variant, settings, rules, prepare);
+}
+
+/// Every case in every order, by the shaders of a target.
+fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
     let stage = stage::device();
-    let mut renderer = renderer(&stage, &shaders(variant, "wgsl"), settings).unwrap();
+    let mut renderer = renderer(&stage, &shaders(variant, target), settings).unwrap();
     prepare(&mut renderer);
     for (name, quads) in cases() {
         let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
@@ -152,6 +157,40 @@ fn the_cascade() {
 }
 
 #[test]
+fn the_array_whose_first_fragments_need_no_lock() {
+    for k in ["1", "2", "4"] {
+        check(&technique("kplus_array_revised", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+/// Portable WGSL has no 64-bit atomics.
+#[test]
+fn the_cascade_of_64_bits() {
+    for k in ["1", "4"] {
+        check_as("wgsl-native", &technique("kb_mdt64", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+#[test]
+fn the_list_that_is_kept_in_order() {
+    for k in ["1", "4", "8"] {
+        check(&technique("kb_ll", &[("k", k)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+/// Pixels with fewer fragments than k, as many, and more; arrays, and heaps where there may be one.
+#[test]
+fn regions_of_as_many_as_are_kept() {
+    for (k, array) in [("1", "16"), ("3", "16"), ("4", "16"), ("1", "0"), ("3", "0"), ("4", "0")] {
+        let set = [("k", k), ("storage.array", array)];
+        let exact = Settings { sizing: Sizing::Exact, ..settings() };
+        check(&technique("kplus_ab_sb", &set), &exact, &PLAIN, |_| {});
+    }
+    let reserved = Sizing::Reserve(Room::Fragments(4 * SIZE * SIZE));
+    check(&technique("kplus_ab_sb", &[("k", "4")]), &Settings { sizing: reserved, ..settings() }, &PLAIN, |_| {});
+}
+
+#[test]
 fn the_fixed_array() {
     check(&technique("ab_array", &[]), &settings(), &PLAIN, |_| {});
 }
@@ -182,7 +221,7 @@ fn exact_regions_reserved() {
 #[test]
 fn k_below_the_capacity() {
     for k in [1, 2, 3, 5, 7, 8] {
-        for key in ["kplus_array", "kb"] {
+        for key in ["kplus_array", "kb", "kplus_array_revised", "kb_ll", "kplus_ab_sb"] {
             let set_k = |renderer: &mut Renderer| {
                 let device = renderer.device().clone();
                 block_on(&device, renderer.set_k(k)).unwrap().unwrap();
@@ -256,13 +295,15 @@ fn a_description_with_a_criterion_of_its_own() {
         resolve: glass_resolve,
     };
     let keep = GLASS_KEEPS;
-    for key in ["kplus_array", "kplus_heap", "kb_ab_ll"] {
+    for key in ["kplus_array", "kplus_heap", "kb_ab_ll", "kplus_array_revised", "kplus_ab_sb"] {
         check(&glass(key, keep), &settings(), &rules, set_uniforms);
     }
     // Three words beside the key are settled by three passes, and come in the order of the criterion.
     check(&glass("mdt32_coplanar", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
-    // The sorted array is in the order of the criterion, which is not the order of depth.
-    check(&glass("kb", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
+    // The sorted array and the list are in the order of the criterion, which is not the order of depth.
+    for key in ["kb", "kb_ll"] {
+        check(&glass(key, &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
+    }
 }
 
 #[test]

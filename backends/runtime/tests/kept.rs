@@ -41,6 +41,66 @@ pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Ve
                 assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
                 kept
             }
+            "distinct_cascade" => {
+                let kept: Vec<Words> =
+                    (0..k).map(|index| slot(index, pixel)).take_while(|words| words[0] != EMPTY).collect();
+                let rest = (kept.len()..k).map(|index| slot(index, pixel)[0]);
+                assert!(rest.clone().all(|key| key == EMPTY), "pixel {pixel} has a gap: {kept:?}");
+                assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "pixel {pixel} is not in strict order: {kept:?}");
+                kept
+            }
+            "wide_cascade" => {
+                let wide = |index: usize| &buffer("slots")[2 * (index * PIXELS + pixel)..][..2];
+                let slots = (0..k).map(wide).take_while(|wide| wide[1] != EMPTY);
+                // Without a word beside the key the lower one is nobody's.
+                let kept: Vec<Words> = slots.map(|wide| [wide[1], wide[0]][..words].to_vec()).collect();
+                assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
+                kept
+            }
+            "revised_array" => {
+                let asked = (buffer("tickets")[pixel] as usize).min(k);
+                let slots: Vec<Words> = (0..k).map(|index| slot(index, pixel)).collect();
+                let (empty, kept) = slots.split_at(k - asked);
+                assert!(empty.iter().all(|words| words[0] == EMPTY), "pixel {pixel}: {slots:?} of {asked}");
+                let is_worst_first = asked < k || kept.iter().all(|words| *words <= kept[0]);
+                assert!(is_worst_first, "slot 0 of pixel {pixel} is not the worst: {slots:?}");
+                kept.to_vec()
+            }
+            "depth_ranges" => {
+                let slots = (0..k).map(|index| slot(index, pixel));
+                let kept: Vec<Words> = slots.filter(|words| words[0] != EMPTY).collect();
+                assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "ranges of pixel {pixel} are not in order: {kept:?}");
+                kept
+            }
+            "ordered_list" => {
+                let link = |word: u32| word.checked_sub(1);
+                let nodes =
+                    std::iter::successors(link(buffer("heads")[pixel]), |node| link(buffer("links")[*node as usize]));
+                let list: Vec<Words> = nodes.map(|node| entry("nodes", node as usize)).collect();
+                assert!(list.is_sorted(), "the list of pixel {pixel} is not in order: {list:?}");
+                list.into_iter().take(k).collect()
+            }
+            "bounded_regions" => {
+                let room = renderer.symbol("kept").unwrap() as u32;
+                let (begin, end) = (buffer("offsets")[pixel].min(room), buffer("offsets")[pixel + 1].min(room));
+                let (count, size) = (buffer("counts")[pixel], end - begin);
+                let at = |place: u32| {
+                    let rest = &buffer("region_entries")[place as usize * beside..][..beside];
+                    [&[buffer("region_keys")[place as usize]], rest].concat()
+                };
+                let slots: Vec<Words> = (begin..end).map(at).collect();
+                if count == 1 << 31 {
+                    assert!(buffer("offsets")[pixel + 1] > room, "crowded pixel {pixel} has room and keeps nothing");
+                    return Vec::new();
+                }
+                if count >> 30 == 2 {
+                    assert_eq!((count & 0x3fff_ffff, size as usize), (size, k), "crowded pixel {pixel} is not full");
+                    assert!(slots.iter().all(|words| *words <= slots[0]), "slot 0 of pixel {pixel} is not the worst");
+                } else {
+                    assert_eq!(count, 0, "pixel {pixel} still waits for fragments");
+                }
+                slots
+            }
             "fixed_array" => {
                 let slots = (buffer("counts")[pixel] as usize).min(renderer.symbol("n").unwrap() as usize);
                 (0..slots).map(|index| entry("entries", index * PIXELS + pixel)).collect()

@@ -19,6 +19,7 @@ mod capture;
 mod embedding;
 mod failures;
 mod larger;
+mod losses;
 mod rasterisation;
 mod sizing;
 mod sloped;

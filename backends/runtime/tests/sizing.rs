@@ -10,7 +10,7 @@ use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, 
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
-const COUNTERS: u64 = 6;
+const COUNTERS: u64 = 7;
 
 fn open(stage: &Headless, key: &str, set: &[(&str, &str)], sizing: Sizing) -> Result<Renderer, Error> {
     renderer(stage, &shaders(&technique(key, set), "wgsl"), &Settings { sizing, ..settings() })
@@ -22,10 +22,17 @@ fn allocated_bytes_are_what_the_papers_say() {
     let quads = scattered(8, 3);
     let fragments = total(&PLAIN, &quads) as u64;
     let reserve = Sizing::Reserve(Room::Fragments(1000));
-    // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1 and 2f + 2 words per pixel.
+    let best: u64 = kept_words(&PLAIN, &quads, Some(5)).iter().map(|kept| kept.len() as u64).sum();
+    // Keys, entries; then a count and a lock where there are. 2k + 2, 2k, 3f + 1, 2f + 2 and 2 min(f, k) + 3 words per
+    // pixel.
     let expected = [
         ("kplus_array", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
         ("kb", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
+        ("kb_mdt32", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
+        ("kplus_array_revised", "5", Sizing::Auto, (2 * 5 + 2) * PIXELS + COUNTERS),
+        ("depth_partition", "5", Sizing::Auto, (2 * 5 + 1) * PIXELS + COUNTERS),
+        ("kplus_ab_sb", "5", Sizing::Exact, 3 * PIXELS + 1 + 1 + 2 * best + COUNTERS),
+        ("kb_ll", "5", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", Sizing::Auto, PIXELS + 1 + 3 * 8 * PIXELS + COUNTERS),
         ("ab_sb", "all", reserve, PIXELS + (PIXELS + 1) + 1 + 2 * 1000 + COUNTERS),
@@ -108,11 +115,35 @@ fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
     }
 }
 
+/// Regions that end beyond the room: a pixel that takes turns needs all of its region, another the slots that there are.
+#[test]
+fn regions_without_room_lose_what_is_counted() {
+    let stage = device();
+    let quads = scattered(8, 5);
+    let best = kept_words(&PLAIN, &quads, Some(3));
+    let wanted: usize = best.iter().map(Vec::len).sum();
+    for room in [0, 1, wanted / 2, wanted - 1, wanted, wanted + 1] {
+        let sizing = Sizing::Reserve(Room::Fragments(room as u32));
+        let mut renderer = open(&stage, "kplus_ab_sb", &[("k", "3"), ("counters", "all")], sizing).unwrap();
+        let seen = see(&stage, &mut renderer, &quads);
+        let count = |name| seen.counters.get(name) as usize;
+        let kept: usize = seen.kept.iter().map(Vec::len).sum();
+        assert!(kept <= room && (kept == wanted || room < wanted), "{kept} kept of {wanted} with room for {room}");
+        let gone = count("culled") + count("displaced") + count("pool_exhausted");
+        assert_eq!(count("generated"), kept + gone, "{:?}", seen.counters);
+        for (kept, best) in seen.kept.iter().zip(&best) {
+            assert!(kept.iter().all(|words| best.contains(words)), "{kept:?} of {best:?} with room for {room}");
+        }
+    }
+}
+
 #[test]
 fn what_is_kept_culled_and_displaced_is_all_there_was() {
     let stage = device();
     let quads = scattered(8, 9);
-    for (key, k) in [("kplus_array", "1"), ("kplus_array", "2"), ("kb", "1"), ("kb", "2"), ("kb", "5")] {
+    let plain = ["1", "2", "5"].map(|k| [("kplus_array", k), ("kb", k)]);
+    let others = ["1", "2", "5"].map(|k| [("kplus_array_revised", k), ("kb_ll", k), ("kplus_ab_sb", k)]);
+    for (key, k) in plain.into_iter().flatten().chain(others.into_iter().flatten()) {
         let mut renderer = open(&stage, key, &[("k", k), ("counters", "all")], Sizing::Auto).unwrap();
         let seen = see(&stage, &mut renderer, &quads);
         let count = |name| seen.counters.get(name) as usize;

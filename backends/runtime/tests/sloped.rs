@@ -119,7 +119,9 @@ fn captured(stage: &Headless, vertices: &wgpu::Buffer, count: u32) -> Vec<Quad> 
 fn every_technique_keeps_the_best_of_what_was_captured() {
     let stage = device();
     let techniques =
-        [("kplus_array", "3"), ("kplus_array", "8"), ("kb", "3"), ("kb", "8"), ("ab_ll", "all"), ("ab_sb", "all")];
+        [("kplus_array", "3"), ("kplus_array", "8"), ("kb", "3"), ("kb", "8"), ("ab_ll", "all"), ("ab_sb", "all")]
+            .into_iter()
+            .chain(["kplus_array_revised", "kb_ll", "kplus_ab_sb"].map(|key| (key, "3")));
     for seed in 0..4 {
         let count = 24;
         let bytes: Vec<u8> = triangles(count, seed).iter().flat_map(|float| float.to_le_bytes()).collect();
@@ -132,7 +134,7 @@ fn every_technique_keeps_the_best_of_what_was_captured() {
         stage.queue.write_buffer(&buffer, 0, &bytes);
         let fragments = captured(&stage, &buffer, count);
         assert!(fragments.len() > 500, "{} fragments", fragments.len());
-        for (key, k) in techniques {
+        for (key, k) in techniques.clone() {
             let mut renderer = renderer(&stage, &shaders(&technique(key, &[("k", k)]), "wgsl"), &settings()).unwrap();
             let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
             let [r, g, b] = crate::stage::BACKGROUND;

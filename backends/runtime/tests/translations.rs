@@ -32,8 +32,8 @@ fn glsl_shaders(variant: &Variant) -> Shaders {
 }
 
 /// A program that never was a file.
-fn linked(variant: &Variant) -> Shaders {
-    let (target, registry) = (target("wgsl").unwrap(), Registry::builtin());
+fn linked(variant: &Variant, name: &str) -> Shaders {
+    let (target, registry) = (target(name).unwrap(), Registry::builtin());
     let selection = variant.select(target.offers).unwrap();
     let plan = plan(variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"));
     let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
@@ -56,23 +56,28 @@ fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
 
 /// Every language shows and keeps what portable WGSL does.
 fn check(variant: &Variant, prepare: impl Fn(&mut Renderer)) {
+    check_in(variant, "wgsl", prepare);
+}
+
+/// Every language shows and keeps what WGSL does, in the profile of the target `first`.
+fn check_in(variant: &Variant, first: &str, prepare: impl Fn(&mut Renderer)) {
     let stage = device();
     let languages = [
-        ("wgsl", shaders(variant, "wgsl"), Checks::Off),
-        ("a linked program", linked(variant), Checks::Off),
-        ("wgsl, checked at run time", shaders(variant, "wgsl"), Checks::On),
+        (first, shaders(variant, first), Checks::Off),
+        ("a linked program", linked(variant, first), Checks::Off),
+        ("WGSL, checked at run time", shaders(variant, first), Checks::On),
         ("wgsl-native", shaders(variant, "wgsl-native"), Checks::Off),
         ("spirv", shaders(variant, "spirv"), Checks::Off),
         ("glsl-vulkan", glsl_shaders(variant), Checks::Off),
     ];
     let mut expected = Vec::new();
-    for (name, shaders, checks) in languages {
+    for (index, (name, shaders, checks)) in languages.into_iter().enumerate() {
         let settings = Settings { checks, ..settings() };
         let mut renderer = renderer(&stage, &shaders, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         prepare(&mut renderer);
         for seed in 0..4 {
             let seen = see(&stage, &mut renderer, &scattered(8, seed));
-            if name == "wgsl" {
+            if index == 0 {
                 expected.push(seen);
                 continue;
             }
@@ -104,6 +109,16 @@ fn the_linked_list() {
 #[test]
 fn exact_regions() {
     check(&technique("ab_sb", &[("counters", "all")]), |_| {});
+}
+
+#[test]
+fn minima_links_ranges_and_slots_without_a_lock() {
+    for key in ["kb_mdt32", "kb_ll", "kplus_array_revised", "kplus_ab_sb"] {
+        check(&technique(key, &[("k", "3"), ("counters", "all")]), |_| {});
+    }
+    check_in(&technique("kb_mdt64", &[("k", "3"), ("counters", "all")]), "wgsl-native", |_| {});
+    // wgpu knows no interlock.
+    check(&technique("depth_partition", &[("k", "3"), ("counters", "all"), ("sync", "spin_lock")]), |_| {});
 }
 
 #[test]

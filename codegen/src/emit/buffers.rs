@@ -88,7 +88,7 @@ impl Accessors<'_> {
         if self.access != ShaderAccess::Read {
             self.store(text);
         }
-        if self.access == ShaderAccess::Atomic && self.planned.resource.element == Element::Word {
+        if self.access == ShaderAccess::Atomic && self.scalar().is_some() {
             self.atomics(text);
         }
     }
@@ -107,8 +107,17 @@ impl Accessors<'_> {
         }
     }
 
+    /// The type of an element that is a number; fragments have none.
+    fn scalar(&self) -> Option<&'static str> {
+        match self.planned.resource.element {
+            Element::Word => Some("u32"),
+            Element::Word64 => Some("u64"),
+            _ => None,
+        }
+    }
+
     fn is_single_word(&self) -> bool {
-        self.planned.resource.extents.is_empty() && self.planned.resource.element == Element::Word
+        self.planned.resource.extents.is_empty() && self.scalar().is_some()
     }
 
     fn declare(&self, linking: &Linking, text: &mut String) {
@@ -117,8 +126,9 @@ impl Accessors<'_> {
             ShaderAccess::Plain | ShaderAccess::Atomic => ("read_write", ""),
             ShaderAccess::Coherent => ("read_write", " @coherent"),
         };
-        let word = if self.access == ShaderAccess::Atomic { "atomic<u32>" } else { "u32" };
-        let kind = if self.is_single_word() { word.to_owned() } else { format!("array<{word}>") };
+        let scalar = self.scalar().unwrap_or("u32");
+        let word = if self.access == ShaderAccess::Atomic { format!("atomic<{scalar}>") } else { scalar.to_owned() };
+        let kind = if self.is_single_word() { word } else { format!("array<{word}>") };
         let (summary, group, binding) = (&self.planned.resource.summary, linking.group, self.planned.binding);
         let name = self.name();
         let _ = writeln!(text, "/// {}.", capitalised(summary));
@@ -129,9 +139,9 @@ impl Accessors<'_> {
         let name = self.name();
         let beside = self.planned.resource.element == Element::Beside;
         let parameters = self.parameters(if beside { &["key: u32"] } else { &[] });
-        if self.planned.resource.element == Element::Word {
+        if let Some(scalar) = self.scalar() {
             let read = self.read(&self.place(None));
-            let _ = writeln!(text, "fn {name}_load({parameters}) -> u32 {{\n    return {read};\n}}\n");
+            let _ = writeln!(text, "fn {name}_load({parameters}) -> {scalar} {{\n    return {read};\n}}\n");
             return;
         }
         let _ = writeln!(text, "fn {name}_load({parameters}) -> Packed {{");
@@ -143,8 +153,8 @@ impl Accessors<'_> {
 
     fn store(&self, text: &mut String) {
         let name = self.name();
-        if self.planned.resource.element == Element::Word {
-            let parameters = self.parameters(&["value: u32"]);
+        if let Some(scalar) = self.scalar() {
+            let parameters = self.parameters(&[&format!("value: {scalar}")]);
             let write = self.stored(&self.place(None), "value");
             let _ = writeln!(text, "fn {name}_store({parameters}) {{\n    {write}\n}}\n");
             return;
@@ -161,18 +171,19 @@ impl Accessors<'_> {
 
     fn atomics(&self, text: &mut String) {
         let (name, place) = (self.name(), self.place(None));
-        let parameters = self.parameters(&["value: u32"]);
+        let scalar = self.scalar().unwrap_or("u32");
+        let parameters = self.parameters(&[&format!("value: {scalar}")]);
         for (operation, function) in OPERATIONS {
             if !self.is_called(operation) {
                 continue;
             }
-            let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> u32 {{");
+            let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> {scalar} {{");
             let _ = writeln!(text, "    return {function}(&{place}, value);\n}}\n");
         }
         if !self.is_called("compare_exchange") {
             return;
         }
-        let parameters = self.parameters(&["expected: u32", "value: u32"]);
+        let parameters = self.parameters(&[&format!("expected: {scalar}"), &format!("value: {scalar}")]);
         let _ = writeln!(text, "fn {name}_atomic_compare_exchange({parameters}) -> bool {{");
         let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{place}, expected, value).exchanged;\n}}\n");
     }

@@ -10,6 +10,9 @@ pub(super) fn apply(edit: &Edit, steps: &mut Vec<Step>, resources: &mut Vec<Reso
         Edit::Around(from, to, repeat) => around(steps, from, to, repeat),
         Edit::SetState(anchor, state) => change(steps, anchor, &|pass| pass.state = state.clone()),
         Edit::SetSkeleton(anchor, skeleton) => change(steps, anchor, &|pass| pass.skeleton.clone_from(skeleton)),
+        Edit::FormOfSkeleton(anchor, form) => {
+            change(steps, anchor, &|pass| pass.skeleton = format!("{}_{form}", pass.skeleton))
+        }
         Edit::SetRole(anchor, role) => change(steps, anchor, &|pass| {
             pass.roles.retain(|old| old.contract != role.contract);
             pass.roles.push(role.clone());

@@ -5,7 +5,7 @@
 
 use fragbuf_model::Selection;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Instance, Pass, Resource, Role, Row, Step, Use};
+use fragbuf_templates::vocabulary::{Instance, Memory, Pass, Resource, Role, Row, Step, Use};
 
 use super::edit::for_each_pass;
 
@@ -44,7 +44,7 @@ fn complete_pass(
                 let Some(selected) = selection.row(&contract) else {
                     return Err(format!("pass `{}` calls `{contract}`, and nothing fulfils it", pass.anchor));
                 };
-                let instance = Instance { row: selected.row.key.clone(), name: contract.clone() };
+                let instance = Instance { row: selected.row.key.clone(), name: contract.clone(), memory: Memory::Own };
                 pass.roles.push(Role { contract, instance });
                 &selected.row
             }
@@ -57,6 +57,9 @@ fn complete_pass(
     }
     for role in pass.roles.clone() {
         let row = instance_row(&role, selection, registry)?;
+        if role.instance.memory == Memory::Borrowed {
+            continue;
+        }
         let own_name = role.instance.name == axis_of(&role.contract, registry);
         let prefix = if own_name { String::new() } else { format!("{}_", role.instance.name) };
         let steps_uses = if own_name { &[][..] } else { uses_at(row, &pass.anchor) };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Pass, Role, Row};
+use fragbuf_templates::vocabulary::{Memory, Pass, Role, Row};
 
 use crate::link::{Renames, Source, head, names};
 use crate::plan::{axis_of, instance_row};
@@ -59,7 +59,7 @@ fn ordered<'a>(pass: &'a Pass, registry: &Registry) -> Vec<&'a Role> {
 }
 
 /// An instance named after its axis keeps the template's names. Any other puts its name in place of the contract's in the
-/// names that the template exports, and before its private names and the accessors of its resources.
+/// names that the template exports, and before its private names and the accessors of its own resources.
 fn renames(role: &Role, axis: &str, row: &Row, text: &str) -> Renames {
     let name = &role.instance.name;
     let mut renames = Renames::default();
@@ -71,7 +71,8 @@ fn renames(role: &Role, axis: &str, row: &Row, text: &str) -> Renames {
         let rest = declared.strip_prefix(axis).and_then(|rest| rest.strip_prefix('_')).filter(|_| is_contract);
         renames.insert(declared.clone(), format!("{name}_{}", rest.unwrap_or(&declared)));
     }
-    for resource in &row.resources {
+    let own = row.resources.iter().filter(|_| role.instance.memory == Memory::Own);
+    for resource in own {
         for accessor in ACCESSORS {
             let old = format!("{}_{accessor}", resource.name);
             renames.insert(old.clone(), format!("{name}_{old}"));

@@ -122,6 +122,17 @@ pub struct Instance {
     /// What replaces the contract's name in the names that the template exports, and precedes its private names. An
     /// instance named after its contract keeps the template's names.
     pub name: String,
+    /// Whose memory it works on.
+    pub memory: Memory,
+}
+
+/// Whose memory an instance works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// The row's resources, named for the instance.
+    Own,
+    /// The pass's own storage's: its template has functions of the names of the row's accessors.
+    Borrowed,
 }
 
 /// How a pass touches a resource: this decides the type it is declared with there.
@@ -280,6 +291,8 @@ pub enum Edit {
     SetState(String, State),
     /// The skeleton of an anchor.
     SetSkeleton(String, String),
+    /// Another form of the skeleton that an anchor has: (`store`, `ordered`) makes `x_ordered` of `x`.
+    FormOfSkeleton(String, String),
     /// A contract of an anchor, bound to an instance.
     SetRole(String, Role),
     /// A pass touches one resource more.
@@ -330,8 +343,15 @@ impl Pass {
 
     /// Binds `contract` to the row `row` under the name `name`.
     pub fn role(mut self, contract: &str, row: &str, name: &str) -> Self {
-        let instance = Instance { row: row.to_owned(), name: name.to_owned() };
+        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: Memory::Own };
         self.roles.push(Role { contract: contract.to_owned(), instance });
+        self
+    }
+
+    /// Lets the storage call the functions of the row `row` under the name `name`, on memory of its own.
+    pub fn borrows(mut self, name: &str, row: &str) -> Self {
+        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: Memory::Borrowed };
+        self.roles.push(Role { contract: name.to_owned(), instance });
         self
     }
 

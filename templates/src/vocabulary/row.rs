@@ -100,7 +100,7 @@ pub enum Soundness {
     Atomics,
     /// Interlock: T2.
     Interlock,
-    /// A lock: T3 with fences, T4 without.
+    /// A lock, or plain words that others read once they see an atomic one: T3 with fences, T4 without.
     Lock,
     /// Nothing: T5.
     Racy,

@@ -22,9 +22,12 @@ pub struct Headless {
     lost: Arc<AtomicBool>,
 }
 
-/// Features that are requested wherever there are: timing, coherent buffers, and code that is passed through.
+/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, and code that is passed
+/// through.
 const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::MEMORY_DECORATION_COHERENT)
+    .union(wgpu::Features::SHADER_INT64)
+    .union(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(wgpu::Features::PASSTHROUGH_SHADERS);
 
 impl Headless {
