@@ -4,9 +4,9 @@
 // is a max array, or for k > ARRAY_MOST a max heap, and writers take turns. The count is not bounded while it is
 // taken: the printed check before the addition overshoots k, and cannot tell f = k from f > k.
 //
-// Invariant: at every instant the key of slot 0 is EMPTY, or no fragment still to come of the final k best exceeds
-// it. In a crowded pixel that is the array's, or the heap's, whose slot 0 is EMPTY until k fragments are in. In any
-// other, slot 0 goes to the fragment that asks last. So the cull needs no separate word.
+// Invariant: at every instant the bound is EMPTY, or no fragment of the final k best exceeds it. In a crowded pixel it
+// is the array's or the heap's slot 0, which is EMPTY until k fragments are in; in any other there is none, because
+// all fragments stay. So the cull needs no separate word.
 //
 // Memory: entry_words words for each of min(f, k) fragments, 2 per pixel, and the lock's.
 
@@ -33,6 +33,9 @@ fn storage_reset(pixel: u32) {
 }
 
 fn storage_bound(pixel: u32) -> u32 {
+    if !bounded_regions_is_crowded(pixel) {
+        return EMPTY;
+    }
     let begin = offsets_load(pixel);
     if begin >= min(offsets_load(pixel + 1u), frame.kept) {
         return EMPTY;

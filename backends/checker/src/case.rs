@@ -66,7 +66,7 @@ pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: O
             let prior: Vec<Fragment> = prior.iter().map(|rank| candidates.ranked[*rank].clone()).collect();
             let what = format!("{arrival}, {count} at once, {pattern}");
             let base = Case {
-                symbols: Symbols { k, fragments: None },
+                symbols: Symbols { k, fragments: None, kept: None },
                 prior,
                 new,
                 pass: 0,
@@ -153,16 +153,17 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
             Case { symbols, too_many, ..case.clone() }
         };
         cases.push(with_room(0));
-        if needs_room {
+        // How many find no room where fragments can be turned away first depends on the order.
+        if needs_room && !subject.keeps_best() {
             let short = with_room(1);
             cases.push(Case { what: format!("{}, room for one less", short.what), ..short });
         }
-        if drawn_before && is_set {
+        if drawn_before && is_set && !subject.keeps_best() {
             let what = format!("{}, room reserved for one less", case.what);
             let room = total - WIDTH;
             cases.push(Case { too_many: 1, reserved: Some(room), what, ..with_room(0) });
         }
-        if drawn_before && is_set {
+        if drawn_before && is_set && !subject.keeps_best() {
             let what = format!("{}, one not seen by the pass before", case.what);
             cases.push(Case { has_unseen: true, what, ..with_room(0) });
         }

@@ -26,6 +26,7 @@ const STALE: u32 = 17;
 pub(crate) struct Symbols {
     pub(crate) k: Option<u32>,
     pub(crate) fragments: Option<u32>,
+    pub(crate) kept: Option<u32>,
 }
 
 /// The value of a symbol, where it has one by now.
@@ -35,6 +36,7 @@ pub(crate) fn value(subject: &Subject, symbols: &Symbols, symbol: &str) -> Optio
         "height" => Some(1),
         "k" => symbols.k.map(u64::from),
         "fragments" => symbols.fragments.map(u64::from),
+        "kept" => symbols.kept.map(u64::from),
         // Slots of each pixel: the one under test gets all the room but the neighbour's.
         "n" => symbols.fragments.map(|fragments| u64::from(fragments.saturating_sub(WIDTH - 1))),
         _ => subject.plan.bound.value(symbol),
@@ -95,10 +97,10 @@ impl<'s> Frame<'s> {
                 Step::Host(host) => {
                     for (read, set) in host.reads.iter().zip(&host.sets) {
                         let decided = self.host_value(read)?;
+                        let room = self.reserved.map_or(decided, |room| room.min(decided));
                         match set.as_str() {
-                            "fragments" => {
-                                self.symbols.fragments = Some(self.reserved.map_or(decided, |room| room.min(decided)))
-                            }
+                            "fragments" => self.symbols.fragments = Some(room),
+                            "kept" => self.symbols.kept = Some(room),
                             other => return Err(format!("the checker does not know what sets `{other}`")),
                         }
                     }
@@ -178,15 +180,19 @@ impl<'s> Frame<'s> {
     pub(crate) fn read_out(&mut self, pixel: u32) -> Result<Vec<Vec<u32>>, String> {
         let subject = self.subject;
         let mut entries = Vec::new();
-        let mut cursor = self.ask(&subject.first, &[pixel])?[0];
-        while cursor != u32::MAX {
+        loop {
+            // A walk may count what it passes over: only that of the last, which goes through to the end, is kept.
+            let before = self.memory.clone();
+            let cursor = self.ask(&subject.walk, &[pixel, entries.len() as u32])?[0];
+            if cursor == u32::MAX {
+                return Ok(entries);
+            }
             if entries.len() == LONGEST {
                 return Err("reading the pixel out never ends".to_owned());
             }
+            self.memory = before;
             entries.push(self.ask(&subject.read, &[pixel, cursor])?);
-            cursor = self.ask(&subject.next, &[pixel, cursor])?[0];
         }
-        Ok(entries)
     }
 
     fn ask(&mut self, program: &Program, arguments: &[u32]) -> Result<Vec<u32>, String> {

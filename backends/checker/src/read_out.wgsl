@@ -1,7 +1,16 @@
-// What the checker asks of a storage after a pass. The functions are called by name; the entry point only keeps them.
+// What a pixel holds, one fragment at a time: a walk is one invocation, because storages may count along the way.
 
 @compute @workgroup_size(1)
 fn read_out() {
-    let cursor = storage_next(0u, storage_first(0u));
-    _ = storage_read(0u, cursor).key;
+    let cursor = walk_to(0u, 0u);
+    let entry = storage_read(0u, cursor);
+}
+
+/// The cursor after `number` fragments of the pixel, or END.
+fn walk_to(pixel: u32, number: u32) -> u32 {
+    var cursor = storage_first(pixel);
+    for (var passed = 0u; passed < number && cursor != END; passed++) {
+        cursor = storage_next(pixel, cursor);
+    }
+    return cursor;
 }

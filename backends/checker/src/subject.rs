@@ -41,8 +41,8 @@ pub(crate) struct Subject {
     /// The plan's steps, loops unrolled, each with its round.
     pub(crate) steps: Vec<(Step, u32)>,
     pub(crate) passes: Vec<Runnable>,
-    pub(crate) first: Program,
-    pub(crate) next: Program,
+    /// The cursor after so many fragments of a pixel.
+    pub(crate) walk: Program,
     pub(crate) read: Program,
     /// The bound of the storage, where a cull rests on it.
     pub(crate) bound: Option<Program>,
@@ -136,8 +136,7 @@ impl Subject {
         };
         Ok(Some(Subject {
             passes,
-            first: ask(0, "storage_first")?,
-            next: ask(0, "storage_next")?,
+            walk: ask(0, "walk_to")?,
             read: ask(0, "storage_read")?,
             bound: if wants_bound { Some(ask(1, "storage_bound")?) } else { None },
             has_fences: target.offers.contains(&Fact::Fences),
@@ -204,7 +203,14 @@ fn row(key: &str, text: &'static str, path: &'static str) -> Row {
 /// A pass that reads everything that the plan's passes touch, with their roles.
 fn question(plan: &Plan, anchor: &str) -> Pass {
     let mut pass = Pass::compute(anchor, anchor, "1", "1");
-    for other in plan.passes() {
+    let mut passes = plan.passes();
+    // What reads a pixel out in the frame itself may count: its resources are touched as there.
+    if let Some(resolve) = passes.iter().position(|pass| pass.kind == Kind::Fullscreen) {
+        let resolve = passes.remove(resolve);
+        let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic);
+        pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();
+    }
+    for other in passes {
         for role in &other.roles {
             if !pass.roles.iter().any(|known| known.contract == role.contract) {
                 pass.roles.push(role.clone());

@@ -5,7 +5,7 @@
 use fragbuf_backends::Target;
 use fragbuf_model::{Diagnostics, Variant};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Kind;
+use fragbuf_templates::vocabulary::{Fact, Kind};
 
 use crate::case::cases;
 use crate::explore::What;
@@ -118,8 +118,12 @@ fn try_all(
     report: &mut Report,
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
-    let mut frame = Frame::new(subject, Symbols { k: Some(1), fragments: Some(16) });
+    let mut frame = Frame::new(subject, Symbols { k: Some(1), fragments: Some(16), kept: Some(16) });
     let candidates = Candidates::new(subject, &mut frame.memory)?;
+    let offers = subject.plan.selection.offers();
+    if !subject.keeps_best() && !offers.contains(&Fact::KeepsAll) {
+        return Err("the storage keeps neither all fragments nor the k best: the checker knows of no other promise".to_owned());
+    }
     let search =
         Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
     let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();
@@ -143,7 +147,7 @@ fn try_all(
                 report.states += found.states;
                 report.is_whole &= found.is_whole;
                 if let Some(failure) = found.failure {
-                    report.is_stated = subject.is_racy() && matches!(failure.what, What::Outcome(_)) && {
+                    report.is_stated = !subject.plan.hazards.is_empty() && matches!(failure.what, What::Outcome(_)) && {
                         let end = trial.end_of(&failure);
                         trial.is_within_hazards(&end)
                     };
