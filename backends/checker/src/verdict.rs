@@ -122,7 +122,9 @@ fn try_all(
     let candidates = Candidates::new(subject, &mut frame.memory)?;
     let offers = subject.plan.selection.offers();
     if !subject.keeps_best() && !offers.contains(&Fact::KeepsAll) {
-        return Err("the storage keeps neither all fragments nor the k best: the checker knows of no other promise".to_owned());
+        return Err(
+            "the storage keeps neither all fragments nor the k best: the checker knows of no other promise".to_owned()
+        );
     }
     let search =
         Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
@@ -147,10 +149,11 @@ fn try_all(
                 report.states += found.states;
                 report.is_whole &= found.is_whole;
                 if let Some(failure) = found.failure {
-                    report.is_stated = !subject.plan.hazards.is_empty() && matches!(failure.what, What::Outcome(_)) && {
-                        let end = trial.end_of(&failure);
-                        trial.is_within_hazards(&end)
-                    };
+                    report.is_stated =
+                        !subject.plan.hazards.is_empty() && matches!(failure.what, What::Outcome(_)) && {
+                            let end = trial.end_of(&failure);
+                            trial.is_within_hazards(&end)
+                        };
                     report.failure = Some(schedule(&trial, &failure));
                     return Ok(());
                 }

@@ -13,7 +13,7 @@ type Verdict = (&'static str, &'static [(&'static str, &'static str)], &'static 
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
 const INTERLOCK: &[(&str, &str)] = &[("sync", "interlock")];
 
-const VERDICTS: [Verdict; 26] = [
+const VERDICTS: [Verdict; 34] = [
     ("kb", &[], "wgsl", Model::Sequential, false),
     ("kb", &[], "spirv", Model::Late, false),
     ("kb", LOCKED, "wgsl", Model::Sequential, true),
@@ -36,6 +36,14 @@ const VERDICTS: [Verdict; 26] = [
     ("ab_array", &[], "wgsl", Model::Sequential, true),
     ("ab_array", &[], "wgsl", Model::Late, true),
     ("kb_ab_ll", &[], "wgsl", Model::Late, true),
+    ("kplus_array_revised", &[], "wgsl", Model::Sequential, true),
+    ("kplus_array_revised", &[], "wgsl", Model::Late, false),
+    ("kplus_array_revised", &[], "spirv", Model::Late, true),
+    ("kb_ll", &[], "wgsl", Model::Sequential, true),
+    ("kb_ll", &[], "spirv", Model::Late, true),
+    ("kplus_ab_sb", &[], "wgsl", Model::Sequential, true),
+    ("kplus_ab_sb", &[], "spirv", Model::Late, true),
+    ("kb_mdt64", &[], "wgsl-native", Model::Sequential, true),
     ("ab_ll", &[], "wgsl", Model::Sequential, true),
     ("ab_ll", &[], "wgsl", Model::Late, true),
     ("ab_sb", &[], "wgsl", Model::Sequential, true),
@@ -63,16 +71,22 @@ fn losses_by_design_are_said_to_be_stated_and_others_are_not() {
     assert!(!relaxed.is_stated);
 }
 
+/// What the checker has no word for: another promise than the k best, and words of 64 bits under late memory.
+const BEYOND: [&str; 2] = ["depth_partition", "kb_mdt64"];
+
 /// What the tier means, worked out: T5 fails even when memory behaves; T4 fails when stores are late; T3 holds, but not
 /// without its fences; T2 has no fences and an interlock; T1 holds with neither.
 #[test]
 fn tiers_follow_from_the_model() {
     let registry = Registry::builtin();
     let holds = |key: &str, set: &[(&str, &str)], target: &str, model: Model| {
-        report(key, set, target, &limits(2, model), &registry).unwrap().failure.is_none()
+        let report = report(key, set, target, &limits(2, model), &registry).unwrap();
+        // What a sound row loses by design, and says so, is no matter of its tier.
+        report.failure.is_none() || (report.is_stated && key != "kb")
     };
     let mut cases: Vec<(&str, &[(&str, &str)])> = vec![("kb", LOCKED)];
-    cases.extend(registry.techniques().iter().map(|technique| (technique.key.as_str(), &[][..])));
+    let known = registry.techniques().iter().filter(|technique| !BEYOND.contains(&technique.key.as_str()));
+    cases.extend(known.map(|technique| (technique.key.as_str(), &[][..])));
     for (key, set) in cases {
         let soundness = variant(key, set, &registry).unwrap();
         // Metal has neither fences nor coherent words: what is late there is late without any help.
