@@ -158,7 +158,9 @@ fn as_text(key: &str, on: &str, limits: &Limits, report: &Report) -> String {
     let head = format!("{key} on {on}, {}", model_name(limits.model));
     let Some(schedule) = &report.failure else {
         let scope = if report.is_whole { "in every order" } else { "in every order tried" };
-        return format!("{head}: no failure {scope} ({cases})\n");
+        let unjudged = "  Which fragments stay is not judged: the storage offers neither keeps-all nor keeps-best.\n";
+        let note = if report.is_judged { "" } else { unjudged };
+        return format!("{head}: no failure {scope} ({cases})\n{note}");
     };
     let verdict = if report.is_stated { "fails, as stated" } else { "FAILS" };
     let mut text = format!("{head}: {verdict} ({cases})\n\n");

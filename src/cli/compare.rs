@@ -20,6 +20,15 @@ pub(crate) struct Compare {
     /// Changes both descriptions: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
     set: Vec<(String, String)>,
+    /// Changes the first description alone
+    #[arg(long = "set-first", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    set_first: Vec<(String, String)>,
+    /// Changes the second description alone
+    #[arg(long = "set-second", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    set_second: Vec<(String, String)>,
+    /// A uniform of both descriptions; those that are not given are 0
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = super::assignment)]
+    uniforms: Vec<(String, String)>,
     #[command(flatten)]
     view: View,
 }
@@ -31,12 +40,13 @@ impl Compare {
         let progress = Progress::new();
         progress.stage(format!("loading {}", view.scene));
         let stage = view.stage()?;
-        let one = |description: &str| {
+        let one = |description: &str, own: &[(String, String)]| {
+            let set = [&self.set, own].concat();
             // The hit ratio needs every event.
-            let wish = Wish { description, set: &self.set, uniforms: &[], count_all: true };
+            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true };
             paint(&wish, view, &stage, &progress)
         };
-        let (first, second) = (one(&self.first)?, one(&self.second)?);
+        let (first, second) = (one(&self.first, &self.set_first)?, one(&self.second, &self.set_second)?);
         let shown = |painted: &Painted| picture::displayed(&painted.drawn.pixels, view.background, view.linear);
         let difference = Difference::of(&shown(&first), &shown(&second));
         picture::write(&view.out, view.size, &difference.heat(), true)?;

@@ -176,8 +176,14 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
 }
 
 impl Subject {
-    /// Whether the storage keeps the k best; else it keeps all.
+    /// Whether the storage keeps no more than k; else it keeps all.
     pub(crate) fn keeps_best(&self) -> bool {
-        self.plan.selection.offers().contains(&Fact::KeepsBest)
+        !self.plan.selection.offers().contains(&Fact::KeepsAll)
+    }
+
+    /// Whether what must be kept is known: all, or the k best. Of any other storage only that is known which holds for all.
+    pub(crate) fn is_known(&self) -> bool {
+        let offers = self.plan.selection.offers();
+        offers.contains(&Fact::KeepsAll) || offers.contains(&Fact::KeepsBest)
     }
 }

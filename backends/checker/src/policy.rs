@@ -54,6 +54,19 @@ impl Policy {
         self.miscounted(kept.len() as u32, counts)
     }
 
+    /// What is wrong with a pixel that holds `kept`, whatever its storage promises: fragments that nobody sent, or twice, or
+    /// torn, and fragments that went uncounted.
+    pub(crate) fn fault_of_any(&self, kept: &[Vec<u32>], counters: &[u32]) -> Option<String> {
+        let wrong = kept.iter().find(|entry| times(kept, entry) > times(&self.fragments, entry));
+        match wrong {
+            Some(entry) => {
+                let words: Vec<String> = entry.iter().map(|word| format!("{word:08x}")).collect();
+                Some(format!("the pixel holds ({}), which no fragment is", words.join(" ")))
+            }
+            None => self.miscounted(kept.len() as u32, counts(counters)),
+        }
+    }
+
     /// Whether `kept` is what stays of some choice of all fragments but `gone`.
     fn is_kept_by_some(&self, kept: &[Vec<u32>], gone: usize) -> bool {
         let count = self.fragments.len();

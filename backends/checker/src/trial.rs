@@ -119,8 +119,10 @@ impl<'s> Trial<'s> {
 
     /// Whether a failed end state is one that the rows state.
     pub(crate) fn is_within_hazards(&mut self, words: &[u32]) -> bool {
-        let Ok((kept, _, _)) = self.judge.read(words) else { return false };
-        self.judge.policy.is_within_hazards(&kept)
+        let Ok((kept, _, counters)) = self.judge.read(words) else { return false };
+        // Only races may lose a fragment uncounted.
+        let counted = self.judge.is_racy || self.judge.policy.fault_of_any(&kept, &counters).is_none();
+        counted && self.judge.policy.is_within_hazards(&kept)
     }
 }
 
@@ -190,6 +192,7 @@ impl EndJudge<'_> {
         match self.read(words) {
             Err(text) => Some(text),
             Ok((_, beside, _)) if beside != self.beside => Some("the neighbouring pixel has changed".to_owned()),
+            Ok((kept, _, counters)) if !self.frame.subject.is_known() => self.policy.fault_of_any(&kept, &counters),
             Ok((kept, _, counters)) => self.policy.fault(&kept, &counters),
         }
     }

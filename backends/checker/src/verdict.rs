@@ -5,7 +5,7 @@
 use fragbuf_backends::Target;
 use fragbuf_model::{Diagnostics, Variant};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Kind};
+use fragbuf_templates::vocabulary::Kind;
 
 use crate::case::cases;
 use crate::explore::What;
@@ -59,6 +59,8 @@ pub struct Report {
     pub hazards: Vec<(String, String)>,
     /// Whether the failure is one of those.
     pub is_stated: bool,
+    /// Whether what the storage must keep is known; else that is not judged.
+    pub is_judged: bool,
 }
 
 /// Why there is no report.
@@ -86,6 +88,7 @@ impl Report {
             failure: None,
             hazards: Vec::new(),
             is_stated: false,
+            is_judged: true,
         }
     }
 }
@@ -101,6 +104,7 @@ pub fn check_variant(
     let mut report = Report::new(limits);
     for tries in [Tries::AsStated, Tries::Least] {
         let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
+        report.is_judged = subject.is_known();
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.what.to_string())).collect();
         try_all(&subject, limits, tries, &mut report, progress).map_err(Error::Unable)?;
@@ -120,12 +124,6 @@ fn try_all(
 ) -> Result<(), String> {
     let mut frame = Frame::new(subject, Symbols { k: Some(1), fragments: Some(16), kept: Some(16) });
     let candidates = Candidates::new(subject, &mut frame.memory)?;
-    let offers = subject.plan.selection.offers();
-    if !subject.keeps_best() && !offers.contains(&Fact::KeepsAll) {
-        return Err(
-            "the storage keeps neither all fragments nor the k best: the checker knows of no other promise".to_owned()
-        );
-    }
     let search =
         Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
     let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();

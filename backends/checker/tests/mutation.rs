@@ -30,7 +30,7 @@ const CASCADE: &[Check] = &[
     ("mdt32_coplanar", &[], "wgsl", Model::Sequential),
     ("mdt32_coplanar", &[], "wgsl", Model::Late),
     // A second word beside the key, which is settled among equal first ones.
-    ("mdt32_coplanar", &[("fragment.id", "u32")], "wgsl", Model::Sequential),
+    ("mdt32_coplanar", &[("fragment.color", "rgba16")], "wgsl", Model::Sequential),
 ];
 const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_array", &[], "wgsl", Model::Late)];
 

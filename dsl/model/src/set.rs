@@ -53,10 +53,11 @@ impl Draft {
         if self.attributes.is_empty() {
             self.attributes = self.papers_payload();
         }
-        let format = Spanned::new(format, origin.clone());
+        let names: Vec<String> =
+            self.attributes.iter().map(|attribute| format!("`{}`", attribute.name.value)).collect();
         match self.attributes.iter_mut().find(|attribute| attribute.name.value == name) {
-            Some(attribute) => attribute.format = format,
-            None => self.attributes.push(Attribute { name: Spanned::new(name.to_owned(), origin.clone()), format }),
+            Some(attribute) => attribute.format = Spanned::new(format, origin.clone()),
+            None => return Err(format!("the format of an attribute that there is: {}", names.join(", "))),
         }
         Ok(())
     }

@@ -55,6 +55,32 @@ pub(crate) fn find(receiver: Type, name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|row| row.name == name && row.on.contains(&receiver))
 }
 
+/// Whether any type has a method of this name.
+pub(crate) fn is_method(name: &str) -> bool {
+    METHODS.iter().any(|row| row.name == name)
+}
+
+/// What a function of the shading languages is called here.
+pub(crate) fn of_shaders(name: &str) -> Option<&'static str> {
+    OF_SHADERS.iter().find(|(function, _)| *function == name).map(|(_, method)| *method)
+}
+
+/// Functions that shader authors reach for, and what stands for them.
+const OF_SHADERS: [(&str, &str); 12] = [
+    ("mix", "a.lerp(b, t)"),
+    ("select", "if condition { a } else { b }"),
+    ("saturate", "x.clamp(0.0, 1.0)"),
+    ("sign", "x.signum()"),
+    ("inversesqrt", "x.sqrt().recip()"),
+    ("inverseSqrt", "x.sqrt().recip()"),
+    ("pow", "x.powf(y)"),
+    ("log", "x.ln()"),
+    ("fma", "a.mul_add(b, c)"),
+    ("radians", "x.to_radians()"),
+    ("degrees", "x.to_degrees()"),
+    ("mod", "x.rem_euclid(y)"),
+];
+
 /// The methods of this type, in the order of the table.
 pub(crate) fn names_on(receiver: Type) -> impl Iterator<Item = &'static str> {
     METHODS.iter().filter(move |row| row.on.contains(&receiver)).map(|row| row.name)

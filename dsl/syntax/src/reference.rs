@@ -44,7 +44,7 @@ fn statements(text: &mut String) {
          * `for i in a..b`, `for i in a..=b`, `for f in fragments`, `for (i, f) in fragments.iter().enumerate()`, each also with \
          `.rev()`; `break`, `continue`. How often a loop goes round is known when it begins: there is no `while`;\n\
          * `fragments.len()`, `fragments[i]`: nearest first in `resolve`;\n\
-         * `vec2(x, y)`, `Vec3::new(x, y, z)`, `Vec4::splat(x)`; components `v.x` and `v[0]`; `as` between numbers;\n\
+         * `vec2(x, y)`, `Vec3::new(x, y, z)`, `Vec4::splat(x)`; components `v.x` and `v[0]`, several as `v.xy()`, `v.zyx()` …; `as` between numbers;\n\
          * helpers: `fn name(parameter: type, …) -> type { … }`, without recursion.\n",
     );
 }

@@ -116,7 +116,12 @@ impl Checker<'_, '_, '_> {
         let hint = match near::nearest(name, &existing) {
             _ if self.lookup(name).is_some() => format!("`{name}` is a variable: write it without `(…)`"),
             Some(near) => format!("did you mean `{near}`?"),
-            None if methods::find(Type::F32, name).is_some() => format!("it is a method: write `x.{name}()`"),
+            None if methods::is_method(name) => {
+                format!("it is a method: write `a.{name}({})`", if arguments.len() > 1 { "b" } else { "" })
+            }
+            None if methods::of_shaders(name).is_some() => {
+                format!("write `{}`", methods::of_shaders(name).unwrap_or_default())
+            }
             None => format!("declare it in the buffer: `fn {} (x: f32) -> f32 {{ … }}`", last_word(name)),
         };
         self.report.error(codes::UNKNOWN_NAME, place, format!("there is no function `{name}`"), hint);

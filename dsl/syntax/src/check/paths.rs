@@ -44,7 +44,14 @@ impl Checker<'_, '_, '_> {
             let message = format!("the function `{name}` is not a value");
             return self.refuse(origin, message, format!("call it: `{name}(…)`"));
         }
-        let hint = self.hint_for_name(name);
+        let uniforms = self.variables.iter().any(|variable| variable.kind == Type::Uniforms);
+        let hint = match name {
+            // The name that every example gives them.
+            "u" | "uniforms" if !uniforms && !self.environment.uniforms.is_empty() => {
+                format!("name the uniforms as the closure's second parameter: `|f, {name}| …`")
+            }
+            _ => self.hint_for_name(name),
+        };
         self.report.error(codes::UNKNOWN_NAME, &origin, format!("nothing in scope is called `{name}`"), hint);
         Expr::error(origin)
     }

@@ -99,6 +99,12 @@ impl Items {
         let criterion = if cursor.word("least") {
             Some(closures::closure(cursor, Role::Criterion, &mut self.written, report)?)
         } else {
+            if cursor.at_word("greatest") || cursor.at_word("most") {
+                let message = format!("only `least` chooses, not {}", cursor.describe());
+                let hint = "negate what is compared: `keep 8 least |f| -f.depth;`";
+                report.error(codes::UNEXPECTED, &cursor.origin(report), message, hint);
+                return Err(Stop);
+            }
             end_of_item(cursor, "keep 8;` or, to choose by a value, `keep 8 least |f| …;", report)?;
             None
         };
