@@ -48,6 +48,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "sort", "resolve"],
         ),
         row(
+            "resolve_first",
+            "makes one colour of the first k fragments that a storage gives, best first",
+            template!("pass/resolve_first"),
+            vec!["addressing", "storage", "overflow", "sort", "resolve"],
+        ),
+        row(
             "resolve_selected",
             "chooses the k best of each pixel's fragments and makes one colour of them",
             template!("pass/resolve_selected"),

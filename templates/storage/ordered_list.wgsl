@@ -16,9 +16,6 @@
 /// No node, as links are stored: plus one.
 const NO_NODE = 0u;
 
-/// Nodes that the resolve pass has read.
-var<private> nodes_read: u32;
-
 fn storage_insert(pixel: u32, entry: Packed) {
     // A helper lane's exchange has no effect: it would try to the end.
     if is_helper_lane() {
@@ -59,23 +56,15 @@ fn storage_insert(pixel: u32, entry: Packed) {
     on_lost(entry, SPIN_EXHAUSTED);
 }
 
+// The list may be longer than k: what better fragments have pushed behind the k-th is in it still.
+
 fn storage_first(pixel: u32) -> u32 {
-    nodes_read = 1u;
     // No node becomes END.
     return heads_load(pixel) - 1u;
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
-    let next = links_load(cursor);
-    if nodes_read < frame.k {
-        nodes_read += 1u;
-        return next - 1u;
-    }
-    // Better fragments came after these were linked.
-    for (var beyond = next; beyond != NO_NODE; beyond = links_load(beyond - 1u)) {
-        on_lost(nodes_load(beyond - 1u), DISPLACED);
-    }
-    return END;
+    return links_load(cursor) - 1u;
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {

@@ -60,7 +60,7 @@ pub(super) fn ordered_list() -> Row {
                     .uses("pool", Access::Atomic),
             ),
             Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
+                Pass::fullscreen("resolve", "resolve_first")
                     .uses("heads", Access::Read)
                     .uses("links", Access::Read)
                     .uses("nodes", Access::Read)
