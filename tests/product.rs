@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Mutex;
 
-use fragbuf::{File, Registry, Variant, check};
+use fragbuf::vocabulary::{Row, Template};
+use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::verify;
 use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Spanned};
 
@@ -192,6 +193,21 @@ fn every_construct_of_the_language_generates() {
     }
     assert!(count >= 25, "{count}");
     println!("language: {count} descriptions, {} files through glslang and spirv-val", validate(files.iter()));
+}
+
+/// Whoever checks interleavings must refuse it; everything else takes it.
+#[test]
+fn an_algorithm_as_printed_passes_every_validator() {
+    let text = include_str!("templates/revised_array_as_printed.wgsl");
+    let builtin = Registry::builtin();
+    let row = builtin.row("storage", "revised_array").unwrap().clone();
+    let registry = builtin.with(Row { template: Some(Template::new("revised_array_as_printed.wgsl", text)), ..row });
+    assert_eq!(verify(&registry), Vec::<String>::new());
+    let variant = check(&Draft::from_technique("kplus_array_revised", &Origin::new("case", 1, 1)), &registry).unwrap();
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&variant, &request, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    assert!(validate(generation.files.iter()) > 0);
 }
 
 #[test]

@@ -4,9 +4,9 @@
 // is a max array, or for k > ARRAY_MOST a max heap, and writers take turns. The count is not bounded while it is
 // taken: the printed check before the addition overshoots k, and cannot tell f = k from f > k.
 //
-// Invariant: at every instant the bound is EMPTY, or no fragment of the final k best exceeds it. In a crowded pixel it
-// is the array's or the heap's slot 0, which is EMPTY until k fragments are in; in any other there is none, because
-// all fragments stay. So the cull needs no separate word.
+// Invariant: at every instant the key of slot 0 of a crowded pixel is EMPTY, or no fragment of the k best so far
+// exceeds it: it is the array's, or the heap's, and EMPTY until k fragments are in. So the bound is that word and
+// needs none of its own. Any other pixel has no bound, and every slot of it is written by one invocation.
 //
 // Memory: entry_words words for each of min(f, k) fragments, 2 per pixel, and the lock's.
 
@@ -23,24 +23,20 @@ fn storage_size(pixel: u32) -> u32 {
 }
 
 fn storage_reset(pixel: u32) {
-    let begin = offsets_load(pixel);
-    if begin < min(offsets_load(pixel + 1u), frame.kept) {
-        region_keys_store(begin, EMPTY);
+    if counts_load(pixel) <= frame.k {
+        return;
     }
-    if counts_load(pixel) > frame.k {
-        counts_store(pixel, CROWDED);
+    filled_store(pixel, 0u);
+    if offsets_load(pixel + 1u) <= frame.kept {
+        keys_store(0u, pixel, EMPTY);
     }
 }
 
 fn storage_bound(pixel: u32) -> u32 {
-    if !bounded_regions_is_crowded(pixel) {
+    if !bounded_regions_is_crowded(pixel) || offsets_load(pixel + 1u) > frame.kept {
         return EMPTY;
     }
-    let begin = offsets_load(pixel);
-    if begin >= min(offsets_load(pixel + 1u), frame.kept) {
-        return EMPTY;
-    }
-    return region_keys_load(begin);
+    return keys_load(0u, pixel);
 }
 
 fn storage_reserve(pixel: u32, entry: Packed) -> bool {
