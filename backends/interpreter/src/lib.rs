@@ -30,4 +30,4 @@ mod workgroup;
 pub use machine::{Exit, Fault, Machine};
 pub use memory::{Access, Atomic, Event, Operation, Place, Reply, Sequential, Shared};
 pub use program::{Buffer, Input, Marker, Options, Program, Space, Unsupported};
-pub use workgroup::{Dispatch, dispatch};
+pub use workgroup::{Dispatch, dispatch, workgroup};
