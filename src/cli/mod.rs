@@ -5,6 +5,8 @@ mod attributes;
 #[cfg(feature = "pictures")]
 mod compare;
 #[cfg(feature = "pictures")]
+mod device;
+#[cfg(feature = "pictures")]
 mod devices;
 mod generate;
 mod input;
