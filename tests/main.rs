@@ -11,6 +11,7 @@
 mod build_script;
 mod cases;
 mod command_line;
+mod devices;
 mod diagnostics;
 mod examples;
 mod fuzz;

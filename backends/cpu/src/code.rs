@@ -36,6 +36,7 @@ const OFFERS: &[Fact] = &[
     Fact::Fences,
     Fact::Coherent,
     Fact::Interlock,
+    Fact::U64Atomics,
     Fact::EarlyDepth,
     Fact::MinMaxBlend,
     Fact::SampleMask,

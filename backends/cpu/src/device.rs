@@ -128,6 +128,11 @@ impl Device {
         self.symbols.value(&self.code.plan, name)
     }
 
+    /// Fragments that a pixel keeps; `None`: all.
+    pub fn k(&self) -> Option<u32> {
+        self.symbols.k
+    }
+
     /// Bytes of all resources.
     pub fn allocated_bytes(&self) -> u64 {
         self.memory.bytes()

@@ -20,6 +20,8 @@ mod compute;
 mod device;
 mod draw;
 mod error;
+#[cfg(test)]
+mod fixed_function;
 mod frame;
 mod interface;
 mod memory;
