@@ -16,7 +16,7 @@ use crate::interface::{Outputs, Rate, Varyings, Weighed, feeds, outputs};
 use crate::schedule::{Waiting, interleave};
 use crate::stages::{FragmentStage, Place};
 use crate::tile::{Bin, Bins, Covered, SIDE, cover};
-use crate::triangle::{Coverage, Triangle, Vertex, fan, sample_places};
+use crate::triangle::{Coverage, MIDDLE, Triangle, Vertex, fan, sample_places};
 use crate::vertices;
 use crate::view::View;
 
@@ -207,15 +207,15 @@ impl<'a> Tiles<'a> {
         covered: &Covered,
         samples: &mut u64,
     ) {
-        let Covered { x, y, edges, mask } = *covered;
+        let Covered { x, y, mask } = *covered;
         match self.rate {
             Rate::Pixel => {
-                let place = Place { x, y, weights: triangle.weights(edges), mask, sample: 0 };
+                let place = Place { x, y, weights: triangle.weights(x, y, MIDDLE), mask, sample: 0 };
                 *samples += u64::from(self.shade(machine, view, triangle, place));
             }
             Rate::Sample => {
                 for sample in (0..self.draw.attachments.samples).filter(|sample| mask >> sample & 1 == 1) {
-                    let weights = triangle.weights(self.edges(triangle, x, y, sample));
+                    let weights = triangle.weights(x, y, self.sample(sample));
                     let place = Place { x, y, weights, mask: 1 << sample, sample };
                     *samples += u64::from(self.shade(machine, view, triangle, place));
                 }
@@ -267,7 +267,7 @@ impl<'a> Tiles<'a> {
         let pixel = self.pixel(place);
         let mut mask = 0;
         for sample in (0..attachments.samples).filter(|sample| place.mask >> sample & 1 == 1) {
-            let own = || triangle.weights(self.edges(triangle, place.x, place.y, sample)).depth;
+            let own = || triangle.weights(place.x, place.y, self.sample(sample)).depth;
             let depth = depth.unwrap_or_else(own);
             let passes = attachments.test(sample as usize * attachments.pixels + pixel, depth);
             mask |= u32::from(passes) << sample;
@@ -279,13 +279,13 @@ impl<'a> Tiles<'a> {
         place.y as usize * self.draw.size.0 as usize + place.x as usize
     }
 
-    /// The edge functions where a sample is tested.
-    fn edges(&self, triangle: &Triangle, x: u32, y: u32, sample: u32) -> [i64; 3] {
+    /// Where a sample is tested.
+    fn sample(&self, sample: u32) -> (i64, i64) {
         let places = match self.draw.coverage {
             Coverage::Samples => sample_places(self.draw.attachments.samples),
             Coverage::Middle => sample_places(1),
         };
-        triangle.edges(x, y, places[sample as usize % places.len()])
+        places[sample as usize % places.len()]
     }
 
     /// All fragments of each pixel, interleaved.
@@ -293,9 +293,10 @@ impl<'a> Tiles<'a> {
         let [x0, _, y0, _] = bin.rectangle;
         let mut pixels: Vec<Vec<Waiting<'a>>> = Vec::new();
         pixels.resize_with((SIDE * SIDE) as usize, Vec::new);
-        self.each(bin, |triangle, Covered { x, y, edges, mask }| {
+        self.each(bin, |triangle, Covered { x, y, mask }| {
             let pixel = (y - y0) * SIDE + x - x0;
-            pixels[pixel as usize].push((triangle, Place { x, y, weights: triangle.weights(edges), mask, sample: 0 }));
+            pixels[pixel as usize]
+                .push((triangle, Place { x, y, weights: triangle.weights(x, y, MIDDLE), mask, sample: 0 }));
         });
         for mut fragments in pixels.into_iter().filter(|fragments| !fragments.is_empty()) {
             let place = fragments[0].1;

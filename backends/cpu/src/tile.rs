@@ -87,8 +87,6 @@ fn touch(triangle: &Triangle, size: (u32, u32), mut tile: impl FnMut(u32, u32)) 
 pub(crate) struct Covered {
     pub(crate) x: u32,
     pub(crate) y: u32,
-    /// The edge functions at its middle.
-    pub(crate) edges: [i64; 3],
     /// Its covered samples.
     pub(crate) mask: u32,
 }
@@ -116,7 +114,7 @@ pub(crate) fn cover(
                 covered(triangle, x, y, samples)
             };
             if mask != 0 {
-                pixel(Covered { x, y, edges, mask });
+                pixel(Covered { x, y, mask });
             }
             edges.iter_mut().zip(steps).for_each(|(edge, step)| *edge += step);
         }
@@ -237,7 +235,7 @@ mod tests {
     fn weights_are_the_exact_fractions() {
         let at = |corners: [[f32; 4]; 3], x, y| {
             let triangle = Triangle::new(corners.map(|position| Vertex { position, words: 0 }), 0, 0, (4, 4)).unwrap();
-            (triangle.weights(triangle.edges(x, y, MIDDLE)), triangle.is_front)
+            (triangle.weights(x, y, MIDDLE), triangle.is_front)
         };
         // w grows from 1 on the left to 4 on the right: at pixel 1 of 4, 3/8 of the way on the screen.
         let corners = [[-1.0, -1.0, 0.0, 1.0], [4.0, -4.0, 4.0, 4.0], [-1.0, 1.0, 0.0, 1.0]];

@@ -38,7 +38,7 @@ pub(crate) struct Triangle {
     corners: [(i64, i64); 3],
     /// Added to an edge's function: 0 where the edge's own samples are the triangle's, else -1.
     bias: [i64; 3],
-    inverse_area: f64,
+    plane: Plane,
     depths: [f32; 3],
     /// 1 / w.
     inverse_w: [f32; 3],
@@ -91,7 +91,7 @@ impl Triangle {
         Some(Triangle {
             corners,
             bias,
-            inverse_area: 1.0 / area.unsigned_abs() as f64,
+            plane: Plane::of([a, b, c], area.unsigned_abs()),
             depths: [a.depth, b.depth, c.depth],
             inverse_w: [a.inverse_w, b.inverse_w, c.inverse_w],
             vertices: [a.words, b.words, c.words],
@@ -139,11 +139,10 @@ impl Triangle {
         [(b.1 - c.1) * SUBPIXELS, (c.1 - a.1) * SUBPIXELS, (a.1 - b.1) * SUBPIXELS]
     }
 
-    /// What the corners weigh where the edge functions have these values.
+    /// What the corners weigh at a sample.
     #[inline]
-    pub(crate) fn weights(&self, edges: [i64; 3]) -> Weights {
-        let share = |index: usize| (edges[index] - self.bias[index]) as f64 * self.inverse_area;
-        let linear = [share(1), share(2)];
+    pub(crate) fn weights(&self, x: u32, y: u32, offset: (i64, i64)) -> Weights {
+        let linear = self.plane.at(f64::from(x) + offset.0 as f64 / 256.0, f64::from(y) + offset.1 as f64 / 256.0);
         let depth = self.mixed(self.depths, linear).clamp(0.0, 1.0) as f32;
         let w = self.inverse_w;
         if w[0] == w[1] && w[0] == w[2] {
@@ -162,9 +161,52 @@ impl Triangle {
     }
 }
 
+/// The weights of the second and third corner, linear on the screen. They follow the corners as they are, not as coverage has
+/// rounded them: so depth does not depend on the rounding, and steep triangles meet where they should.
+#[derive(Clone, Debug)]
+struct Plane {
+    origin: [f64; 2],
+    /// By x and y, for each of the two.
+    slopes: [[f64; 2]; 2],
+}
+
+impl Plane {
+    fn of(corners: [Placed; 3], snapped_area: u64) -> Self {
+        let exact = corners.map(|corner| corner.exact.map(f64::from));
+        let snapped_area = snapped_area as f64 / (SUBPIXELS * SUBPIXELS) as f64;
+        let plane = Plane::through(exact);
+        // A sliver that rounding has made much wider, or turned, is taken as it was rounded.
+        match plane {
+            Some((area, plane)) if (0.5..2.0).contains(&(area / snapped_area)) => plane,
+            _ => {
+                let snapped =
+                    corners.map(|corner| [corner.place.0, corner.place.1].map(|place| place as f64 / SUBPIXELS as f64));
+                Plane::through(snapped).map_or(Plane { origin: snapped[0], slopes: [[0.0; 2]; 2] }, |(_, plane)| plane)
+            }
+        }
+    }
+
+    /// Twice the area, and the plane.
+    fn through([a, b, c]: [[f64; 2]; 3]) -> Option<(f64, Self)> {
+        let (b, c) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let area = b[0] * c[1] - b[1] * c[0];
+        let slopes = [[c[1] / area, -c[0] / area], [-b[1] / area, b[0] / area]];
+        (area > 0.0).then_some((area, Plane { origin: a, slopes }))
+    }
+
+    #[inline]
+    fn at(&self, x: f64, y: f64) -> [f64; 2] {
+        let (x, y) = (x - self.origin[0], y - self.origin[1]);
+        self.slopes.map(|[by_x, by_y]| by_x * x + by_y * y)
+    }
+}
+
 /// A corner on the screen.
 #[derive(Clone, Copy)]
 struct Placed {
+    /// In pixels.
+    exact: [f32; 2],
+    /// In 256ths of a pixel.
     place: (i64, i64),
     depth: f32,
     inverse_w: f32,
@@ -179,7 +221,7 @@ impl Placed {
         let screen = (x * inverse_w * half_width + half_width, half_height - y * inverse_w * half_height);
         let snapped = |value: f32| (f64::from(value) * SUBPIXELS as f64).round() as i64;
         let place = (snapped(screen.0), snapped(screen.1));
-        Placed { place, depth: z * inverse_w, inverse_w, words: vertex.words }
+        Placed { exact: [screen.0, screen.1], place, depth: z * inverse_w, inverse_w, words: vertex.words }
     }
 }
 
