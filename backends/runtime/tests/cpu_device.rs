@@ -24,16 +24,21 @@ fn device(variant: &Variant, order: Order) -> Device {
     Device::new(Arc::new(code), settings).unwrap()
 }
 
-/// What the device keeps, and its picture.
-fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>) {
+fn paint(device: &mut Device, quads: &[Quad]) -> Vec<[f32; 4]> {
     let bytes = vertices(quads, &VertexInputs::of(device.plan()));
     let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
     let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();
     let picture = device.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
     assert!(picture.out_of_bounds.is_empty(), "{:?}", picture.out_of_bounds);
+    picture.pixels
+}
+
+/// What the device keeps, and its picture.
+fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>) {
+    let pixels = paint(device, quads);
     let names = device.plan().resources.iter().map(|planned| planned.resource.name.clone());
     let buffers: BTreeMap<String, Vec<u32>> = names.map(|name| (name.clone(), device.words(&name).unwrap())).collect();
-    (kept::kept(device, &buffers), picture.pixels)
+    (kept::kept(device, &buffers), pixels)
 }
 
 /// Every technique, where there is a k with four of it.
@@ -73,12 +78,14 @@ fn both_devices_keep_the_same_words() {
 fn interleaving_changes_nothing_where_no_hazard_is_stated() {
     for (key, variant) in techniques() {
         let mut in_order = device(&variant, Order::Submission);
-        let is_stated = !in_order.plan().hazards.is_empty();
+        if !in_order.plan().hazards.is_empty() {
+            continue;
+        }
         for seed in 0..4 {
             let mut shuffled = device(&variant, Order::Shuffled(seed));
             for (name, quads) in cases() {
                 let (expected, seen) = (draw(&mut in_order, &quads).0, draw(&mut shuffled, &quads).0);
-                assert!(is_stated || expected == seen, "{key}, {name}, seed {seed}");
+                assert!(expected == seen, "{key}, {name}, seed {seed}");
             }
         }
     }
@@ -99,10 +106,10 @@ fn locks_hold_under_any_schedule() {
 fn without_a_lock_interleaving_loses_fragments() {
     let variant = technique("kb", &[("k", "4")]);
     let quads: Vec<Quad> = scattered(12, 5).into_iter().map(|quad| quad.at(0, 0, SIZE, SIZE)).collect();
-    let (expected, _) = draw(&mut device(&variant, Order::Submission), &quads);
-    let (seen, _) = draw(&mut device(&variant, Order::Shuffled(1)), &quads);
+    let expected = paint(&mut device(&variant, Order::Submission), &quads);
+    let seen = paint(&mut device(&variant, Order::Shuffled(1)), &quads);
     let wrong = seen.iter().zip(&expected).filter(|(seen, expected)| seen != expected).count();
     assert!(wrong > seen.len() / 4, "{wrong} of {} pixels", seen.len());
     // The same seed is the same schedule.
-    assert!(seen == draw(&mut device(&variant, Order::Shuffled(1)), &quads).0);
+    assert!(seen == paint(&mut device(&variant, Order::Shuffled(1)), &quads));
 }
