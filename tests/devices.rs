@@ -120,6 +120,23 @@ fn interleaved_fragments_change_a_racy_picture_alone() {
     }
 }
 
+/// The gallery shows what its command draws.
+#[test]
+fn the_gallery_shows_the_hazards() {
+    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gallery");
+    let out = folder("gallery").join("kb_hazards.png");
+    let common = ["--scene", "builtin:marbles", "--size", "240x180", "--device", "cpu", "--out", out.to_str().unwrap()];
+    let different = |order: &str, shown: &str| {
+        let output = fragbuf(&[&["render", "kb", "--order", order], &common[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let apart = |(a, b): &([u8; 4], [u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+        read(&out).2.into_iter().zip(read(&gallery.join(shown)).2).filter(apart).count()
+    };
+    assert_eq!(different("shuffle:1", "kb_hazards.png"), 0);
+    assert_eq!(different("submission", "kb.png"), 0);
+    assert!(different("shuffle:1", "kb.png") > 1000);
+}
+
 #[test]
 fn an_order_is_the_cpu_devices() {
     let folder = folder("order-refused");
