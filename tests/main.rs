@@ -12,6 +12,7 @@ mod build_script;
 mod cases;
 mod check;
 mod command_line;
+mod devices;
 mod diagnostics;
 mod examples;
 mod fuzz;

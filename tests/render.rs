@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::oracle::over;
 use crate::quads::{Colors, Quad, SIZE, quads, write};
 
-fn folder(name: &str) -> PathBuf {
+pub fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render").join(name);
     let _ = std::fs::remove_dir_all(&path);
     std::fs::create_dir_all(&path).unwrap();
@@ -29,7 +29,7 @@ fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [
     std::array::from_fn(|channel| front[channel] + (1.0 - front[3]) * background[channel])
 }
 
-fn fragbuf(arguments: &[&str]) -> Output {
+pub fn fragbuf(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_fragbuf"))
         .args(arguments)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
@@ -37,12 +37,12 @@ fn fragbuf(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-fn stderr(output: &Output) -> String {
+pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Red, green, blue and alpha of every pixel.
-fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
+pub fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
@@ -51,12 +51,23 @@ fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     (info.width, info.height, bytes.chunks_exact(4).map(|pixel| pixel.try_into().unwrap()).collect())
 }
 
-/// The command of the README with these arguments, and its picture.
+/// The device without a driver, and a driver without a GPU.
+const DEVICES: [&str; 2] = ["cpu", "llvmpipe"];
+
+/// The command of the README with these arguments, and its picture, which is the same within 1/255 on both devices.
 fn render(folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
+    let [own, driver] = DEVICES.map(|device| render_on(device, folder, arguments));
+    for (own, driver) in own.iter().zip(&driver) {
+        assert!(own.iter().zip(driver).all(|(a, b)| a.abs_diff(*b) <= 1), "{arguments:?}: {own:?}, and not {driver:?}");
+    }
+    own
+}
+
+fn render_on(device: &str, folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
     let out = folder.join("o.png");
     let size = format!("{SIZE}x{SIZE}");
     let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", &size, "--out", out.to_str().unwrap()];
-    let output = fragbuf(&[&["render", "--device", "cpu"], arguments, &common].concat());
+    let output = fragbuf(&[&["render", "--device", device], arguments, &common].concat());
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
     let (width, height, pixels) = read(&out);
@@ -73,7 +84,8 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, b
     let set = k.map(|k| format!("k={k}"));
     let mut arguments = vec![key, "--scene", model.to_str().unwrap(), "--background", &back];
     arguments.extend(set.iter().flat_map(|set| ["--set", set.as_str()]));
-    for (index, pixel) in render(&folder, &arguments).into_iter().enumerate() {
+    let pixels = DEVICES.into_iter().flat_map(|device| render_on(device, &folder, &arguments).into_iter().enumerate());
+    for (index, pixel) in pixels {
         let (x, y) = (index % SIZE, index / SIZE);
         let expected = oracle(&quads, k, x, y, background);
         assert_eq!(pixel[3], 255);
@@ -222,8 +234,17 @@ fn a_picture_in_slices_is_the_picture() {
     let folder = folder("slices");
     let picture = |k: &str| {
         let out = folder.join(format!("{k}.png"));
-        let view =
-            ["--scene", "builtin:slabs,n=40", "--camera", "clip", "--size", "256x256", "--device", "cpu", "--json"];
+        let view = [
+            "--scene",
+            "builtin:slabs,n=40",
+            "--camera",
+            "clip",
+            "--size",
+            "256x256",
+            "--device",
+            "llvmpipe",
+            "--json",
+        ];
         let output =
             fragbuf(&[&["render", "kplus_array", "--set", k, "--out", out.to_str().unwrap()], &view[..]].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -241,6 +241,14 @@ fn the_dsl_builds_without_naga_and_wgpu() {
     }
 }
 
+/// Pictures on the CPU device need no wgpu either.
+#[test]
+fn drawing_needs_no_wgpu() {
+    let features = ["--no-default-features", "--features", "pictures"];
+    let tree = tree(&[&["--edges", "normal", "-p", "fragbuf"], &features[..]].concat());
+    assert!(tree.contains("fragbuf-cpu") && !tree.contains("wgpu"), "{tree}");
+}
+
 /// Without the feature `pictures` the facade generates, and knows no device.
 #[test]
 fn generating_needs_no_wgpu() {

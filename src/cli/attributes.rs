@@ -6,11 +6,10 @@ use fragbuf_scene::{Object, Scene};
 
 use super::output::Failure;
 
-/// Vertices, one after the other, and three indices per triangle.
+/// Words of vertices, one after the other, and three indices per triangle.
 pub(crate) struct Geometry {
-    pub(crate) vertices: Vec<u8>,
-    pub(crate) indices: Vec<u8>,
-    pub(crate) index_count: u32,
+    pub(crate) vertices: Vec<u32>,
+    pub(crate) indices: Vec<u32>,
 }
 
 /// The words of one attribute of a vertex.
@@ -31,22 +30,21 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
     let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
     let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
     let columns: Vec<(usize, Words)> = columns.collect::<Result<_, _>>()?;
-    let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(12 * scene.triangles()));
+    let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(3 * scene.triangles()));
     let mut first = 0;
     for (id, object) in (0..).zip(&scene.objects) {
         for vertex in 0..object.positions.len() {
             let position = bits(&object.positions, vertex);
             let attributes = columns.iter().map(|(words, read)| (*words, read(object, id, vertex)));
             for (words, values) in std::iter::once((3, position)).chain(attributes) {
-                vertices.extend(values.iter().take(words).flat_map(|word| word.to_le_bytes()));
+                vertices.extend(values.iter().take(words));
             }
         }
-        indices.extend(object.triangles.iter().flatten().flat_map(|index| (first + index).to_le_bytes()));
+        indices.extend(object.triangles.iter().flatten().map(|index| first + index));
         first += object.positions.len() as u32;
     }
-    let index_count =
-        u32::try_from(indices.len() / 4).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
-    Ok(Geometry { vertices, indices, index_count })
+    u32::try_from(indices.len()).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
+    Ok(Geometry { vertices, indices })
 }
 
 /// Words in a vertex, and where they come from.

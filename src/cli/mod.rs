@@ -6,6 +6,8 @@ mod check;
 #[cfg(feature = "pictures")]
 mod compare;
 #[cfg(feature = "pictures")]
+mod device;
+#[cfg(feature = "pictures")]
 mod devices;
 mod generate;
 mod input;

@@ -57,6 +57,21 @@ impl From<fragbuf_scene::Error> for Failure {
 }
 
 #[cfg(feature = "pictures")]
+impl From<fragbuf_cpu::Error> for Failure {
+    fn from(error: fragbuf_cpu::Error) -> Self {
+        use fragbuf_frame::Error as Numbers;
+        let text = error.to_string();
+        match error {
+            fragbuf_cpu::Error::Refused(_)
+            | fragbuf_cpu::Error::Shader { .. }
+            | fragbuf_cpu::Error::Frame(Numbers::Unsupported { .. }) => Failure::Input(text),
+            fragbuf_cpu::Error::Frame(Numbers::BadValue { .. }) => Failure::Usage(text),
+            _ => Failure::Device(text),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
 impl From<fragbuf_runtime::Error> for Failure {
     fn from(error: fragbuf_runtime::Error) -> Self {
         let text = error.to_string();

@@ -30,6 +30,24 @@ impl Progress {
     pub(crate) fn stage(&self, what: impl Into<String>) {
         self.bar.set_message(what.into());
     }
+
+    /// How much of it is done, from 0 to 1. `what` is asked for only where something is shown.
+    pub(crate) fn share(&self, what: impl FnOnce() -> String, share: f64) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        if self.bar.length().is_none() {
+            self.bar.set_length(100);
+            if let Ok(style) = indicatif::ProgressStyle::with_template("{spinner} {msg} {bar:24} {percent:>3} %") {
+                self.bar.set_style(style);
+            }
+        }
+        let percent = (100.0 * share) as u64;
+        if percent != self.bar.position() {
+            self.bar.set_message(what());
+            self.bar.set_position(percent);
+        }
+    }
 }
 
 impl Drop for Progress {

@@ -58,9 +58,9 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
     let tally = tally(painted);
     json!({
         "description": description,
-        "device": painted.info.name,
-        "backend": painted.info.backend.to_string(),
-        "target": painted.target.name,
+        "device": painted.device,
+        "backend": painted.backend,
+        "target": painted.target,
         "triangles": stage.scene.triangles(),
         "k": painted.plan.variant.keep,
         "fragment": payload(painted),

@@ -1,8 +1,8 @@
 //! `--uniform name=value[,value…]`: values for a description's own uniforms. Those that are not given are zero.
 
 use fragbuf::Variant;
+use fragbuf_frame::Value;
 use fragbuf_model::UniformType;
-use fragbuf_runtime::Value;
 
 use super::output::Failure;
 

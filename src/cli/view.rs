@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use fragbuf_runtime::headless::Choice;
+use fragbuf_cpu::Order;
 use fragbuf_scene::{BUILTIN, Camera, Scene};
 
+use super::device::{self, Picked, Wanted};
 use super::output::Failure;
 
 #[derive(clap::Args)]
@@ -33,9 +34,12 @@ pub(crate) struct View {
     /// Linear values in the PNG, and not sRGB
     #[arg(long)]
     pub(crate) linear: bool,
-    /// The fastest adapter, the one on the CPU, or one by a part of its name
+    /// A GPU where there is one, else the CPU device; the CPU device, which needs no driver; or an adapter by a part of its name
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
-    pub(crate) device: Choice,
+    device: Wanted,
+    /// The order of same-pixel fragments on the CPU device: as submitted, or interleaved by a seed
+    #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
+    order: Option<Order>,
     /// Figures on stdout, as JSON; counts every event unless the description says otherwise
     #[arg(long)]
     pub(crate) json: bool,
@@ -77,6 +81,11 @@ impl View {
             }
         };
         Ok(Stage { scene, camera, exact })
+    }
+
+    /// What will draw.
+    pub(crate) fn picked(&self) -> Result<Picked, Failure> {
+        self.device.pick(self.order)
     }
 
     /// What is wrong with the arguments and needs no work to see.

@@ -76,13 +76,20 @@ impl<'p> Machine<'p> {
 
     /// Goes back to the first instruction; inputs keep their words.
     pub fn restart(&mut self) {
-        let kept: Vec<Vec<u32>> =
-            self.program.inputs.iter().map(|input| self.words[input.words.clone()].to_vec()).collect();
-        self.words.copy_from_slice(&self.program.image);
-        for (number, words) in kept.iter().enumerate() {
-            self.set_input(number, words);
-        }
+        // Only private variables are read before the program writes them; nothing in it writes inputs or constants.
+        let privates = self.program.privates;
+        self.words[..privates].copy_from_slice(&self.program.image[..privates]);
         self.at = 0;
+    }
+
+    /// A word of the machine, for inputs and outputs by their ranges.
+    pub fn words(&self, range: std::ops::Range<usize>) -> &[u32] {
+        &self.words[range]
+    }
+
+    /// Words of an input, to be written.
+    pub fn words_mut(&mut self, range: std::ops::Range<usize>) -> &mut [u32] {
+        &mut self.words[range]
     }
 
     /// Writes down where a stopped machine stands and every word that still matters: equal machines write equal words.

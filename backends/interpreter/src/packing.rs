@@ -106,7 +106,7 @@ impl Unpack {
 }
 
 /// The nearest half float, ties to even.
-pub(crate) fn to_half(x: f32) -> u16 {
+pub fn to_half(x: f32) -> u16 {
     let bits = x.to_bits();
     let sign = ((bits >> 16) & 0x8000) as u16;
     let magnitude = bits & 0x7fff_ffff;
@@ -128,7 +128,7 @@ pub(crate) fn to_half(x: f32) -> u16 {
 }
 
 /// The same number as a float.
-pub(crate) fn from_half(half: u16) -> f32 {
+pub fn from_half(half: u16) -> f32 {
     let sign = if half & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from((half >> 10) & 0x1f), f32::from(half & 0x3ff));
     match exponent {

@@ -79,12 +79,12 @@ pub struct Buffer {
     pub is_wide: bool,
 }
 
-/// An argument of an entry point, or of the function.
+/// A part of what goes into an entry point or function, or of what comes out of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
     /// The member's or argument's name.
     pub name: String,
-    /// What feeds it; nothing, for a plain function.
+    /// What feeds it, or what it feeds; nothing, for a plain function.
     pub binding: Option<Binding>,
     /// The kind of its numbers; nothing, for a structure or an array.
     pub kind: Option<naga::ScalarKind>,
@@ -102,6 +102,8 @@ pub struct Program {
     pub(crate) sites: Vec<(Span, Option<u32>)>,
     /// What every machine starts with: variables and frames at zero, then constants.
     pub(crate) image: Vec<u32>,
+    /// Words of private variables, at the beginning of the image.
+    pub(crate) privates: usize,
     /// Per stop, the words whose values still matter.
     pub(crate) live: BTreeMap<u32, Vec<Range<u32>>>,
     /// Per instruction, whether it can come again.
@@ -110,6 +112,8 @@ pub struct Program {
     pub inputs: Vec<Input>,
     /// Where the result is when the program has ended.
     pub result: Range<usize>,
+    /// The result, flattened to members.
+    pub outputs: Vec<Input>,
     /// Buffers by number.
     pub buffers: Vec<Buffer>,
     /// Invocations of a workgroup; 1 where it is no compute shader.
@@ -153,15 +157,35 @@ impl Program {
         self.in_loop.get(at as usize).copied().unwrap_or(false)
     }
 
+    /// Whether invocations of a workgroup wait for each other.
+    pub fn has_barriers(&self) -> bool {
+        self.ops.contains(&Op::Barrier)
+    }
+
     /// The input that is this built-in value.
     pub fn built_in(&self, built_in: naga::BuiltIn) -> Option<&Input> {
-        self.inputs.iter().find(|input| match &input.binding {
+        self.inputs.iter().find(|input| input.is(built_in))
+    }
+}
+
+impl Input {
+    /// Whether it is this built-in value.
+    pub fn is(&self, built_in: naga::BuiltIn) -> bool {
+        match &self.binding {
             // Invariance is a property of the output that feeds it.
             Some(Binding::BuiltIn(naga::BuiltIn::Position { .. })) => {
                 matches!(built_in, naga::BuiltIn::Position { .. })
             }
             Some(Binding::BuiltIn(own)) => *own == built_in,
             _ => false,
-        })
+        }
+    }
+
+    /// Its location, where it has one.
+    pub fn location(&self) -> Option<u32> {
+        match &self.binding {
+            Some(Binding::Location { location, .. }) => Some(*location),
+            _ => None,
+        }
     }
 }

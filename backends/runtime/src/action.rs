@@ -2,9 +2,10 @@
 //! anything is made.
 
 use fragbuf_codegen::Plan;
+use fragbuf_frame::{Decision, resource as index, unsupported};
 use fragbuf_templates::vocabulary::{Access, Element, Fact, Objects, Pass, Repeat, Step, Until};
 
-use crate::{Error, host};
+use crate::Error;
 
 /// One thing to record, or to wait for.
 #[derive(Clone, Debug)]
@@ -16,7 +17,7 @@ pub(crate) enum Action {
     /// A pass.
     Pass(Run),
     /// The host decides; the frame is cut here unless room has been reserved.
-    Host(host::Decision),
+    Host(Decision),
 }
 
 /// One run of a pass.
@@ -34,11 +35,11 @@ pub(crate) struct Run {
 pub(crate) fn actions(plan: &Plan) -> Result<Vec<Action>, Error> {
     for planned in &plan.resources {
         if let Element::Texture(_) = planned.resource.element {
-            return Err(unsupported(format!("`{}`, a texture", planned.resource.name)));
+            return Err(refused(format!("`{}`, a texture", planned.resource.name)));
         }
     }
     if plan.requires.contains(&Fact::Interlock) {
-        return Err(unsupported("fragment shader interlock, which wgpu does not know".to_owned()));
+        return Err(refused("fragment shader interlock, which wgpu does not know".to_owned()));
     }
     let mut unrolled = Unrolled { plan, passes: 0, runs: 0, actions: Vec::new() };
     unrolled.steps(&plan.steps, 0)?;
@@ -66,8 +67,8 @@ impl Unrolled<'_> {
                 }
                 Step::Clear { resource, value } => Action::Clear { resource: index(plan, resource)?, value: *value },
                 Step::Copy { from, to } => Action::Copy { from: index(plan, from)?, to: index(plan, to)? },
-                Step::Host(host) => Action::Host(host::Decision::of(host, plan)?),
-                Step::Swap(a, b) => return Err(unsupported(format!("the exchange of `{a}` and `{b}`"))),
+                Step::Host(host) => Action::Host(Decision::of(host, plan)?),
+                Step::Swap(a, b) => return Err(refused(format!("the exchange of `{a}` and `{b}`"))),
                 Step::Repeat(repeat) => {
                     self.rounds(repeat)?;
                     continue;
@@ -81,11 +82,11 @@ impl Unrolled<'_> {
     /// The body once for every round. Its passes keep their numbers in the plan.
     fn rounds(&mut self, repeat: &Repeat) -> Result<(), Error> {
         let Until::Times(times) = &repeat.until else {
-            return Err(unsupported("a loop whose end is found out on the device".to_owned()));
+            return Err(refused("a loop whose end is found out on the device".to_owned()));
         };
         let rounds = times.evaluate(&|symbol| self.plan.bound.value(symbol));
         let rounds = rounds.map_err(|error| Error::Formula { what: "the rounds of a loop".to_owned(), error })?;
-        let rounds = u32::try_from(rounds).map_err(|_| unsupported(format!("a loop of {rounds} rounds")))?;
+        let rounds = u32::try_from(rounds).map_err(|_| refused(format!("a loop of {rounds} rounds")))?;
         let first = self.passes;
         for round in 0..rounds {
             self.passes = first;
@@ -107,7 +108,7 @@ fn count(steps: &[Step]) -> usize {
 }
 
 fn check_pass(pass: &Pass) -> Result<(), Error> {
-    let refuse = |what: &str| Err(unsupported(format!("pass `{}`: {what}", pass.anchor)));
+    let refuse = |what: &str| Err(refused(format!("pass `{}`: {what}", pass.anchor)));
     let state = &pass.state;
     if state.depth.is_some() || state.stencil.is_some() {
         return refuse("a depth or stencil test");
@@ -134,14 +135,6 @@ fn check_pass(pass: &Pass) -> Result<(), Error> {
 /// The vocabulary's name for the caller's own target.
 const OUTPUT: &str = "output";
 
-pub(crate) fn index(plan: &Plan, resource: &str) -> Result<usize, Error> {
-    let index = plan.resources.iter().position(|planned| planned.resource.name == resource);
-    index.ok_or_else(|| unsupported(format!("`{resource}`, which the plan does not have")))
-}
-
-pub(crate) fn unsupported(what: String) -> Error {
-    Error::Unsupported {
-        what,
-        hint: "follow the manifest with an engine of your own, or take another technique".to_owned(),
-    }
+fn refused(what: String) -> Error {
+    unsupported(what).into()
 }

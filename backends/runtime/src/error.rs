@@ -123,3 +123,16 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+impl From<fragbuf_frame::Error> for Error {
+    fn from(error: fragbuf_frame::Error) -> Self {
+        match error {
+            fragbuf_frame::Error::Unsupported { what, hint } => Error::Unsupported { what, hint },
+            fragbuf_frame::Error::Formula { what, error } => Error::Formula { what, error },
+            fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, hint } => {
+                Error::TooLarge { what, needed, limit, limit_name, hint }
+            }
+            fragbuf_frame::Error::BadValue { name, wanted } => Error::BadValue { name, wanted },
+        }
+    }
+}

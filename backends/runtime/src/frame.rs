@@ -7,14 +7,14 @@
 //!
 //! A frame is handed on from call to call, so that a segment cannot be recorded twice or out of order.
 
+use fragbuf_frame::{COUNTERS_RESOURCE, Decision};
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::action::{Action, Run};
-use crate::host::Decision;
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
-use crate::{Error, Pending, Renderer, counters};
+use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
 #[derive(Debug)]
@@ -210,7 +210,7 @@ impl Renderer {
                 let mut encoder = device.create_command_encoder(&descriptor);
                 let recorded = frame.record(self, &mut encoder, output, draw)?;
                 self.queue.submit([encoder.finish()]);
-                Ok(recorded)
+                Ok::<_, Error>(recorded)
             };
             let recorded = crate::block_on(&device, scoped(&device, "the frame's commands", 0, segment))??;
             let Recorded::Cut(cut) = recorded? else { return Ok(()) };
@@ -246,7 +246,7 @@ fn steps(renderer: &Renderer) -> Vec<Step<'_>> {
 
 /// Keeps what a slice has counted before the next one counts anew.
 fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
-    if let (Some(tally), Some(counters)) = (&renderer.sized.tally, renderer.buffer(counters::RESOURCE)) {
+    if let (Some(tally), Some(counters)) = (&renderer.sized.tally, renderer.buffer(COUNTERS_RESOURCE)) {
         encoder.copy_buffer_to_buffer(counters, 0, tally, u64::from(slice) * counters.size(), counters.size());
     }
 }
@@ -278,7 +278,7 @@ fn places<'a>(renderer: &'a Renderer, decision: &Decision) -> Result<Vec<(&'a wg
         let buffer = renderer.sized.memory.filled(*resource)?;
         let name = || renderer.plan().resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
         let word = renderer.sized.symbols.evaluate(renderer.plan(), place, &format!("the index into `{}`", name()));
-        Some(word.map(|word| (buffer, 4 * word)))
+        Some(word.map(|word| (buffer, 4 * word)).map_err(Error::from))
     });
     places.collect()
 }

@@ -18,11 +18,9 @@ mod action;
 mod blocking;
 mod blocks;
 mod buckets;
-mod counters;
 mod error;
 mod frame;
 pub mod headless;
-mod host;
 mod layout;
 mod memory;
 mod pattern;
@@ -35,24 +33,20 @@ mod scope;
 mod settings;
 mod shaders;
 mod sized;
-mod symbols;
 mod timing;
-mod uniforms;
 mod vertices;
 mod words;
 
 pub use blocking::block_on;
 pub use buckets::Buckets;
-pub use counters::{Counter, Counters};
 pub use error::Error;
+pub use fragbuf_frame::{Counter, Counters, PassTime, Room, Sizing, Value};
 pub use frame::{Cut, Draw, Frame, Output, Recorded};
 pub use pipelines::Pipelines;
 pub use readback::Pending;
 pub use renderer::Renderer;
-pub use settings::{Checks, Room, Settings, Sizing, VertexBuffer};
+pub use settings::{Checks, Settings, VertexBuffer};
 pub use shaders::{Code, Module, Shaders};
-pub use timing::PassTime;
-pub use uniforms::Value;
 pub use vertices::{VertexInput, VertexInputs};
 
 /// The wgpu that devices, encoders and passes must come from.

@@ -1,10 +1,10 @@
 //! The buffers of a frame: one per resource, as many bytes as the plan's formula says, all of them or none.
 
 use fragbuf_codegen::Plan;
+use fragbuf_frame::{Symbols, bytes};
 
 use crate::Error;
 use crate::scope::scoped;
-use crate::symbols::Symbols;
 
 /// The buffers of a plan's resources at one size.
 pub(crate) struct Memory {
@@ -65,15 +65,6 @@ impl Memory {
 fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
-}
-
-/// Name and bytes of every resource. What is counted later has no room yet.
-pub(crate) fn bytes<'a>(plan: &'a Plan, symbols: &Symbols) -> Result<Vec<(&'a str, u64)>, Error> {
-    let sizes = plan.resources.iter().map(|planned| {
-        let name = &planned.resource.name;
-        Ok((name.as_str(), symbols.evaluate(plan, &planned.words, &format!("`{name}`"))?.saturating_mul(4)))
-    });
-    sizes.collect()
 }
 
 /// Bytes of every resource, each within the limits.

@@ -4,20 +4,16 @@
 //! and took. Nothing here submits anything, apart from [`Renderer::render`].
 
 use fragbuf_codegen::Plan;
+use fragbuf_frame::{COUNTERS_RESOURCE, Counting, Symbols, reserve, resource as index, set, symbols, zeros};
 
-use crate::action::index;
 use crate::blocks::{Blocks, IDENTITY};
 use crate::pipeline::no_target;
 use crate::pipelines::Made;
-use crate::room::{reserve, rows, symbols};
+use crate::room::rows;
 use crate::scope::{is_lost, scoped};
 use crate::sized::{Fixed, Sized, Timed};
-use crate::symbols::Symbols;
-use crate::uniforms::{set, zeros};
 use crate::words::to_bytes;
-use crate::{
-    Counters, Error, Frame, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs, counters,
-};
+use crate::{Counters, Error, Frame, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs};
 
 /// Runs one plan on one device.
 pub struct Renderer {
@@ -60,7 +56,7 @@ impl Renderer {
         let made = &pipelines.0;
         let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let timed = if timed { Timed::Yes } else { Timed::No };
-        let (mut symbols, exact) = symbols(&made.plan, &made.actions, settings)?;
+        let (mut symbols, counting) = symbols(&made.plan, (settings.width, settings.height), settings.sizing)?;
         symbols.rows = rows(&made.plan, &symbols, settings.slice, &device.limits())?;
         let k = symbols.k;
         let uniforms = zeros(&made.plan.variant.uniforms);
@@ -71,7 +67,7 @@ impl Renderer {
             device: device.clone(),
             queue: queue.clone(),
             pipelines: pipelines.clone(),
-            exact,
+            exact: counting == Counting::Exact,
             sized,
             frame_id: 0,
             slice: settings.slice,
@@ -158,12 +154,7 @@ impl Renderer {
     /// Room, in fragments, after a frame that lost `short` of them for want of it: exactly enough where a pool was too small,
     /// twice as much where every pixel has slots of its own and only the deepest ran out.
     pub fn room_after(&self, short: u32) -> u64 {
-        let now = self.symbol("fragments").unwrap_or(0);
-        if self.plan().frame.iter().any(|field| field == "n") {
-            (2 * now).max(self.sized.symbols.pixels())
-        } else {
-            now + u64::from(short)
-        }
+        self.sized.symbols.room_after(self.plan(), short)
     }
 
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
@@ -244,7 +235,7 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         decode: impl FnOnce(Vec<u32>) -> T + Send + 'static,
     ) -> Option<Pending<T>> {
-        let buffer = self.sized.tally.as_ref().or_else(|| self.buffer(counters::RESOURCE))?;
+        let buffer = self.sized.tally.as_ref().or_else(|| self.buffer(COUNTERS_RESOURCE))?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), decode))
     }
 

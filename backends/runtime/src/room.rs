@@ -1,61 +1,10 @@
-//! Room for fragments whose number no one knows when the frame is allocated, and rows of a slice that fit.
+//! Rows of a slice: as many as the device's limits let every buffer have.
 
 use fragbuf_codegen::Plan;
+use fragbuf_frame::Symbols;
 
-use crate::action::Action;
-use crate::memory::{bytes, checked_sizes};
-use crate::symbols::{Symbols, counted_symbols};
-use crate::{Error, Room, Settings, Sizing};
-
-/// The symbols of the first frame, and whether host steps will count.
-pub(crate) fn symbols(plan: &Plan, actions: &[Action], settings: &Settings) -> Result<(Symbols, bool), Error> {
-    let k = plan.frame.iter().any(|field| field == "k").then_some(plan.variant.keep).flatten();
-    let (width, height) = (settings.width, settings.height);
-    let mut symbols = Symbols { width, height, rows: height, k, counted: Vec::new() };
-    let names = counted_symbols(plan);
-    let decided = |name: &String| actions.iter().any(|action| matches!(action, Action::Host(host) if host.sets(name)));
-    let exact = match settings.sizing {
-        Sizing::Auto => names.iter().all(decided),
-        Sizing::Exact => true,
-        Sizing::Reserve(_) => false,
-    };
-    if let Some(name) = names.iter().find(|name| exact && !decided(name)) {
-        return Err(Error::Unsupported {
-            what: format!("exact sizing of `{name}`, which no step of this plan counts"),
-            hint: "reserve: `Sizing::Reserve(Room::Bytes(…))`".to_owned(),
-        });
-    }
-    symbols.counted = names.into_iter().map(|name| (name, exact.then_some(0))).collect();
-    if let Sizing::Reserve(room) = settings.sizing {
-        reserve(plan, &mut symbols, room)?;
-    }
-    Ok((symbols, exact))
-}
-
-/// Sets what is counted to the room that the caller makes.
-pub(crate) fn reserve(plan: &Plan, symbols: &mut Symbols, room: Room) -> Result<(), Error> {
-    let fragments = match room {
-        Room::Fragments(fragments) => fragments,
-        Room::Bytes(bytes) => fragments_in(plan, symbols, bytes)?,
-    };
-    fill(symbols, fragments);
-    Ok(())
-}
-
-fn fill(symbols: &mut Symbols, fragments: u32) {
-    symbols.counted.iter_mut().for_each(|(_, value)| *value = Some(fragments.into()));
-}
-
-/// The most fragments for which the buffers grow by no more than `room` bytes.
-fn fragments_in(plan: &Plan, symbols: &Symbols, room: u64) -> Result<u32, Error> {
-    let total = |fragments: u32| -> Result<u64, Error> {
-        let mut symbols = symbols.clone();
-        fill(&mut symbols, fragments);
-        Ok(bytes(plan, &symbols)?.iter().map(|(_, bytes)| bytes).sum())
-    };
-    let empty = total(0)?;
-    greatest(u32::MAX, |fragments| Ok(total(fragments)? - empty <= room))
-}
+use crate::Error;
+use crate::memory::checked_sizes;
 
 /// The rows of a slice: as the caller wants, or as many as every buffer is within the limits at.
 pub(crate) fn rows(plan: &Plan, symbols: &Symbols, slice: Option<u32>, limits: &wgpu::Limits) -> Result<u32, Error> {

@@ -1,5 +1,7 @@
 //! What a caller decides about a renderer.
 
+use fragbuf_frame::Sizing;
+
 /// What a caller decides. [`Settings::new`] has the usual choices; every field may be changed.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -22,31 +24,6 @@ pub struct Settings {
     pub primitive: wgpu::PrimitiveState,
     /// Whether passes are timed, where the device has `TIMESTAMP_QUERY`.
     pub timestamps: bool,
-}
-
-/// How much room is made for fragments whose number no one knows beforehand. Plans without such resources ignore it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sizing {
-    /// [`Sizing::Exact`] where a host step of the plan finds the number out, else room for eight fragments per pixel.
-    Auto,
-    /// Exactly what the frame has: it is cut where the host reads the number back and makes room.
-    Exact,
-    /// What the caller says. The frame is never cut; fragments beyond are counted as lost.
-    Reserve(Room),
-}
-
-/// Room for the fragments of a frame, or of each slice of a frame that has several.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Room {
-    /// For this many fragments.
-    Fragments(u32),
-    /// For as many as this many bytes hold, over all buffers whose size follows the number of fragments.
-    Bytes(u64),
-}
-
-impl Sizing {
-    /// Fragments per pixel that [`Sizing::Auto`] makes room for where nobody counts them.
-    pub const AUTO_PER_PIXEL: u32 = 8;
 }
 
 /// Whether shaders check bounds and bound loops at run time.

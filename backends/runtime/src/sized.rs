@@ -2,16 +2,17 @@
 //! passes without a target.
 //! It is made whole and replaced as one, so that a failure leaves the old one standing.
 
-use crate::action::{Run, index};
+use fragbuf_frame::{COUNTERS_RESOURCE, Symbols, resource as index};
+
+use crate::Error;
+use crate::action::Run;
 use crate::blocks::{Blocks, block};
 use crate::layout::Slot;
 use crate::memory::Memory;
 use crate::pipeline::DUMMY_FORMAT;
 use crate::pipelines::{Made, Prepared};
 use crate::scope::scoped;
-use crate::symbols::Symbols;
 use crate::timing::Timing;
-use crate::{Error, counters};
 
 /// Everything that depends on the size of the frame, replaced as one.
 pub(crate) struct Sized {
@@ -97,7 +98,7 @@ async fn tally(
     memory: &Memory,
     slices: u32,
 ) -> Result<Option<wgpu::Buffer>, Error> {
-    let counters = index(&made.plan, counters::RESOURCE).ok().and_then(|index| memory.filled(index));
+    let counters = index(&made.plan, COUNTERS_RESOURCE).ok().and_then(|index| memory.filled(index));
     let Some(counters) = counters.filter(|_| slices > 1) else { return Ok(None) };
     let descriptor = wgpu::BufferDescriptor {
         label: Some("fragbuf counters of all slices"),

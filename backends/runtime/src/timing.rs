@@ -1,16 +1,9 @@
 //! GPU time of each pass, by timestamps at its begin and end.
 
+use fragbuf_frame::PassTime;
+
 use crate::scope::scoped;
 use crate::{Error, Pending};
-
-/// The time that one pass took on the device.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PassTime {
-    /// The pass.
-    pub pass: String,
-    /// In milliseconds, over all slices and rounds.
-    pub milliseconds: f64,
-}
 
 /// Two queries per run of a pass in every slice, and where they are resolved to.
 #[derive(Clone)]

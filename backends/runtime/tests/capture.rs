@@ -20,7 +20,7 @@ const WHITE: [u8; 4] = [255, 255, 255, 255];
 const GREY: [u8; 4] = [128, 128, 128, 10];
 
 /// The corner cases, by name. At most eight layers lie over a pixel.
-fn cases() -> Vec<(&'static str, Vec<Quad>)> {
+pub fn cases() -> Vec<(&'static str, Vec<Quad>)> {
     let near_to_far =
         |count: u32| (0..count).map(|index| Quad::whole((index + 1) as f32 / 16.0, [index as u8 * 30, 200, 9, 90]));
     vec![

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fragbuf_codegen::Plan;
 use fragbuf_runtime::Renderer;
 
 use crate::oracle::Words;
@@ -10,8 +11,43 @@ use crate::quads::SIZE;
 const PIXELS: usize = (SIZE * SIZE) as usize;
 const EMPTY: u32 = u32::MAX;
 
+/// A device after a frame.
+pub trait Drawn {
+    fn plan(&self) -> &Plan;
+    fn k(&self) -> Option<u32>;
+    fn symbol(&self, name: &str) -> Option<u64>;
+}
+
+impl Drawn for Renderer {
+    fn plan(&self) -> &Plan {
+        self.plan()
+    }
+
+    fn k(&self) -> Option<u32> {
+        self.k()
+    }
+
+    fn symbol(&self, name: &str) -> Option<u64> {
+        self.symbol(name)
+    }
+}
+
+impl Drawn for fragbuf_cpu::Device {
+    fn plan(&self) -> &Plan {
+        self.plan()
+    }
+
+    fn k(&self) -> Option<u32> {
+        self.k()
+    }
+
+    fn symbol(&self, name: &str) -> Option<u64> {
+        self.symbol(name)
+    }
+}
+
 /// The kept fragments of every pixel, each pixel's in ascending order of their words. `buffers`: all words by resource.
-pub fn kept(renderer: &Renderer, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Vec<Words>> {
+pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Vec<Words>> {
     let plan = renderer.plan();
     let storage = plan.selection.row("storage").unwrap().row.key.clone();
     let (words, beside) = (plan.layout.entry_words() as usize, plan.layout.beside_words() as usize);

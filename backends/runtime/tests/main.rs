@@ -16,6 +16,7 @@ mod quads;
 mod stage;
 
 mod capture;
+mod cpu_device;
 mod embedding;
 mod failures;
 mod larger;

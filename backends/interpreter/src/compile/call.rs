@@ -1,45 +1,20 @@
 //! Calls, inlined; and the outermost function with its inputs.
 
-use std::ops::Range;
-
-use naga::{Expression, Function, Handle, TypeInner};
+use naga::{Binding, Expression, Function, Handle, TypeInner};
 
 use super::{Compiler, Frame, Result, Value};
-use crate::operation::Op;
+use crate::operation::{Op, Word};
 use crate::program::{Input, Marker};
 
 impl<'m> Compiler<'m> {
     /// The outermost function: its inputs and its result.
-    pub(super) fn whole(&mut self, function: &'m Function) -> Result<(Vec<Input>, Range<usize>)> {
+    pub(super) fn whole(&mut self, function: &'m Function) -> Result<(Vec<Input>, Vec<Input>)> {
         let mut inputs = Vec::new();
         for argument in &function.arguments {
-            let inner = self.shapes.inner(argument.ty);
-            let first = self.take(self.shapes.dense(inner)?);
+            let first = self.take(self.shapes.dense(self.shapes.inner(argument.ty))?);
             self.frame.arguments.push(Value::Words(first));
             let name = argument.name.clone().unwrap_or_default();
-            match (inner, &argument.binding) {
-                (TypeInner::Struct { members, .. }, None) => {
-                    for (number, member) in (0..).zip(members) {
-                        let at = (first + self.shapes.part(inner, number)?.dense) as usize;
-                        let words = self.shapes.dense(self.shapes.inner(member.ty))? as usize;
-                        inputs.push(Input {
-                            name: member.name.clone().unwrap_or_default(),
-                            binding: member.binding.clone(),
-                            kind: crate::shape::number(self.shapes.inner(member.ty)).map(|scalar| scalar.kind),
-                            words: at..at + words,
-                        });
-                    }
-                }
-                (_, binding) => {
-                    let words = self.shapes.dense(inner)? as usize;
-                    inputs.push(Input {
-                        name,
-                        binding: binding.clone(),
-                        kind: crate::shape::number(inner).map(|scalar| scalar.kind),
-                        words: first as usize..first as usize + words,
-                    });
-                }
-            }
+            self.parts(name, argument.ty, &argument.binding, first, &mut inputs)?;
         }
         let words = match &function.result {
             Some(result) => self.shapes.dense(self.shapes.inner(result.ty))?,
@@ -48,8 +23,37 @@ impl<'m> Compiler<'m> {
         self.frame.result = self.take(words);
         self.body();
         self.push(Op::End);
-        let first = self.frame.result as usize;
-        Ok((inputs, first..first + words as usize))
+        let mut outputs = Vec::new();
+        if let Some(result) = &function.result {
+            self.parts(String::new(), result.ty, &result.binding, self.frame.result, &mut outputs)?;
+        }
+        Ok((inputs, outputs))
+    }
+
+    /// An argument or a result from the word `first` on: its members, where it is a structure without a binding.
+    fn parts(
+        &self,
+        name: String,
+        kind: Handle<naga::Type>,
+        binding: &Option<Binding>,
+        first: Word,
+        parts: &mut Vec<Input>,
+    ) -> Result<()> {
+        let inner = self.shapes.inner(kind);
+        let mut push = |name: String, inner: &TypeInner, binding: &Option<Binding>, first: Word| {
+            let words = self.shapes.dense(inner)? as usize;
+            let kind = crate::shape::number(inner).map(|scalar| scalar.kind);
+            parts.push(Input { name, binding: binding.clone(), kind, words: first as usize..first as usize + words });
+            Ok(())
+        };
+        let (TypeInner::Struct { members, .. }, None) = (inner, binding) else {
+            return push(name, inner, binding, first);
+        };
+        for (number, member) in (0..).zip(members) {
+            let at = first + self.shapes.part(inner, number)?.dense;
+            push(member.name.clone().unwrap_or_default(), self.shapes.inner(member.ty), &member.binding, at)?;
+        }
+        Ok(())
     }
 
     /// Variables, then statements; afterwards whatever returned has come together.

@@ -1,7 +1,5 @@
 //! The end of compilation: constants get their words, and what can be known of the program is found out.
 
-use std::ops::Range;
-
 use crate::live::{liveness, loops};
 use crate::memory::Atomic;
 use crate::operation::{CONSTANT, Op, Word};
@@ -32,7 +30,7 @@ impl Compiler<'_> {
         first
     }
 
-    pub(super) fn finish(mut self, inputs: Vec<Input>, result: Range<usize>, workgroup_size: [u32; 3]) -> Program {
+    pub(super) fn finish(mut self, inputs: Vec<Input>, outputs: Vec<Input>, workgroup_size: [u32; 3]) -> Program {
         let first_constant = self.highest;
         let settled = |word: Word| if word >= CONSTANT { word - CONSTANT + first_constant } else { word };
         for op in &mut self.ops {
@@ -42,10 +40,13 @@ impl Compiler<'_> {
                 }
             });
         }
-        let result = settled(result.start as Word) as usize..settled(result.start as Word) as usize + result.len();
+        // Outputs follow each other without a gap.
+        let result =
+            outputs.first().map_or(0, |first| first.words.start)..outputs.last().map_or(0, |last| last.words.end);
         let live = liveness(&self.ops, first_constant, &result);
         self.classify(&live.unread);
         let mut image = self.privates;
+        let privates = image.len();
         image.resize(first_constant as usize, 0);
         image.extend(self.constants);
         Program {
@@ -54,9 +55,11 @@ impl Compiler<'_> {
             site_of: self.site_of,
             sites: self.sites,
             image,
+            privates,
             live: live.at_stops,
             inputs,
             result,
+            outputs,
             buffers: self.buffers,
             workgroup_size,
         }

@@ -141,7 +141,7 @@ fn compile<'m>(
             Err(compiler.faults)
         }
         Ok(_) if !compiler.faults.is_empty() => Err(compiler.faults),
-        Ok((inputs, result)) => Ok(compiler.finish(inputs, result, workgroup_size)),
+        Ok((inputs, outputs)) => Ok(compiler.finish(inputs, outputs, workgroup_size)),
     }
 }
 

@@ -3,7 +3,10 @@
 use fragbuf_templates::COUNTERS;
 
 /// The vocabulary's name for the resource that counters are kept in.
-pub(crate) const RESOURCE: &str = "counters";
+pub const COUNTERS_RESOURCE: &str = "counters";
+
+/// The counter of fragments that found no room.
+pub const POOL_EXHAUSTED: &str = "pool_exhausted";
 
 /// What a frame counted. With `counters: losses`, the default, only losses are; the others stay 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,12 +25,12 @@ pub struct Counter {
 
 impl Counters {
     /// Those of one slice after the other.
-    pub(crate) fn each(words: &[u32]) -> Vec<Self> {
+    pub fn each(words: &[u32]) -> Vec<Self> {
         words.chunks(COUNTERS.len()).map(Counters::from_words).collect()
     }
 
     /// Those of all slices together.
-    pub(crate) fn sum(words: &[u32]) -> Self {
+    pub fn sum(words: &[u32]) -> Self {
         let mut sums = vec![0_u32; COUNTERS.len()];
         for slice in words.chunks(COUNTERS.len()) {
             for (sum, count) in sums.iter_mut().zip(slice) {

@@ -49,12 +49,12 @@ impl Value {
 }
 
 /// The words of the block, all zero.
-pub(crate) fn zeros(uniforms: &[Uniform]) -> Vec<u32> {
+pub fn zeros(uniforms: &[Uniform]) -> Vec<u32> {
     vec![0; UniformBlock::of(uniforms).size as usize / 4]
 }
 
 /// Puts one value into the words of the block.
-pub(crate) fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
+pub fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
     let offsets = UniformBlock::of(uniforms).offsets;
     let found = offsets.into_iter().zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
     let Some((offset, uniform)) = found else {

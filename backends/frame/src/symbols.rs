@@ -8,23 +8,25 @@ use crate::{Error, Sizing};
 
 /// The values at one moment.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Symbols {
-    pub(crate) width: u32,
+pub struct Symbols {
+    /// Pixels of a row.
+    pub width: u32,
     /// Rows of the whole frame.
-    pub(crate) height: u32,
+    pub height: u32,
     /// Rows of a slice: `height` in formulas and shaders, which see one slice at a time.
-    pub(crate) rows: u32,
+    pub rows: u32,
     /// Fragments that a pixel keeps; `None` where it keeps all.
-    pub(crate) k: Option<u32>,
+    pub k: Option<u32>,
     /// What host steps set, or what was reserved; `None`: [`Sizing::AUTO_PER_PIXEL`].
-    pub(crate) counted: Vec<(String, Option<u64>)>,
+    pub counted: Vec<(String, Option<u64>)>,
 }
 
 /// Symbols that are bound when the frame is allocated or later, other than the counted ones.
 const KNOWN: [&str; 7] = ["width", "height", "first_row", "pixels", "k", "n", "iteration"];
 
 impl Symbols {
-    pub(crate) fn value(&self, plan: &Plan, symbol: &str) -> Option<u64> {
+    /// The value of a symbol; `None`: nobody binds it.
+    pub fn value(&self, plan: &Plan, symbol: &str) -> Option<u64> {
         match symbol {
             "width" => Some(self.width.into()),
             "height" => Some(self.rows.into()),
@@ -36,32 +38,43 @@ impl Symbols {
         }
     }
 
-    pub(crate) fn pixels(&self) -> u64 {
+    /// Pixels of a slice.
+    pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.rows)
     }
 
-    pub(crate) fn counted(&self, symbol: &str) -> Option<u64> {
+    /// What host steps set, or what is reserved.
+    pub fn counted(&self, symbol: &str) -> Option<u64> {
         let (_, value) = self.counted.iter().find(|(name, _)| name == symbol)?;
         Some(value.unwrap_or(self.pixels() * u64::from(Sizing::AUTO_PER_PIXEL)))
     }
 
-    pub(crate) fn set(&mut self, symbol: &str, value: u64) {
+    /// Binds a symbol.
+    pub fn set(&mut self, symbol: &str, value: u64) {
         self.counted.retain(|(name, _)| name != symbol);
         self.counted.push((symbol.to_owned(), Some(value)));
     }
 
-    pub(crate) fn evaluate(&self, plan: &Plan, formula: &Formula, what: &str) -> Result<u64, Error> {
+    /// The value of a formula, which is `what`.
+    pub fn evaluate(&self, plan: &Plan, formula: &Formula, what: &str) -> Result<u64, Error> {
         let value = formula.evaluate(&|symbol| self.value(plan, symbol));
         value.map_err(|error| Error::Formula { what: what.to_owned(), error })
     }
 
     /// Slices of the frame, from the top.
-    pub(crate) fn slices(&self) -> u32 {
+    pub fn slices(&self) -> u32 {
         self.height.div_ceil(self.rows.max(1))
     }
 
+    /// Room, in fragments, after a frame that lost `short` of them for want of it: exactly enough where a pool was too small,
+    /// twice as much where every pixel has slots of its own and only the deepest ran out.
+    pub fn room_after(&self, plan: &Plan, short: u32) -> u64 {
+        let now = self.value(plan, FRAGMENTS).unwrap_or(0);
+        if plan.frame.iter().any(|field| field == "n") { (2 * now).max(self.pixels()) } else { now + u64::from(short) }
+    }
+
     /// The uniform buffer of one slice and round: one word per field of the plan.
-    pub(crate) fn frame_words(&self, plan: &Plan, slice: u32, round: u32) -> Result<Vec<u32>, Error> {
+    pub fn frame_words(&self, plan: &Plan, slice: u32, round: u32) -> Result<Vec<u32>, Error> {
         let words = plan.frame.iter().map(|field| {
             let value = match field.as_str() {
                 "iteration" => u64::from(round),

@@ -5,14 +5,12 @@
 use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::{Formula, Host};
 
-use crate::Error;
-use crate::action::{index, unsupported};
-use crate::symbols::Symbols;
+use crate::{Error, Symbols, resource, unsupported};
 
 /// One host function: from the words read, in the order of `reads`, to the values set, in the order of `sets`.
 type Function = fn(&[u32]) -> Vec<u64>;
 
-/// Every host function that the runtime has.
+/// Every host function that there is.
 const FUNCTIONS: [(&str, Function); 1] = [("allocate", allocate)];
 
 /// Room for as many as were counted.
@@ -22,34 +20,31 @@ fn allocate(words: &[u32]) -> Vec<u64> {
 
 /// One host step of a plan.
 #[derive(Clone, Debug)]
-pub(crate) struct Decision {
+pub struct Decision {
     function: Function,
     /// Words to read back: the resource and its index in words.
-    pub(crate) reads: Vec<(usize, Formula)>,
+    pub reads: Vec<(usize, Formula)>,
     sets: Vec<String>,
 }
 
 impl Decision {
-    pub(crate) fn of(host: &Host, plan: &Plan) -> Result<Self, Error> {
+    /// What a host step says. `Err`: a function that nobody here has.
+    pub fn of(host: &Host, plan: &Plan) -> Result<Self, Error> {
         let function = FUNCTIONS.iter().find(|(name, _)| *name == host.function);
         let (_, function) = function.ok_or_else(|| unsupported(format!("the host function `{}`", host.function)))?;
         let reads = host.reads.iter().map(|read| {
             // `offsets[pixels]`: one word; a name alone: the first.
             let (name, place) = read.split_once('[').unwrap_or((read, "0]"));
             let place = place.strip_suffix(']').ok_or_else(|| unsupported(format!("the readback of `{read}`")))?;
-            Ok((index(plan, name)?, Formula::from(place.to_owned())))
+            Ok((resource(plan, name)?, Formula::from(place.to_owned())))
         });
         Ok(Decision { function: *function, reads: reads.collect::<Result<_, Error>>()?, sets: host.sets.clone() })
     }
 
     /// The symbols with what was read put in.
-    pub(crate) fn apply(&self, words: &[u32], symbols: &mut Symbols) {
+    pub fn apply(&self, words: &[u32], symbols: &mut Symbols) {
         for (name, value) in self.sets.iter().zip((self.function)(words)) {
             symbols.set(name, value);
         }
-    }
-
-    pub(crate) fn sets(&self, symbol: &str) -> bool {
-        self.sets.iter().any(|set| set == symbol)
     }
 }

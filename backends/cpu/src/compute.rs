@@ -1,0 +1,56 @@
+//! Compute passes: workgroups in parallel, the invocations of each on one thread.
+//!
+//! In: a program, its memory, the number of workgroups. Out: changed memory. Workgroups share nothing but buffers.
+
+use std::sync::atomic::AtomicU32;
+use std::sync::{Mutex, PoisonError};
+
+use fragbuf_interpreter::{Dispatch, Fault, Program, Space, workgroup};
+use rayon::prelude::*;
+
+use crate::memory::words;
+use crate::view::View;
+
+/// Workgroups that one thread takes at a time.
+const CHUNK: u64 = 16;
+
+/// Dispatches; an index out of bounds, if there was one. `Err`: why it does not end.
+pub(crate) fn compute(program: &Program, view: &View<'_>, groups: [u32; 3]) -> Result<Option<Fault>, &'static str> {
+    let total: u64 = groups.iter().map(|count| u64::from(*count)).product();
+    let found: Mutex<(Option<Fault>, Option<&'static str>)> = Mutex::default();
+    (0..total.div_ceil(CHUNK)).into_par_iter().for_each(|chunk| {
+        for number in chunk * CHUNK..((chunk + 1) * CHUNK).min(total) {
+            let (x, y) = (u64::from(groups[0]), u64::from(groups[1]));
+            let group = [number % x, number / x % y, number / (x * y)].map(|index| index as u32);
+            let note = match one(program, view, group, groups) {
+                Dispatch::Ended => continue,
+                Dispatch::Fault(fault) => (Some(fault), None),
+                Dispatch::Endless => (None, Some("an invocation goes round for ever")),
+                Dispatch::DivergentBarrier => (None, Some("some wait at a barrier that others never reach")),
+            };
+            let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+            *found = (found.0.or(note.0), found.1.or(note.1));
+        }
+    });
+    match found.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        (_, Some(how)) => Err(how),
+        (fault, None) => Ok(fault),
+    }
+}
+
+fn one(program: &Program, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) -> Dispatch {
+    let own: Vec<Vec<AtomicU32>> = program
+        .buffers
+        .iter()
+        .map(|buffer| match buffer.space {
+            Space::Workgroup => words(&vec![0; buffer.words as usize]),
+            _ => Vec::new(),
+        })
+        .collect();
+    let buffers = program.buffers.iter().zip(view.buffers.iter().zip(&own));
+    let buffers = buffers.map(|(buffer, (shared, own))| match buffer.space {
+        Space::Workgroup => own.as_slice(),
+        _ => *shared,
+    });
+    workgroup(program, group, groups, &mut View { buffers: buffers.collect(), wide: view.wide })
+}

@@ -1,0 +1,148 @@
+//! What a caller sees: a device for one plan at one size, meshes in, pictures out.
+
+use std::sync::Arc;
+
+use fragbuf_codegen::Plan;
+use fragbuf_frame::{Counters, Counting, PassTime, Sizing, Symbols, Value, resource, set, symbols, zeros};
+
+use crate::memory::{Memory, read};
+use crate::triangle::Coverage;
+use crate::{Code, Error, frame};
+
+/// What a caller decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Width of the frame, in pixels.
+    pub width: u32,
+    /// Height of the frame, in pixels.
+    pub height: u32,
+    /// How much room is made for fragments whose number no one knows beforehand.
+    pub sizing: Sizing,
+    /// In which order fragments of one pixel run.
+    pub order: Order,
+    /// Which samples a triangle covers, where a pass has several.
+    pub coverage: Coverage,
+}
+
+/// In which order fragments of one pixel run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    /// One after the other, as they were submitted.
+    #[default]
+    Submission,
+    /// In passes that write buffers alone: permuted and interleaved from one shared access to the next, by this seed. Passes
+    /// with attachments keep the order of submission, as tests and blending do everywhere.
+    Shuffled(u64),
+}
+
+/// Triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    /// Interleaved vertices, as words: the inputs of the vertex stage in the order of their locations.
+    pub vertices: &'a [u32],
+    /// Three per triangle.
+    pub indices: &'a [u32],
+}
+
+/// How far a frame is.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// The pass that is running.
+    pub pass: &'a str,
+    /// How much of it is done, from 0 to 1.
+    pub share: f64,
+}
+
+/// A frame, drawn.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Premultiplied red, green, blue and alpha, row after row from the top.
+    pub pixels: Vec<[f32; 4]>,
+    /// The time that each pass took, in the order of the plan.
+    pub times: Vec<PassTime>,
+    /// What the frame counted; `None`: the plan counts nothing.
+    pub counters: Option<Counters>,
+    /// Passes that went out of bounds: they read 0 there, and wrote nothing.
+    pub out_of_bounds: Vec<String>,
+}
+
+/// Runs one plan.
+#[derive(Debug)]
+pub struct Device {
+    pub(crate) code: Arc<Code>,
+    pub(crate) settings: Settings,
+    pub(crate) symbols: Symbols,
+    pub(crate) counting: Counting,
+    pub(crate) memory: Memory,
+    pub(crate) uniforms: Vec<u32>,
+    pub(crate) camera: Vec<u32>,
+}
+
+/// The camera before any is set: positions are clip space.
+const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+impl Device {
+    /// Makes room for a frame.
+    pub fn new(code: Arc<Code>, settings: Settings) -> Result<Self, Error> {
+        if settings.width == 0 || settings.height == 0 || settings.width.max(settings.height) > LARGEST {
+            let wanted = format!("from 1 to {LARGEST} pixels along each side");
+            return Err(fragbuf_frame::Error::BadValue { name: "the frame's size".to_owned(), wanted }.into());
+        }
+        let (symbols, counting) = symbols(&code.plan, (settings.width, settings.height), settings.sizing)?;
+        let mut memory = Memory::default();
+        memory.resize(&code.plan, &symbols)?;
+        let uniforms = zeros(&code.plan.variant.uniforms);
+        let mut device = Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new() };
+        device.set_camera(&IDENTITY);
+        Ok(device)
+    }
+
+    /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
+    pub fn set_camera(&mut self, view_projection: &[f32; 16]) {
+        self.camera = view_projection.iter().map(|number| number.to_bits()).collect();
+    }
+
+    /// One of the description's own uniforms.
+    pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
+        Ok(set(&mut self.uniforms, &self.code.plan.variant.uniforms, name, value)?)
+    }
+
+    /// A whole frame. `progress` hears from several threads how far it is.
+    pub fn render(&mut self, mesh: &Mesh<'_>, progress: &(dyn Fn(Stage<'_>) + Sync)) -> Result<Picture, Error> {
+        frame::render(self, mesh, progress)
+    }
+
+    /// What is run.
+    pub fn plan(&self) -> &Plan {
+        &self.code.plan
+    }
+
+    /// All words of a resource, as the last frame left them. `None`: the plan does not have it.
+    pub fn words(&self, name: &str) -> Option<Vec<u32>> {
+        let index = resource(&self.code.plan, name).ok()?;
+        self.memory.resources.get(index).map(|words| read(words))
+    }
+
+    /// The value of a symbol of the plan's formulas.
+    pub fn symbol(&self, name: &str) -> Option<u64> {
+        self.symbols.value(&self.code.plan, name)
+    }
+
+    /// Fragments that a pixel keeps; `None`: all.
+    pub fn k(&self) -> Option<u32> {
+        self.symbols.k
+    }
+
+    /// Bytes of all resources.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.memory.bytes()
+    }
+
+    /// Room, in fragments, after a frame that lost `short` of them for want of it.
+    pub fn room_after(&self, short: u32) -> u64 {
+        self.symbols.room_after(&self.code.plan, short)
+    }
+}
+
+/// Pixels along a side: within it, coordinates are exact in 256ths.
+const LARGEST: u32 = 1 << 15;

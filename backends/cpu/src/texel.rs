@@ -1,0 +1,83 @@
+//! Texels: how the formats of attachments keep channels in words.
+//!
+//! In: channels as floats. Out: words, and back. Values are clamped and rounded to nearest as the graphics APIs say.
+
+use fragbuf_interpreter::{from_half, to_half};
+use fragbuf_templates::vocabulary::TextureFormat;
+
+/// How a colour attachment keeps its texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Texel {
+    /// One of the plan's textures.
+    Format(TextureFormat),
+    /// The caller's output: four floats.
+    Output,
+}
+
+impl Texel {
+    /// Words of one.
+    pub(crate) fn words(self) -> usize {
+        match self {
+            Texel::Format(format) => format.words() as usize,
+            Texel::Output => 4,
+        }
+    }
+
+    /// Whether it holds bits rather than numbers, so that nothing can be blended.
+    pub(crate) fn is_raw(self) -> bool {
+        self == Texel::Format(TextureFormat::R32Uint)
+    }
+
+    /// The channels of a texel.
+    pub(crate) fn decode(self, words: [u32; 4]) -> [f32; 4] {
+        let [a, b, _, _] = words;
+        match self {
+            Texel::Output => words.map(f32::from_bits),
+            Texel::Format(TextureFormat::Rg32Float) => [f32::from_bits(a), f32::from_bits(b), 0.0, 1.0],
+            Texel::Format(TextureFormat::Rgba8Unorm) => a.to_le_bytes().map(|byte| f32::from(byte) / 255.0),
+            Texel::Format(TextureFormat::Rgba16Float) => [a, a >> 16, b, b >> 16].map(|half| from_half(half as u16)),
+            Texel::Format(_) => [f32::from_bits(a), 0.0, 0.0, 1.0],
+        }
+    }
+
+    /// The words of a texel; those beyond its size are 0.
+    pub(crate) fn encode(self, channels: [f32; 4]) -> [u32; 4] {
+        let [r, g, b, a] = channels;
+        match self {
+            Texel::Output => channels.map(f32::to_bits),
+            Texel::Format(TextureFormat::Rg32Float) => [r.to_bits(), g.to_bits(), 0, 0],
+            Texel::Format(TextureFormat::Rgba8Unorm) => {
+                let bytes = channels.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8);
+                [u32::from_le_bytes(bytes), 0, 0, 0]
+            }
+            Texel::Format(TextureFormat::Rgba16Float) => [pair(r, g), pair(b, a), 0, 0],
+            Texel::Format(_) => [r.to_bits(), 0, 0, 0],
+        }
+    }
+}
+
+fn pair(low: f32, high: f32) -> u32 {
+    u32::from(to_half(low)) | u32::from(to_half(high)) << 16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_format_holds_comes_back() {
+        let color = [0.0, 1.0, 0.2, 0.6];
+        for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba16Float] {
+            let texel = Texel::Format(format);
+            let once = texel.decode(texel.encode(color));
+            assert_eq!(texel.decode(texel.encode(once)), once);
+            assert!(once.iter().zip(color).all(|(seen, exact)| (seen - exact).abs() < 1.0 / 500.0), "{once:?}");
+        }
+        assert_eq!(
+            Texel::Format(TextureFormat::Rg32Float).decode([1.5f32.to_bits(), 2.5f32.to_bits(), 9, 9])[..2],
+            [1.5, 2.5]
+        );
+        assert_eq!(Texel::Format(TextureFormat::Rgba8Unorm).encode([2.0, -1.0, 0.5, 1.0])[0], 0xff80_00ff);
+        assert_eq!(Texel::Output.decode(Texel::Output.encode(color)), color);
+    }
+}

@@ -1,0 +1,85 @@
+//! Memory as one program sees it: its buffers by number, everything at once.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use fragbuf_interpreter::{Access, Atomic, Event, Operation, Place, Reply, Shared};
+
+/// Buffers of a program, by its numbers.
+#[derive(Clone)]
+pub(crate) struct View<'a> {
+    pub(crate) buffers: Vec<&'a [AtomicU32]>,
+    /// Held during accesses of 64 bits, which are two words here.
+    pub(crate) wide: &'a Mutex<()>,
+}
+
+impl View<'_> {
+    fn word(&self, place: Place) -> &AtomicU32 {
+        &self.buffers[usize::from(place.buffer)][place.word as usize]
+    }
+
+    /// Carries out an access; the old value.
+    pub(crate) fn access(&self, access: &Access) -> u64 {
+        if access.words == 1 { self.narrow(access).into() } else { self.wide(access) }
+    }
+
+    fn narrow(&self, access: &Access) -> u32 {
+        let word = self.word(access.place);
+        let value = access.value as u32;
+        match access.operation {
+            Operation::Load => word.load(Ordering::Relaxed),
+            Operation::Store => {
+                word.store(value, Ordering::Relaxed);
+                0
+            }
+            Operation::Atomic(function) => match function {
+                Atomic::Add => word.fetch_add(value, Ordering::Relaxed),
+                Atomic::Subtract => word.fetch_sub(value, Ordering::Relaxed),
+                Atomic::And => word.fetch_and(value, Ordering::Relaxed),
+                Atomic::Or => word.fetch_or(value, Ordering::Relaxed),
+                Atomic::ExclusiveOr => word.fetch_xor(value, Ordering::Relaxed),
+                Atomic::Min => word.fetch_min(value, Ordering::Relaxed),
+                Atomic::Max => word.fetch_max(value, Ordering::Relaxed),
+                Atomic::Exchange => word.swap(value, Ordering::Relaxed),
+                Atomic::SignedMin | Atomic::SignedMax | Atomic::CompareExchange => {
+                    let new = |old: u32| Some(access.new_value(old.into()) as u32);
+                    word.fetch_update(Ordering::Relaxed, Ordering::Relaxed, new).unwrap_or_else(|old| old)
+                }
+            },
+        }
+    }
+
+    fn wide(&self, access: &Access) -> u64 {
+        let _held = self.wide.lock().unwrap_or_else(PoisonError::into_inner);
+        let low = self.word(access.place);
+        let high = self.word(Place { word: access.place.word + 1, ..access.place });
+        let old = u64::from(low.load(Ordering::Relaxed)) | u64::from(high.load(Ordering::Relaxed)) << 32;
+        if access.writes() {
+            let new = access.new_value(old);
+            low.store(new as u32, Ordering::Relaxed);
+            high.store((new >> 32) as u32, Ordering::Relaxed);
+        }
+        old
+    }
+}
+
+impl Shared for View<'_> {
+    #[inline]
+    fn length(&self, buffer: u16) -> u32 {
+        self.buffers[usize::from(buffer)].len() as u32
+    }
+
+    #[inline]
+    fn constant(&self, place: Place) -> u32 {
+        self.word(place).load(Ordering::Relaxed)
+    }
+
+    #[inline]
+    fn event(&mut self, event: &Event) -> Reply {
+        match event {
+            Event::Access(access) => Reply::Done(self.access(access)),
+            Event::Barrier => Reply::Stop,
+            Event::Fence | Event::CriticalBegin | Event::CriticalEnd => Reply::Done(0),
+        }
+    }
+}
