@@ -53,6 +53,10 @@ struct Call<'a> {
 
 impl Call<'_> {
     fn draw(&self, corners: &Corners) -> u64 {
+        self.try_draw(corners).unwrap()
+    }
+
+    fn try_draw(&self, corners: &Corners) -> Result<u64, String> {
         let text = format!("{COMMON}{}", self.text);
         let module =
             naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
@@ -75,7 +79,7 @@ impl Call<'_> {
             coverage: self.coverage,
             order: Order::Submission,
         };
-        draw(&call, &|_| {}).unwrap().samples
+        Ok(draw(&call, &|_| {})?.samples)
     }
 }
 
@@ -301,4 +305,12 @@ fn attributes_are_interpolated_as_they_are_declared() {
         assert!(x == y || words[3] == u32::from(x > y), "primitive at {x}, {y}");
         assert!(close(words[5], inverse_w));
     }
+}
+
+#[test]
+fn a_shader_that_does_not_end_is_an_error() {
+    let list = zeros(1);
+    let text = "@fragment fn main(in: Varyings) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
+    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples };
+    assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("for ever"));
 }
