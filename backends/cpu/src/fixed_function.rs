@@ -1,5 +1,5 @@
 //! Fixed function on small draws whose results are known beforehand: tests, blending, samples, attributes, early tests.
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU32;
@@ -142,7 +142,7 @@ fn depth_is_compared_and_written() {
     for format in [TextureFormat::Depth32Float, TextureFormat::Depth24PlusStencil8] {
         for (compare, writes, expected) in cases {
             let clear = if format == TextureFormat::Depth32Float { 0.375f32.to_bits() } else { 0x60_0000 << 8 | 7 };
-            let depths = words(&vec![clear; PIXELS]);
+            let depths = words(&[clear; PIXELS]);
             let depth = Some(Depth { words: &depths, format, compare, writes });
             assert_eq!(
                 first(Attachments { depth, ..none(1) }, Blend::Replace, &near_then_far),
@@ -239,7 +239,7 @@ fn samples_are_covered_one_by_one_and_masked() {
 #[test]
 fn early_tests_come_before_the_shader_and_survive_a_discard() {
     for is_early in [false, true] {
-        let (depths, list) = (words(&vec![0.5f32.to_bits(); PIXELS]), zeros(64));
+        let (depths, list) = (words(&[0.5f32.to_bits(); PIXELS]), zeros(64));
         let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
         let attachments = Attachments { depth: Some(depth), is_early, ..none(1) };
         let text = "@fragment fn main(in: Varyings) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
@@ -263,7 +263,7 @@ fn early_tests_come_before_the_shader_and_survive_a_discard() {
 
 #[test]
 fn a_shader_may_say_its_depth() {
-    let (depths, list) = (words(&vec![1.0f32.to_bits(); PIXELS]), zeros(64));
+    let (depths, list) = (words(&[1.0f32.to_bits(); PIXELS]), zeros(64));
     let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
     let text = "@fragment fn main(in: Varyings) -> @builtin(frag_depth) f32 { return in.color.r; }";
     let attachments = Attachments { depth: Some(depth), ..none(1) };
