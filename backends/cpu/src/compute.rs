@@ -17,25 +17,23 @@ const CHUNK: u64 = 16;
 /// Dispatches; an index out of bounds, if there was one. `Err`: why it does not end.
 pub(crate) fn compute(program: &Program, view: &View<'_>, groups: [u32; 3]) -> Result<Option<Fault>, &'static str> {
     let total: u64 = groups.iter().map(|count| u64::from(*count)).product();
-    let found: Mutex<(Option<Fault>, Option<&'static str>)> = Mutex::default();
-    (0..total.div_ceil(CHUNK)).into_par_iter().for_each(|chunk| {
+    let fault: Mutex<Option<Fault>> = Mutex::default();
+    (0..total.div_ceil(CHUNK)).into_par_iter().try_for_each(|chunk| {
         for number in chunk * CHUNK..((chunk + 1) * CHUNK).min(total) {
             let (x, y) = (u64::from(groups[0]), u64::from(groups[1]));
             let group = [number % x, number / x % y, number / (x * y)].map(|index| index as u32);
-            let note = match one(program, view, group, groups) {
-                Dispatch::Ended => continue,
-                Dispatch::Fault(fault) => (Some(fault), None),
-                Dispatch::Endless => (None, Some("an invocation goes round for ever")),
-                Dispatch::DivergentBarrier => (None, Some("some wait at a barrier that others never reach")),
-            };
-            let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-            *found = (found.0.or(note.0), found.1.or(note.1));
+            match one(program, view, group, groups) {
+                Dispatch::Ended => {}
+                Dispatch::Fault(new) => {
+                    fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(new);
+                }
+                Dispatch::Endless => return Err("an invocation goes round for ever"),
+                Dispatch::DivergentBarrier => return Err("some wait at a barrier that others never reach"),
+            }
         }
-    });
-    match found.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        (_, Some(how)) => Err(how),
-        (fault, None) => Ok(fault),
-    }
+        Ok(())
+    })?;
+    Ok(fault.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 fn one(program: &Program, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) -> Dispatch {

@@ -226,6 +226,10 @@ impl<'a> Tiles<'a> {
     /// Runs one fragment with the tests around it; the samples that passed.
     fn shade(&self, machine: &mut Machine<'a>, view: &mut View<'_>, triangle: &Triangle, mut place: Place) -> u32 {
         let attachments = &self.draw.attachments;
+        // One that does not end is found after seconds: the others would be no better.
+        if self.found.endless.load(Ordering::Relaxed) > 0 {
+            return 0;
+        }
         if attachments.is_early {
             place.mask = self.tested(triangle, &place, None);
             if place.mask == 0 {
@@ -299,6 +303,9 @@ impl<'a> Tiles<'a> {
                 .push((triangle, Place { x, y, weights: triangle.weights(x, y, MIDDLE), mask, sample: 0 }));
         });
         for mut fragments in pixels.into_iter().filter(|fragments| !fragments.is_empty()) {
+            if self.found.endless.load(Ordering::Relaxed) > 0 {
+                return;
+            }
             let place = fragments[0].1;
             let seed = seed ^ (u64::from(place.y) << 32 | u64::from(place.x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             interleave(&self.stage, &mut fragments, view, seed, |machine, exit| self.notice(machine, exit));

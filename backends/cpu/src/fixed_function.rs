@@ -1,5 +1,5 @@
 //! Fixed function on small draws whose results are known beforehand: tests, blending, samples, attributes, early tests.
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU32;
@@ -53,6 +53,10 @@ struct Call<'a> {
 
 impl Call<'_> {
     fn draw(&self, corners: &Corners) -> u64 {
+        self.try_draw(corners).unwrap()
+    }
+
+    fn try_draw(&self, corners: &Corners) -> Result<u64, String> {
         let text = format!("{COMMON}{}", self.text);
         let module =
             naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
@@ -75,7 +79,7 @@ impl Call<'_> {
             coverage: self.coverage,
             order: Order::Submission,
         };
-        draw(&call, &|_| {}).unwrap().samples
+        Ok(draw(&call, &|_| {})?.samples)
     }
 }
 
@@ -138,7 +142,7 @@ fn depth_is_compared_and_written() {
     for format in [TextureFormat::Depth32Float, TextureFormat::Depth24PlusStencil8] {
         for (compare, writes, expected) in cases {
             let clear = if format == TextureFormat::Depth32Float { 0.375f32.to_bits() } else { 0x60_0000 << 8 | 7 };
-            let depths = words(&vec![clear; PIXELS]);
+            let depths = words(&[clear; PIXELS]);
             let depth = Some(Depth { words: &depths, format, compare, writes });
             assert_eq!(
                 first(Attachments { depth, ..none(1) }, Blend::Replace, &near_then_far),
@@ -235,7 +239,7 @@ fn samples_are_covered_one_by_one_and_masked() {
 #[test]
 fn early_tests_come_before_the_shader_and_survive_a_discard() {
     for is_early in [false, true] {
-        let (depths, list) = (words(&vec![0.5f32.to_bits(); PIXELS]), zeros(64));
+        let (depths, list) = (words(&[0.5f32.to_bits(); PIXELS]), zeros(64));
         let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
         let attachments = Attachments { depth: Some(depth), is_early, ..none(1) };
         let text = "@fragment fn main(in: Varyings) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
@@ -259,7 +263,7 @@ fn early_tests_come_before_the_shader_and_survive_a_discard() {
 
 #[test]
 fn a_shader_may_say_its_depth() {
-    let (depths, list) = (words(&vec![1.0f32.to_bits(); PIXELS]), zeros(64));
+    let (depths, list) = (words(&[1.0f32.to_bits(); PIXELS]), zeros(64));
     let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
     let text = "@fragment fn main(in: Varyings) -> @builtin(frag_depth) f32 { return in.color.r; }";
     let attachments = Attachments { depth: Some(depth), ..none(1) };
@@ -301,4 +305,12 @@ fn attributes_are_interpolated_as_they_are_declared() {
         assert!(x == y || words[3] == u32::from(x > y), "primitive at {x}, {y}");
         assert!(close(words[5], inverse_w));
     }
+}
+
+#[test]
+fn a_shader_that_does_not_end_is_an_error() {
+    let list = zeros(1);
+    let text = "@fragment fn main(in: Varyings) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
+    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples };
+    assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("for ever"));
 }

@@ -12,11 +12,11 @@ use crate::attachment::{Attachments, Depth, Stencil};
 impl Attachments<'_> {
     /// Tests a sample and writes what the tests write; whether it passes.
     pub(crate) fn test(&self, index: usize, depth: f32) -> bool {
-        if let Some(stencil) = &self.stencil {
-            if !stencil.passes(index) {
-                stencil.apply(stencil.fail, index);
-                return false;
-            }
+        if let Some(stencil) = &self.stencil
+            && !stencil.passes(index)
+        {
+            stencil.apply(stencil.fail, index);
+            return false;
         }
         if let Some(tested) = &self.depth {
             if !tested.passes(index, depth) {

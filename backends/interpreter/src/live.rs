@@ -127,10 +127,10 @@ fn writes_any(op: &mut Op, words: u32, live: &Words) -> bool {
 pub(crate) fn loops(ops: &[Op]) -> Vec<bool> {
     let mut inside = vec![false; ops.len()];
     for (at, op) in ops.iter().enumerate() {
-        if let Op::Jump { to } = op {
-            if (*to as usize) <= at {
-                inside[*to as usize..=at].fill(true);
-            }
+        if let Op::Jump { to } = op
+            && (*to as usize) <= at
+        {
+            inside[*to as usize..=at].fill(true);
         }
     }
     inside

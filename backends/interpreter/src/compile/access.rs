@@ -29,11 +29,11 @@ impl Compiler<'_> {
         let inner = self.pointee_or_own(base)?;
         if self.is_pointer(base) {
             let spot = self.spot(base)?;
-            if let Ok(parts) = self.shapes.parts(&inner) {
-                if parts.count.is_none() {
-                    let index = self.constant(number);
-                    return Ok(Value::Spot(self.indexed(spot, &inner, index)?));
-                }
+            if let Ok(parts) = self.shapes.parts(&inner)
+                && parts.count.is_none()
+            {
+                let index = self.constant(number);
+                return Ok(Value::Spot(self.indexed(spot, &inner, index)?));
             }
             return Ok(Value::Spot(self.part_of(spot, &inner, number)?));
         }

@@ -20,10 +20,10 @@ impl Compiler<'_> {
 
     /// The first of words that always hold these numbers.
     pub(super) fn constants_in_a_row(&mut self, numbers: &[u32]) -> Word {
-        if let [one] = numbers {
-            if let Some(word) = self.constant_words.get(one) {
-                return *word;
-            }
+        if let [one] = numbers
+            && let Some(word) = self.constant_words.get(one)
+        {
+            return *word;
         }
         let first = CONSTANT + self.constants.len() as Word;
         self.constants.extend_from_slice(numbers);
@@ -101,10 +101,10 @@ impl Compiler<'_> {
             buffer.commutes = buffer.is_written && commutes;
         }
         for op in &mut self.ops {
-            if let Op::Load { to, buffer, address, offset, words: 1, .. } = *op {
-                if !self.buffers[usize::from(buffer)].is_written {
-                    *op = Op::Constant { to, buffer, address, offset };
-                }
+            if let Op::Load { to, buffer, address, offset, words: 1, .. } = *op
+                && !self.buffers[usize::from(buffer)].is_written
+            {
+                *op = Op::Constant { to, buffer, address, offset };
             }
         }
     }

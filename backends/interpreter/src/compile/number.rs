@@ -43,10 +43,10 @@ impl Compiler<'_> {
     ) -> Result<Word> {
         let (left_type, right_type) = (self.type_of(left), self.type_of(right));
         let (a, b) = (self.words(left)?, self.words(right)?);
-        if operator == BinaryOperator::Multiply {
-            if let Some(product) = self.product(left_type, a, right_type, b)? {
-                return Ok(product);
-            }
+        if operator == BinaryOperator::Multiply
+            && let Some(product) = self.product(left_type, a, right_type, b)?
+        {
+            return Ok(product);
         }
         let (kind, width) = self.kind_of(left_type)?;
         let count = |inner: &TypeInner| Ok::<_, String>(self.shapes.dense(inner)? / width);
