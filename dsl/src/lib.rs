@@ -56,6 +56,7 @@ pub use fragbuf_macros as macros;
 /// * `Fragment`, the attributes in [`glam`]'s types, and `Uniforms`, laid out as on the GPU, with `SIZE` and `bytes()`;
 /// * `criterion`, `constraint_0` …, `resolve`: the closures as functions, as far as the description has them; its helper
 ///   functions in `functions`;
+/// * `bindings`: the numbers of uniform blocks and buffers in the bind group, as far as they are the same on every target;
 /// * `draft()` and `variant()`: the description as data, with the places where it was written.
 ///
 /// The functions are Rust's: where a shader goes on with some value (a sum that overflows, an index beyond the list, a

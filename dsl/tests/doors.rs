@@ -91,6 +91,21 @@ fn agree(description: &Description) -> bool {
     faults.is_empty()
 }
 
+fragbuf_dsl::fragment_buffer! {
+    buffer Bound from kplus_array {
+        uniform { far: f32 }
+        where |f, u| f.depth < u.far;
+    }
+}
+
+/// A plan's buffers are numbered from 3 on, in the order of its rows: keys, entries and counts of the array, then the lock.
+#[test]
+fn bindings_are_those_of_the_plan() {
+    use bound::bindings::{CAMERA, COUNTERS, ENTRIES, FILLED, FRAME, KEYS, LOCKS, UNIFORMS};
+    assert_eq!([FRAME, UNIFORMS, CAMERA], [0, 1, 2]);
+    assert_eq!([KEYS, ENTRIES, FILLED, LOCKS, COUNTERS], [3, 4, 5, 6, 7]);
+}
+
 #[test]
 fn every_preset_is_the_same_through_every_door() {
     let registry = Registry::builtin();

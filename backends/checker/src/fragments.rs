@@ -55,10 +55,11 @@ impl Candidates {
     }
 }
 
-/// The same fragment with other attributes, if that leaves its key alone.
+/// The same fragment with other attributes, if that leaves its key alone: some words less and some greater, if there are
+/// several, so that words that get mixed up are seen.
 fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<Fragment, String> {
-    let same = fragment.clone();
-    for seed in 200..208 {
+    let (same, mut found) = (fragment.clone(), None);
+    for seed in 200..232 {
         let mut other = same.clone();
         let (program, _) = geometry(subject)?;
         for (number, input) in program.inputs.iter().enumerate() {
@@ -68,11 +69,17 @@ fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<F
         }
         if let Some(words) = packed(subject, memory, &other.inputs)? {
             if words[0] == fragment.words[0] && words != fragment.words {
-                return Ok(Fragment { words, ..other });
+                let pairs = || words.iter().zip(&fragment.words);
+                let crosses = pairs().any(|(a, b)| a < b) && pairs().any(|(a, b)| a > b);
+                let twin = Fragment { words: words.clone(), ..other };
+                if crosses {
+                    return Ok(twin);
+                }
+                found.get_or_insert(twin);
             }
         }
     }
-    Ok(same)
+    Ok(found.unwrap_or(same))
 }
 
 fn fragment(subject: &Subject, memory: &mut Memory, seed: u32, depth: u32) -> Result<Option<Fragment>, String> {

@@ -29,8 +29,8 @@ const HEAP: &[Check] = &[("kplus_heap", &[], "wgsl", Model::Sequential), ("kplus
 const CASCADE: &[Check] = &[
     ("mdt32_coplanar", &[], "wgsl", Model::Sequential),
     ("mdt32_coplanar", &[], "wgsl", Model::Late),
-    // A second word beside the key, which is settled among equal first ones.
-    ("mdt32_coplanar", &[("fragment.color", "rgba16")], "wgsl", Model::Sequential),
+    // More words beside the key, each settled among equal ones before it.
+    ("mdt32_coplanar", &[("fragment.color", "vec4")], "wgsl", Model::Sequential),
 ];
 const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_array", &[], "wgsl", Model::Late)];
 

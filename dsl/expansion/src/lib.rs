@@ -4,6 +4,7 @@
 //! function of the builder. A mistake is a `compile_error!` at the user's token, and what can be emitted beside it is,
 //! so that an editor goes on completing. Reading and checking are `fragbuf-syntax`'s and `fragbuf-model`'s.
 
+mod bindings;
 mod errors;
 mod front;
 mod functions;
@@ -26,10 +27,12 @@ use module::{Bodies, Source};
 pub fn fragment_buffer(input: TokenStream) -> TokenStream {
     let front = Front::of(input);
     let (parsed, written) = read_tokens(front.tokens.clone(), &place::of);
-    let faults = parsed.check(&Registry::builtin()).err();
-    let bodies = if faults.is_none() { Bodies::Compiled } else { Bodies::ForEditors };
-    let errors = faults.map(|faults| errors::all(&faults, &front.tokens));
-    let module = parsed.draft.map(|draft| emit(&front, &draft, &written, bodies));
+    let registry = Registry::builtin();
+    let (bindings, bodies, errors) = match parsed.check(&registry) {
+        Ok(variant) => (bindings::module(&variant, &registry), Bodies::Compiled, None),
+        Err(faults) => (TokenStream::new(), Bodies::ForEditors, Some(errors::all(&faults, &front.tokens))),
+    };
+    let module = parsed.draft.map(|draft| emit(&front, &draft, &written, (bodies, bindings)));
     quote! { #errors #module }
 }
 
@@ -39,7 +42,7 @@ pub fn unchecked_fragment_buffer(input: TokenStream) -> Option<TokenStream> {
     let front = Front::of(input);
     let (parsed, written) = read_tokens(front.tokens.clone(), &place::of);
     let draft = parsed.draft.filter(|_| parsed.diagnostics.is_empty())?;
-    Some(emit(&front, &draft, &written, Bodies::Compiled))
+    Some(emit(&front, &draft, &written, (Bodies::Compiled, TokenStream::new())))
 }
 
 /// A closure for the builder: `[$crate] |f| f.depth`.
@@ -56,9 +59,9 @@ pub fn function(input: TokenStream) -> TokenStream {
     quote! { #serving::builder::Function::captured(#captured) }
 }
 
-fn emit(front: &Front, draft: &Draft, written: &[Written], bodies: Bodies) -> TokenStream {
+fn emit(front: &Front, draft: &Draft, written: &[Written], (bodies, bindings): (Bodies, TokenStream)) -> TokenStream {
     let description = module::captured(&front.serving, &Captured::of(&front.tokens, &place::of));
-    module::module(&Source { front, draft, written, description, bodies })
+    module::module(&Source { front, draft, written, description, bodies, bindings })
 }
 
 fn captured(input: TokenStream) -> (Front, TokenStream) {

@@ -19,6 +19,8 @@ pub(crate) struct Source<'a> {
     /// The description for the running program.
     pub description: TokenStream,
     pub bodies: Bodies,
+    /// The module of binding numbers; empty where there is no plan.
+    pub bindings: TokenStream,
 }
 
 /// Who gets the bodies of the user's functions.
@@ -43,7 +45,7 @@ pub(crate) fn module(source: &Source) -> TokenStream {
     };
     let (fragment, uniforms) = (structs::fragment(source), structs::uniforms(source));
     let functions = functions::all(source);
-    let description = &source.description;
+    let (description, bindings) = (&source.description, &source.bindings);
     quote! {
         #about
         #[allow(dead_code, deprecated, unexpected_cfgs, unreachable_pub, unused_imports, unused_parens, clippy::all)]
@@ -51,6 +53,7 @@ pub(crate) fn module(source: &Source) -> TokenStream {
             #fragment
             #uniforms
             #functions
+            #bindings
 
             /// The description, with the places where it was written.
             pub const DESCRIPTION: #serving::Captured = #description;

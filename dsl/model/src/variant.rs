@@ -144,6 +144,16 @@ fn missing_on_target(row: &Row, target: &[Fact]) -> Option<Fact> {
 }
 
 impl Selection {
+    /// The first alternative on every axis.
+    pub fn first(variant: &Variant) -> Self {
+        Selection { rows: variant.choices.iter().filter_map(|chosen| chosen.alternatives.first().cloned()).collect() }
+    }
+
+    /// The last alternative on every axis.
+    pub fn last(variant: &Variant) -> Self {
+        Selection { rows: variant.choices.iter().filter_map(|chosen| chosen.alternatives.last().cloned()).collect() }
+    }
+
     /// The row on one axis.
     pub fn row(&self, axis: &str) -> Option<&Selected> {
         self.rows.iter().find(|selected| selected.row.axis == axis)
