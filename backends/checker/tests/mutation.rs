@@ -34,6 +34,12 @@ const CASCADE: &[Check] = &[
 ];
 const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_array", &[], "wgsl", Model::Late)];
 
+/// Storages whose changes are not tried yet. Of 273 changes to the first four, 35 go unnoticed and unexplained: most want cases
+/// with too little room, which are not tried for storages that keep the k best, because how many find none depends on the
+/// order; one deletes a fence of the revised array.
+const NOT_YET: [&str; 6] =
+    ["revised_array", "ordered_list", "bounded_regions", "wide_cascade", "distinct_cascade", "depth_ranges"];
+
 const MUTATED: [(&str, &str, &[Check]); 9] = [
     ("storage", "max_heap", HEAP),
     ("storage", "cascade", CASCADE),
@@ -159,6 +165,15 @@ struct Mutant {
     /// The line that was changed, and what it became.
     before: String,
     after: String,
+}
+
+#[test]
+fn every_storage_is_changed_or_named() {
+    let registry = Registry::builtin();
+    for row in registry.rows_of("storage") {
+        let changed = MUTATED.iter().any(|(axis, key, _)| *axis == row.axis && *key == row.key);
+        assert!(changed != NOT_YET.contains(&row.key.as_str()), "{}", row.key);
+    }
 }
 
 #[test]
@@ -317,10 +332,18 @@ fn plain(line: &str) -> Option<(String, String)> {
     let rest = &line[at + "_atomic_".len()..];
     let (operation, arguments) = rest.split_once('(')?;
     let arguments = &arguments[..matching(arguments)?];
-    let indices: Vec<String> = (1..arguments.split(',').count()).map(|number| format!("i{number}")).collect();
+    let values = if operation == "compare_exchange" { 2 } else { 1 };
+    let indices: Vec<String> = (values..arguments.split(',').count()).map(|number| format!("i{number}")).collect();
     let parameters: Vec<String> = indices.iter().map(|index| format!("{index}: u32, ")).collect();
     let index = indices.join(", ");
     let comma = if indices.is_empty() { "" } else { ", " };
+    if operation == "compare_exchange" {
+        let function = format!(
+            "fn plainly({}expected: u32, value: u32) -> bool {{\n    let old = {resource}_load({index});\n    if old == expected {{\n        {resource}_store({index}{comma}value);\n    }}\n    return old == expected;\n}}\n",
+            parameters.concat()
+        );
+        return Some((line.replacen(&format!("{resource}_atomic_{operation}"), "plainly", 1), function));
+    }
     let new = match operation {
         "add" => "old + value",
         "sub" => "old - value",
