@@ -206,7 +206,7 @@ fn every_other_node_is_refused_by_name() {
     assert_eq!(refused, known);
 }
 
-/// Frames of fragbuf's own linked passes, by the names of their snapshots, and what follows the size in the frame's uniform
+/// Frames of fragbuf's own linked passes, by the names of their snapshots, and what follows size and first row in the frame's uniform
 /// buffer: entries, or room. Fragments go in one after the other.
 const FRAMES: [(&str, u32, &[&str]); 4] = [
     ("kplus_array", 8, &["reset", "store", "resolve"]),
@@ -248,7 +248,7 @@ fn wrapped(@builtin(global_invocation_id) id: vec3<u32>) {
 fn a_device_leaves_the_same_words_after_every_pass_of_a_frame() {
     let headless = Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap();
     for (technique, third, passes) in FRAMES {
-        let mut memory = std::collections::BTreeMap::from([(0, vec![5, 4, third, 0])]);
+        let mut memory = std::collections::BTreeMap::from([(0, vec![5, 4, 0, third])]);
         for pass in passes {
             let path = format!(
                 "{}/../../tests/snapshots/all__snapshots__{technique}.{pass}.wgsl.snap",
