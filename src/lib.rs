@@ -36,7 +36,7 @@ pub mod report;
 pub mod snapshot;
 
 pub use fragbuf_backends::{
-    Checked, File, Generation, Request, SCHEMA, TARGETS, Target, generate, manifest, plan_json, target, tier,
+    Checked, File, Generation, Request, SCHEMA, TARGETS, TIERS, Target, generate, manifest, plan_json, target, tier,
 };
 pub use fragbuf_codegen::{Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
 pub use fragbuf_dsl::{builder, closure, fragment_buffer, function, glam};

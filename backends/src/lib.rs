@@ -21,4 +21,4 @@ mod wgsl;
 pub use check::{Checked, check};
 pub use generate::{Generation, Planned, Request, generate};
 pub use manifest::{SCHEMA, manifest, plan_json};
-pub use target::{Emission, File, Guards, TARGETS, Target, target, tier};
+pub use target::{Emission, File, Guards, TARGETS, TIERS, Target, target, tier};

@@ -132,6 +132,9 @@ pub fn target(name: &str) -> Option<&'static Target> {
     TARGETS.iter().find(|target| target.name == name)
 }
 
+/// The soundness tiers, the soundest first.
+pub const TIERS: [&str; 5] = ["T1", "T2", "T3", "T4", "T5"];
+
 /// The soundness tier of a variant on a target: T1 single-object atomics, T2 interlock, T3 lock with fences, T4 lock
 /// without, T5 racy by design.
 pub fn tier(soundness: Soundness, target: &Target) -> &'static str {

@@ -1,6 +1,6 @@
 //! `fragbuf list`: what there is, computed from the rows.
 
-use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, tier};
+use fragbuf::{Form, Generation, Registry, Request, TARGETS, TIERS, Target, generate, tier};
 use fragbuf_templates::vocabulary::Technique;
 use serde_json::{Map, Value, json};
 
@@ -92,21 +92,22 @@ fn table(rows: &[Value]) -> String {
     out
 }
 
-/// `T3 glsl spirv, T4 wgsl`: targets by tier.
+/// `T3 glsl spirv, T4 wgsl, no msl`: targets by tier; those last that cannot express it.
 fn grouped(targets: &Map<String, Value>) -> String {
-    let mut tiers: Vec<&str> = targets.values().filter_map(Value::as_str).collect();
-    tiers.sort_unstable();
-    tiers.dedup();
-    if let [only] = tiers.as_slice() {
-        return (*only).to_owned();
-    }
-    let group = |tier: &&str| {
-        let names: Vec<&str> = targets
-            .iter()
-            .filter(|(_, verdict)| verdict.as_str() == Some(tier))
-            .map(|(name, _)| name.as_str())
-            .collect();
-        format!("{tier} {}", names.join(" "))
+    let short = |verdict: &Value| match verdict.as_str() {
+        Some(tier) if TIERS.contains(&tier) => tier.to_owned(),
+        _ => "no".to_owned(),
     };
-    tiers.iter().map(group).collect::<Vec<_>>().join(", ")
+    let mut verdicts: Vec<String> = targets.values().map(short).collect();
+    verdicts.sort_by_key(|verdict| (verdict == "no", verdict.clone()));
+    verdicts.dedup();
+    if let [only] = verdicts.as_slice() {
+        return only.clone();
+    }
+    let group = |verdict: &String| {
+        let names: Vec<&str> =
+            targets.iter().filter(|(_, other)| short(other) == *verdict).map(|(name, _)| name.as_str()).collect();
+        format!("{verdict} {}", names.join(" "))
+    };
+    verdicts.iter().map(group).collect::<Vec<_>>().join(", ")
 }

@@ -20,14 +20,12 @@ mod compute;
 mod device;
 mod draw;
 mod error;
-#[cfg(test)]
 mod fixed_function;
 mod frame;
 mod interface;
 mod memory;
 mod schedule;
 mod stages;
-mod tests_and_blending;
 mod texel;
 mod tile;
 mod triangle;

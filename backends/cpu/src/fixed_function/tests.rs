@@ -1,0 +1,316 @@
+//! Fixed function on small draws whose results are known beforehand: tests, blending, samples, attributes, early tests.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::sync::Mutex;
+use std::sync::atomic::AtomicU32;
+
+use fragbuf_interpreter::{Options, Program};
+use fragbuf_templates::vocabulary::{Blend, Compare, StencilOperation, TextureFormat};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+use crate::attachment::{Attachments, Depth, Stencil, Target};
+use crate::device::Order;
+use crate::draw::{Draw, Indices, draw};
+use crate::memory::{Words, read, words};
+use crate::texel::Texel;
+use crate::triangle::Coverage;
+use crate::view::View;
+
+const SIZE: u32 = 4;
+const PIXELS: usize = (SIZE * SIZE) as usize;
+
+const COMMON: &str = "
+enable primitive_index;
+struct Varyings {
+    @builtin(position) position: vec4<f32>,
+    @location(0) color: vec4<f32>,
+    @location(1) @interpolate(linear) straight: f32,
+    @location(2) @interpolate(flat) id: u32,
+}
+@group(0) @binding(0) var<storage, read_write> list: array<atomic<u32>>;
+@vertex fn corner(@location(0) position: vec4<f32>, @location(1) color: vec4<f32>) -> Varyings {
+    return Varyings(position, color, color.r, u32(color.a * 10.0));
+}
+";
+
+const PLAIN: &str = "@fragment fn main(in: Varyings) -> @location(0) vec4<f32> { return in.color; }";
+
+/// Corners and colours of triangles.
+type Corners = Vec<([f32; 4], [f32; 4])>;
+
+/// The whole frame at a depth, in a colour.
+fn whole(depth: f32, color: [f32; 4]) -> Corners {
+    [[-1.0, 1.0], [-1.0, -3.0], [3.0, 1.0]].map(|[x, y]| ([x, y, depth, 1.0], color)).to_vec()
+}
+
+/// One draw of a shader; the samples that passed.
+struct Call<'a> {
+    text: &'a str,
+    attachments: Attachments<'a>,
+    list: &'a Words,
+    coverage: Coverage,
+}
+
+impl Call<'_> {
+    fn draw(&self, corners: &Corners) -> u64 {
+        self.try_draw(corners).unwrap()
+    }
+
+    fn try_draw(&self, corners: &Corners) -> Result<u64, String> {
+        let text = format!("{COMMON}{}", self.text);
+        let module =
+            naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
+        let program = |name: &str| Program::entry_point(&module, &info, name, &Options::default()).unwrap();
+        let (vertex, fragment) = (program("corner"), program("main"));
+        let numbers = corners.iter().flat_map(|(position, color)| position.iter().chain(color));
+        let vertices: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
+        let wide = Mutex::new(());
+        let view =
+            |program: &Program| View { buffers: program.buffers.iter().map(|_| &self.list[..]).collect(), wide: &wide };
+        let indices: Vec<u32> = (0..corners.len() as u32).collect();
+        let call = Draw {
+            vertex: (&vertex, view(&vertex)),
+            fragment: (&fragment, view(&fragment)),
+            vertices: &vertices,
+            indices: Indices::These(&indices),
+            size: (SIZE, SIZE),
+            attachments: self.attachments.clone(),
+            coverage: self.coverage,
+            order: Order::Submission,
+        };
+        Ok(draw(&call, &|_| {})?.samples)
+    }
+}
+
+fn zeros(count: usize) -> Words {
+    words(&vec![0; count])
+}
+
+fn none<'a>(samples: u32) -> Attachments<'a> {
+    Attachments { pixels: PIXELS, samples, mask: u32::MAX, ..Attachments::default() }
+}
+
+fn target(words: &[AtomicU32], blend: Blend) -> Target<'_> {
+    Target { words, texel: Texel::Output, blend }
+}
+
+/// Draws one after the other into one float target; what stands in its first pixel.
+fn first(attachments: Attachments<'_>, blend: Blend, draws: &[Corners]) -> [f32; 4] {
+    let (output, list) = (zeros(4 * PIXELS), zeros(64));
+    let attachments = Attachments { targets: vec![target(&output, blend)], ..attachments };
+    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::Samples };
+    for corners in draws {
+        call.draw(corners);
+    }
+    let seen = read(&output);
+    std::array::from_fn(|channel| f32::from_bits(seen[channel]))
+}
+
+const RED: [f32; 4] = [0.5, 0.0, 0.0, 0.5];
+const BLUE: [f32; 4] = [0.0, 0.125, 0.25, 0.25];
+
+#[test]
+fn blending_is_what_the_vocabulary_says() {
+    let draws = [whole(0.5, RED), whole(0.5, BLUE)];
+    let cases = [
+        (Blend::Replace, BLUE),
+        (Blend::Over, [0.375, 0.125, 0.25, 0.625]),
+        (Blend::Under, [0.5, 0.0625, 0.125, 0.625]),
+        (Blend::Max, [0.5, 0.125, 0.25, 0.5]),
+        (Blend::Min, [0.0; 4]),
+        (Blend::Add, [0.5, 0.125, 0.25, 0.75]),
+    ];
+    for (blend, expected) in cases {
+        assert_eq!(first(none(1), blend, &draws), expected, "{blend:?}");
+    }
+}
+
+#[test]
+fn depth_is_compared_and_written() {
+    let near_then_far = [whole(0.25, RED), whole(0.5, BLUE)];
+    // What the second draw leaves, where 0.25 has been written and where it has not, over a clear to 0.375.
+    let cases = [
+        (Compare::Less, true, RED),
+        (Compare::LessEqual, true, RED),
+        (Compare::Less, false, RED),
+        (Compare::Greater, true, BLUE),
+        (Compare::GreaterEqual, false, BLUE),
+        (Compare::Equal, true, [0.0; 4]),
+        (Compare::Always, true, BLUE),
+    ];
+    for format in [TextureFormat::Depth32Float, TextureFormat::Depth24PlusStencil8] {
+        for (compare, writes, expected) in cases {
+            let clear = if format == TextureFormat::Depth32Float { 0.375f32.to_bits() } else { 0x60_0000 << 8 | 7 };
+            let depths = words(&[clear; PIXELS]);
+            let depth = Some(Depth { words: &depths, format, compare, writes });
+            assert_eq!(
+                first(Attachments { depth, ..none(1) }, Blend::Replace, &near_then_far),
+                expected,
+                "{compare:?}"
+            );
+            let is_written = writes && expected != [0.0; 4];
+            assert_eq!(read(&depths)[0] != clear, is_written, "{compare:?} {format:?}");
+            assert!(format == TextureFormat::Depth32Float || read(&depths)[0] & 0xff == 7, "the stencil stays");
+        }
+    }
+}
+
+#[test]
+fn several_targets_get_their_own_colours() {
+    let (a, b, list) = (zeros(PIXELS), zeros(2 * PIXELS), zeros(64));
+    let bytes = Target { words: &a, texel: Texel::Format(TextureFormat::Rgba8Unorm), blend: Blend::Replace };
+    let pairs = Target { words: &b, texel: Texel::Format(TextureFormat::Rg32Float), blend: Blend::Max };
+    let text = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
+        @fragment fn main(in: Varyings) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
+    let attachments = Attachments { targets: vec![bytes, pairs], ..none(1) };
+    let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+    assert_eq!(call.draw(&whole(0.75, [1.0, 0.0, 0.2, 1.0])), PIXELS as u64);
+    assert_eq!(read(&a), vec![0xff33_00ff; PIXELS]);
+    assert_eq!(read(&b)[..2], [0, 0.75f32.to_bits()], "max(0, -0.75) and max(0, 0.75)");
+}
+
+/// Myers & Bavoil 2007: the i-th fragment of a pixel lands in sample i; where the middle decides, at edges too.
+#[test]
+fn stencil_routing_sends_fragments_to_samples_one_by_one() {
+    const SAMPLES: u32 = 4;
+    let (routing, output, list) = (zeros(PIXELS * 4), zeros(4 * PIXELS * 4), zeros(64));
+    let stencil = |compare, fail, pass, reference| Stencil { words: &routing, compare, fail, pass, reference };
+    for sample in 0..SAMPLES {
+        let state = stencil(Compare::Always, StencilOperation::Keep, StencilOperation::Replace, sample + 2);
+        let attachments = Attachments { stencil: Some(state), mask: 1 << sample, ..none(SAMPLES) };
+        let call = Call { text: "@fragment fn main() {}", attachments, list: &list, coverage: Coverage::Middle };
+        assert_eq!(call.draw(&whole(0.5, RED)), PIXELS as u64);
+    }
+    let state = stencil(Compare::Equal, StencilOperation::DecrementClamp, StencilOperation::DecrementClamp, 2);
+    let targets = vec![target(&output, Blend::Replace)];
+    let attachments = Attachments { stencil: Some(state), targets, ..none(SAMPLES) };
+    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::Middle };
+    // The lower left half of the frame, thrice: the diagonal runs through pixels and leaves their samples on both sides.
+    let half = |red: f32| -> Corners {
+        [[-1.0, 1.2], [-1.0, -1.0], [1.2, -1.0]].map(|[x, y]| ([x, y, 0.5, 1.0], [red, 0.0, 0.0, 1.0])).to_vec()
+    };
+    for red in [0.25, 0.5, 0.75] {
+        call.draw(&half(red));
+    }
+    let seen = read(&output);
+    let red = |sample: usize, pixel: usize| f32::from_bits(seen[4 * (sample * PIXELS + pixel)]);
+    let mut covered = 0;
+    for pixel in 0..PIXELS {
+        let held = [0, 1, 2, 3].map(|sample| red(sample, pixel));
+        assert!(held == [0.25, 0.5, 0.75, 0.0] || held == [0.0; 4], "pixel {pixel}: {held:?}");
+        covered += usize::from(held[0] > 0.0);
+    }
+    assert!(covered > 6 && covered < PIXELS, "{covered}");
+}
+
+#[test]
+fn samples_are_covered_one_by_one_and_masked() {
+    // Everything left of x = 1.5 pixels.
+    let left: Corners = [[-0.25, 5.0], [-9.0, 0.0], [-0.25, -5.0]].map(|[x, y]| ([x, y, 0.5, 1.0], RED)).to_vec();
+    let shaders = [
+        // Of the standard eight, those left of the middle are 1, 3, 4 and 5.
+        (PLAIN, 8 + 4),
+        (
+            "struct Out { @location(0) c: vec4<f32>, @builtin(sample_mask) mask: u32 }
+          @fragment fn main(in: Varyings) -> Out { return Out(in.color, 1u); }",
+            1,
+        ),
+        (
+            "@fragment fn main(in: Varyings, @builtin(sample_index) sample: u32) -> @location(0) vec4<f32> {
+            if sample != 2u { discard; }
+            return in.color;
+          }",
+            1,
+        ),
+    ];
+    for (text, expected) in shaders {
+        let (output, list) = (zeros(4 * PIXELS * 8), zeros(64));
+        let attachments = Attachments { targets: vec![target(&output, Blend::Replace)], ..none(8) };
+        let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+        let passed = call.draw(&left);
+        let seen = read(&output);
+        let written = (0..8 * PIXELS).filter(|texel| seen[4 * texel] != 0).count();
+        assert_eq!(passed, written as u64);
+        assert_eq!(written, expected * SIZE as usize, "{text}");
+    }
+}
+
+#[test]
+fn early_tests_come_before_the_shader_and_survive_a_discard() {
+    for is_early in [false, true] {
+        let (depths, list) = (words(&[0.5f32.to_bits(); PIXELS]), zeros(64));
+        let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
+        let attachments = Attachments { depth: Some(depth), is_early, ..none(1) };
+        let text = "@fragment fn main(in: Varyings) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
+        let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+        call.draw(&whole(0.75, RED));
+        assert_eq!(
+            read(&list)[0],
+            if is_early { 0 } else { PIXELS as u32 },
+            "what lies behind runs only if tests are late"
+        );
+        call.draw(&whole(0.25, RED));
+        let expected = if is_early { 0.25f32 } else { 0.5 };
+        assert_eq!(
+            read(&depths)[0],
+            expected.to_bits(),
+            "a discarded fragment has written its depth only if tests are early"
+        );
+        assert_eq!(read(&depths)[3], 0.25f32.to_bits());
+    }
+}
+
+#[test]
+fn a_shader_may_say_its_depth() {
+    let (depths, list) = (words(&[1.0f32.to_bits(); PIXELS]), zeros(64));
+    let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
+    let text = "@fragment fn main(in: Varyings) -> @builtin(frag_depth) f32 { return in.color.r; }";
+    let attachments = Attachments { depth: Some(depth), ..none(1) };
+    Call { text, attachments, list: &list, coverage: Coverage::Samples }.draw(&whole(0.1, [0.625, 0.0, 0.0, 0.0]));
+    assert_eq!(read(&depths)[5], 0.625f32.to_bits());
+}
+
+#[test]
+fn attributes_are_interpolated_as_they_are_declared() {
+    let text =
+        "@fragment fn main(in: Varyings, @builtin(primitive_index) index: u32, @builtin(front_facing) front: bool) {
+        let at = 8u * (u32(in.position.y) * 4u + u32(in.position.x));
+        atomicStore(&list[at], bitcast<u32>(in.color.r));
+        atomicStore(&list[at + 1u], bitcast<u32>(in.straight));
+        atomicStore(&list[at + 2u], in.id);
+        atomicStore(&list[at + 3u], index);
+        atomicStore(&list[at + 4u], u32(front));
+        atomicStore(&list[at + 5u], bitcast<u32>(in.position.w));
+    }";
+    let list = zeros(8 * PIXELS);
+    // From w = 1 on the left to w = 3 on the right; red from 0 to 1; the first corner is 4, the others are 7 tenths.
+    let corner = |x: f32, y: f32, w: f32, red: f32, tenths: f32| {
+        ([x * w, y * w, 0.5 * w, w], [red, 0.0, 0.0, 0.1 * tenths + 0.05])
+    };
+    let (a, b) = (corner(-1.0, 1.0, 1.0, 0.0, 4.0), corner(-1.0, -1.0, 1.0, 0.0, 7.0));
+    let (c, d) = (corner(1.0, -1.0, 3.0, 1.0, 7.0), corner(1.0, 1.0, 3.0, 1.0, 7.0));
+    Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples }.draw(&vec![a, b, c, a, c, d]);
+    let seen = read(&list);
+    for pixel in 0..PIXELS {
+        let (x, y) = (pixel % 4, pixel / 4);
+        let share = (x as f64 + 0.5) / 4.0;
+        let inverse_w = (1.0 - share) + share / 3.0;
+        let words = &seen[8 * pixel..][..6];
+        let close = |word: u32, expected: f64| (f64::from(f32::from_bits(word)) - expected).abs() < 1.0e-6;
+        assert!(close(words[0], share / 3.0 / inverse_w), "perspective at {x}, {y}");
+        assert!(close(words[1], share), "linear at {x}, {y}");
+        assert_eq!((words[2], words[4]), (4, 1), "flat and facing at {x}, {y}");
+        // Below the diagonal lies the first; samples on it are the second's, whose left edge it is... or the first's top.
+        assert!(x == y || words[3] == u32::from(x > y), "primitive at {x}, {y}");
+        assert!(close(words[5], inverse_w));
+    }
+}
+
+#[test]
+fn a_shader_that_does_not_end_is_an_error() {
+    let list = zeros(1);
+    let text = "@fragment fn main(in: Varyings) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
+    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples };
+    assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("for ever"));
+}
