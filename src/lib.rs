@@ -28,6 +28,8 @@
 //! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
 //! source lines. [`build`] generates inside a `build.rs`, [`snapshot`] inside tests.
 
+#![allow(clippy::test_attr_in_doctest, reason = "the guide shows tests that readers write")]
+
 pub mod build;
 pub mod guide;
 pub mod load;

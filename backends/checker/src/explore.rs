@@ -148,12 +148,12 @@ impl Search<'_, '_> {
                     }
                     Ok((next, _)) if self.ground.is_idle(state, &next, fragment) => {}
                     Ok((next, _)) => {
-                        if next.words != state.words {
-                            if let Some(text) = judge.instant(&next.words) {
-                                let mut failure = Failure { steps: self.path(number), what: What::Instant(text) };
-                                failure.steps.push((fragment, choice));
-                                return Some(failure);
-                            }
+                        if next.words != state.words
+                            && let Some(text) = judge.instant(&next.words)
+                        {
+                            let mut failure = Failure { steps: self.path(number), what: What::Instant(text) };
+                            failure.steps.push((fragment, choice));
+                            return Some(failure);
                         }
                         self.visit(next, Some((number, (fragment, choice))));
                     }

@@ -67,16 +67,17 @@ fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<F
                 other.inputs[number] = seeded(input, seed);
             }
         }
-        if let Some(words) = packed(subject, memory, &other.inputs)? {
-            if words[0] == fragment.words[0] && words != fragment.words {
-                let pairs = || words.iter().zip(&fragment.words);
-                let crosses = pairs().any(|(a, b)| a < b) && pairs().any(|(a, b)| a > b);
-                let twin = Fragment { words: words.clone(), ..other };
-                if crosses {
-                    return Ok(twin);
-                }
-                found.get_or_insert(twin);
+        if let Some(words) = packed(subject, memory, &other.inputs)?
+            && words[0] == fragment.words[0]
+            && words != fragment.words
+        {
+            let pairs = || words.iter().zip(&fragment.words);
+            let crosses = pairs().any(|(a, b)| a < b) && pairs().any(|(a, b)| a > b);
+            let twin = Fragment { words: words.clone(), ..other };
+            if crosses {
+                return Ok(twin);
             }
+            found.get_or_insert(twin);
         }
     }
     Ok(found.unwrap_or(same))

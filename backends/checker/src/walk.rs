@@ -60,10 +60,10 @@ impl<'p> Walker<'_, 'p> {
             match self.ground.step(machine, &state, fragment, choice) {
                 Err(mishap) => return Some(What::Mishap(fragment, mishap)),
                 Ok((next, _)) => {
-                    if next.words != state.words {
-                        if let Some(text) = judge.instant(&next.words) {
-                            return Some(What::Instant(text));
-                        }
+                    if next.words != state.words
+                        && let Some(text) = judge.instant(&next.words)
+                    {
+                        return Some(What::Instant(text));
                     }
                     state = next;
                 }
