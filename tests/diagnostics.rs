@@ -29,6 +29,12 @@ const CASES: &[(&str, &[Expected])] = &[
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("bad-option", 2, 30, "4096")]),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("bad-option", 2, 30, "tries")]),
     ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "drop the braces")]),
+    ("buffer B from kplus_array {\n    ties: attribute { by: id };\n}", &[("bad-option", 2, 27, "decides")]),
+    ("buffer B from kplus_array {\n    ties: attribute { by: 1 };\n}", &[("bad-option", 2, 27, "decides")]),
+    (
+        "buffer B from kplus_array {\n    ties: submission;\n}",
+        &[("unmet", 2, 11, "`ties: payload`"), ("unmet", 2, 11, "`ties: payload`")],
+    ),
     ("buffer B from kplus_array {\n    keep 0;\n}", &[("capacity", 2, 10, "from 1 to 1024")]),
     ("buffer B from kplus_array {\n    keep 5000;\n}", &[("capacity", 2, 10, "keep all")]),
     ("buffer B from kplus_array {\n    keep all;\n}", &[("keep-mismatch", 2, 10, "keep 8")]),

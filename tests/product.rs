@@ -119,7 +119,7 @@ fn texts(variant: &Variant, registry: &Registry) -> Vec<u64> {
             let mut hasher = DefaultHasher::new();
             let code = linked.text.lines().filter(|line| !line.trim_start().starts_with("//"));
             code.for_each(|line| line.hash(&mut hasher));
-            (target.profile, &pass.anchor, format!("{:?}", pass.uses)).hash(&mut hasher);
+            (target.profile, &pass.anchor, &plan.requires, format!("{:?}", pass.uses)).hash(&mut hasher);
             hasher.finish()
         }));
         known.push(one);

@@ -5,7 +5,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, Refusal, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Loads};
 
-use crate::target::{Emission, File, Guards, Target};
+use crate::target::{Emission, File, Guards, InterlockOrder, Target};
 use crate::{Checked, check};
 
 /// What to generate.
@@ -148,6 +148,10 @@ fn emit(
             target: target.name,
             prefix: &prefix,
             rechecked: rechecked.map(|usage| format!("{prefix}{}", usage.resource)).collect(),
+            interlock: match plan.requires.contains(&Fact::OrderedInterlock) {
+                true => InterlockOrder::Submission,
+                false => InterlockOrder::Any,
+            },
             guards: if plan.selection.own_files().next().is_some() { Guards::On } else { Guards::Off },
         };
         match (target.emit)(&emission) {

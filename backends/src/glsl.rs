@@ -4,15 +4,11 @@ use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
 
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MEMORY_FENCE};
-use crate::target::{Emission, File, stage_name, stage_suffix};
+use crate::target::{Emission, File, InterlockOrder, stage_name, stage_suffix};
 
 /// `templates/shared/markers.wgsl`, in GLSL's words.
-const MARKERS: [(&str, Marker); 4] = [
-    (MEMORY_FENCE, Marker::MemoryFence),
-    (HELPER_LANE, Marker::HelperLane),
-    (CRITICAL_BEGIN, Marker::CriticalBegin),
-    (CRITICAL_END, Marker::CriticalEnd),
-];
+const MARKERS: [(&str, Marker); 3] =
+    [(MEMORY_FENCE, Marker::MemoryFence), (HELPER_LANE, Marker::HelperLane), (CRITICAL_END, Marker::CriticalEnd)];
 
 pub(crate) fn emit_opengl(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     emit(emission, Dialect::OpenGl450)
@@ -44,8 +40,13 @@ fn emit(emission: &Emission<'_>, dialect: Dialect) -> Result<Vec<File>, String> 
 fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<String, String> {
     let checked = emission.checked;
     let source = &checked.pass().text;
+    let begin = match emission.interlock {
+        InterlockOrder::Any => Marker::CriticalBegin,
+        InterlockOrder::Submission => Marker::OrderedCriticalBegin,
+    };
+    let markers = MARKERS.into_iter().chain([(CRITICAL_BEGIN, begin)]);
     let markers: Vec<(String, Marker)> =
-        MARKERS.iter().map(|(name, marker)| (format!("{}{name}", emission.prefix), *marker)).collect();
+        markers.map(|(name, marker)| (format!("{}{name}", emission.prefix), marker)).collect();
     let markers: Vec<(&str, Marker)> = markers.iter().map(|(name, marker)| (name.as_str(), *marker)).collect();
     let plain_loads: Vec<&str> = emission.rechecked.iter().map(String::as_str).collect();
     let notes = &checked.pass().notes;

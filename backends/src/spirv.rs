@@ -19,7 +19,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
-        let words = edits::apply(words, emission.prefix)?;
+        let words = edits::apply(words, emission.prefix, emission.interlock)?;
         let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let path = emission.path(&format!(".{}.spv", stage_suffix(entry.stage)));
         files.push(emission.file(path, vec![(stage_name(entry.stage), entry.name.clone())], bytes));

@@ -30,8 +30,19 @@ pub struct Emission<'a> {
     pub prefix: &'a str,
     /// Atomic resources whose loads are hints, or made again inside the critical section.
     pub rechecked: Vec<String>,
+    /// In which order an interlock lets invocations in.
+    pub(crate) interlock: InterlockOrder,
     /// What the text is guarded against at run time.
     pub guards: Guards,
+}
+
+/// In which order an interlock lets the invocations of one pixel in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InterlockOrder {
+    /// In any.
+    Any,
+    /// In that of their primitives.
+    Submission,
 }
 
 /// Whether generated code holds places inside their bounds and ends every loop, where naga writes the target.
@@ -71,8 +82,15 @@ pub struct File {
 }
 
 /// What both dialects of desktop GLSL offer.
-const GLSL_FACTS: &[Fact] =
-    &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics, Fact::Linkable];
+const GLSL_FACTS: &[Fact] = &[
+    Fact::FragmentAtomics,
+    Fact::Fences,
+    Fact::Coherent,
+    Fact::Interlock,
+    Fact::OrderedInterlock,
+    Fact::U64Atomics,
+    Fact::Linkable,
+];
 
 /// Every target, in the order in which files and manifests list them.
 pub const TARGETS: &[Target] = &[
@@ -115,7 +133,14 @@ pub const TARGETS: &[Target] = &[
         name: "spirv",
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics],
+        offers: &[
+            Fact::FragmentAtomics,
+            Fact::Fences,
+            Fact::Coherent,
+            Fact::Interlock,
+            Fact::OrderedInterlock,
+            Fact::U64Atomics,
+        ],
         emit: spirv::emit,
     },
     Target {

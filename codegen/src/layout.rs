@@ -1,6 +1,7 @@
 //! How a fragment lies in memory: the words of one entry, the key first.
 
 use fragbuf_model::{Attribute, Format, Variant, mangled};
+use fragbuf_templates::vocabulary::Order;
 
 /// The words of one stored fragment.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,11 +33,14 @@ pub struct Word {
 }
 
 impl Layout {
-    /// The layout of a variant's payload: words in the user's order, depth as the key unless there is a criterion.
+    /// The layout of a variant's payload: words in the user's order, depth as the key unless there is a criterion. The
+    /// attribute that decides ties comes first, so that the order of words is the order of fragments.
     pub fn of(variant: &Variant) -> Self {
         let key = if variant.criterion.is_some() { Key::Criterion } else { Key::Depth };
         let mut beside: Vec<Word> = Vec::new();
-        for attribute in &variant.attributes {
+        let first = tie_breaker(variant);
+        let others = variant.attributes.iter().filter(|attribute| Some(*attribute) != first);
+        for attribute in first.into_iter().chain(others) {
             if key == Key::Depth && attribute.name.value == "depth" {
                 continue;
             }
@@ -64,6 +68,14 @@ impl Layout {
         let depth = self.beside.iter().find(|word| word.attribute.name.value == "depth");
         depth.map_or("key", |word| &word.field)
     }
+}
+
+/// The attribute that decides between fragments with equal keys before all others, if the description names one.
+fn tie_breaker(variant: &Variant) -> Option<&Attribute> {
+    let mut rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
+    let ties = rows.find(|selected| selected.row.order == Some(Order::Attribute))?;
+    let index = ties.options.first().map_or(0, |(_, index)| *index);
+    variant.attributes.get(index as usize)
 }
 
 fn parts(format: Format) -> Vec<Option<&'static str>> {

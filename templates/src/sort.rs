@@ -1,6 +1,6 @@
 //! Axis `sort`: how the kept fragments are put in the order of depth before they are resolved.
 
-use crate::vocabulary::{Fact, Parameter, Row};
+use crate::vocabulary::{Fact, Parameter, Row, Takes};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -8,13 +8,14 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("sort/none")),
             calls: vec!["counters"],
             parameters: vec![layers()],
+            offers: vec![Fact::StableSort],
             ..Row::new("sort", "none", "not at all: as the storage gives them", "")
         },
         Row {
             template: Some(template!("sort/insertion")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted],
+            offers: vec![Fact::Sorted, Fact::StableSort],
             ..Row::new("sort", "insertion", "each into its place as it is read", "K15 §3.3")
         },
         Row {
@@ -45,6 +46,7 @@ fn insertion_most() -> Parameter {
     Parameter {
         name: "insertion".into(),
         constant: "INSERTION_MOST".into(),
+        takes: Takes::Number,
         default: "16".into(),
         range: (0, 4096),
         summary: "the most fragments of a pixel that are sorted by insertion".into(),
@@ -55,6 +57,7 @@ fn layers() -> Parameter {
     Parameter {
         name: "layers".into(),
         constant: "LAYERS".into(),
+        takes: Takes::Number,
         default: "capacity".into(),
         range: (1, 4096),
         summary: "fragments that the resolve pass can hold; the farthest beyond are left out, and counted".into(),

@@ -47,6 +47,7 @@ fn sorted_array() -> Row {
             Fact::CanReplace,
             Fact::Indexed,
             Fact::SurvivesRaces,
+            Fact::KeepsArrival,
             Fact::LosesWhole,
         ],
         // Entries are in the order of their keys.

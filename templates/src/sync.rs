@@ -1,9 +1,9 @@
 //! Axis `sync`: how writers of the same pixel are kept apart.
 
-use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
+use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Takes, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
-    vec![none(), slot_counter(), spin_lock(), interlock()]
+    vec![none(), slot_counter(), spin_lock(), interlock(), interlock_ordered()]
 }
 
 fn none() -> Row {
@@ -42,12 +42,25 @@ fn spin_lock() -> Row {
         parameters: vec![Parameter {
             name: "limit".into(),
             constant: "SPIN_LIMIT".into(),
+            takes: Takes::Number,
             default: "4096".into(),
             range: (1, 1 << 24),
             summary: "tries before a fragment is given up and counted".into(),
         }],
         soundness: Soundness::Lock,
         ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")
+    }
+}
+
+/// Writers of one pixel come in the order of their primitives: the order of submission, which ties may then follow.
+fn interlock_ordered() -> Row {
+    let any = interlock();
+    Row {
+        offers: vec![Fact::Critical, Fact::OrderedCritical],
+        requires: [any.requires.as_slice(), &[Fact::OrderedInterlock]].concat(),
+        key: "interlock_ordered".to_owned(),
+        summary: "by fragment shader interlock, in the order of submission".into(),
+        ..any
     }
 }
 

@@ -4,6 +4,9 @@
 // Without a critical section two fragments of one pixel may walk at once. Every word is atomic, so that what they
 // read is always some word that was written; but entries can be lost, doubled, torn and left unsorted.
 //
+// Behind the slot that it takes every entry moves on, compared or not: those with equal keys stay in the order in which
+// they came.
+//
 // Memory: k * entry_words words per pixel.
 
 fn storage_reset(pixel: u32) {
@@ -18,9 +21,11 @@ fn storage_bound(pixel: u32) -> u32 {
 
 fn storage_insert(pixel: u32, entry: Packed) {
     var carried = entry;
+    var moving = false;
     for (var slot = 0u; slot < frame.k; slot++) {
         let resident = sorted_array_read(pixel, slot);
-        if better(carried, resident) {
+        moving = moving || better(carried, resident);
+        if moving {
             entries_store(slot, pixel, carried);
             keys_store(slot, pixel, carried.key);
             carried = resident;

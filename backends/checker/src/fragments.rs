@@ -172,7 +172,7 @@ fn seeded(input: &Input, seed: u32) -> Vec<u32> {
 pub(crate) fn deciding_words(subject: &Subject) -> usize {
     let order = subject.plan.selection.rows.iter().find_map(|selected| selected.row.order);
     match order {
-        Some(Order::Unordered) => 1,
-        Some(Order::Payload) | None => subject.plan.layout.entry_words() as usize,
+        Some(Order::Unordered | Order::Submission) => 1,
+        Some(Order::Payload | Order::Attribute) | None => subject.plan.layout.entry_words() as usize,
     }
 }

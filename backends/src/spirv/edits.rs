@@ -8,9 +8,10 @@ use rspirv::dr::{Instruction, Module, Operand, load_words};
 use rspirv::spirv::{BuiltIn, Capability, Decoration, ExecutionMode, Op, StorageClass, Word};
 
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
+use crate::target::InterlockOrder;
 
 /// Applies the edits; `prefix` precedes the markers' names.
-pub(super) fn apply(words: Vec<u32>, prefix: &str) -> Result<Vec<u32>, String> {
+pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Result<Vec<u32>, String> {
     let mut module = load_words(&words).map_err(|error| format!("naga's SPIR-V cannot be read back: {error}"))?;
     let begin = replace(&mut module, &format!("{prefix}{CRITICAL_BEGIN}"), |_| {
         Some(Instruction::new(Op::BeginInvocationInterlockEXT, None, None, vec![]))
@@ -19,7 +20,7 @@ pub(super) fn apply(words: Vec<u32>, prefix: &str) -> Result<Vec<u32>, String> {
         Some(Instruction::new(Op::EndInvocationInterlockEXT, None, None, vec![]))
     });
     if begin || end {
-        declare_interlock(&mut module)?;
+        declare_interlock(&mut module, order)?;
     }
     let helper = read_helper_invocation(&mut module, &format!("{prefix}{HELPER_LANE}"))?;
     Ok(if begin || end || helper { module.assemble() } else { words })
@@ -49,13 +50,16 @@ fn calls(instruction: &Instruction, function: Word) -> bool {
     instruction.class.opcode == Op::FunctionCall && instruction.operands.first() == Some(&Operand::IdRef(function))
 }
 
-fn declare_interlock(module: &mut Module) -> Result<(), String> {
+fn declare_interlock(module: &mut Module, order: InterlockOrder) -> Result<(), String> {
     let entry = entry_point(module)?;
     let capability = Operand::Capability(Capability::FragmentShaderPixelInterlockEXT);
     module.capabilities.push(Instruction::new(Op::Capability, None, None, vec![capability]));
     let extension = Operand::LiteralString("SPV_EXT_fragment_shader_interlock".to_owned());
     module.extensions.push(Instruction::new(Op::Extension, None, None, vec![extension]));
-    let mode = Operand::ExecutionMode(ExecutionMode::PixelInterlockUnorderedEXT);
+    let mode = Operand::ExecutionMode(match order {
+        InterlockOrder::Any => ExecutionMode::PixelInterlockUnorderedEXT,
+        InterlockOrder::Submission => ExecutionMode::PixelInterlockOrderedEXT,
+    });
     module.execution_modes.push(Instruction::new(Op::ExecutionMode, None, None, vec![Operand::IdRef(entry), mode]));
     Ok(())
 }

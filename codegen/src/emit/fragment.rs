@@ -128,14 +128,19 @@ fn words(plan: &Plan, text: &mut String) {
 fn orders(plan: &Plan, text: &mut String) {
     let order = plan.selection.rows.iter().find_map(|selected| selected.row.order);
     let words = match order {
-        Some(Order::Unordered) => vec!["key"],
-        Some(Order::Payload) | None => keep_order(&plan.layout),
+        Some(Order::Unordered | Order::Submission) => vec!["key"],
+        Some(Order::Payload | Order::Attribute) | None => keep_order(&plan.layout),
     };
     text.push_str("/// Whether `a` is kept rather than `b`: the lesser key");
     text.push_str(if words.len() > 1 { ", of equal keys the lesser words.\n" } else { ".\n" });
     less("better", &words, text);
     text.push_str("/// Whether `a` comes before `b` when the kept fragments are resolved: nearest first.\n");
-    less("nearer", &resolve_order(&plan.layout), text);
+    let nearer = match order {
+        // The storage gives them in the order of submission, and the sort leaves them there.
+        Some(Order::Submission) => vec![plan.layout.depth_field()],
+        _ => resolve_order(&plan.layout),
+    };
+    less("nearer", &nearer, text);
 }
 
 fn keep_order(layout: &Layout) -> Vec<&str> {

@@ -19,9 +19,9 @@ pub const MOST_KEPT: u32 = 1024;
 pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let technique = choices::technique(draft, registry, &mut diagnostics);
-    let choices = choices::resolve(draft, technique, registry, &mut diagnostics);
-    let keep = keep(draft, technique.map(|technique| technique.keep), &mut diagnostics);
     let attributes = payload::attributes(draft, &mut diagnostics);
+    let choices = choices::resolve(draft, &attributes, technique, registry, &mut diagnostics);
+    let keep = keep(draft, technique.map(|technique| technique.keep), &mut diagnostics);
     let mut offered = payload::facts(&attributes);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {

@@ -126,6 +126,7 @@ const TARGET_FACTS: &[Fact] = &[
     Fact::Fences,
     Fact::Coherent,
     Fact::Interlock,
+    Fact::OrderedInterlock,
     Fact::U64Atomics,
     Fact::EarlyDepth,
     Fact::MinMaxBlend,

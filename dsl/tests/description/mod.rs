@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use fragbuf_dsl::Registry;
 use fragbuf_dsl::builder::{Buffer, Closure, Format, Function, KeepCount, OptionValue, UniformType, Value, value};
+use fragbuf_templates::vocabulary::Takes;
 
 /// A seeded generator (SplitMix64), the same on every machine.
 pub struct Random(pub u64);
@@ -257,7 +258,10 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
         let mut options: Vec<Option_> = Vec::new();
         for parameter in &row.parameters {
             if random.once_in(2) {
-                let number = OptionValue::Number(parameter.range.0 + random.below(3) as u32);
+                let number = match parameter.takes {
+                    Takes::Number => OptionValue::Number(parameter.range.0 + random.below(3) as u32),
+                    Takes::Attribute => OptionValue::from("depth"),
+                };
                 let option = if random.once_in(10) { OptionValue::from("many") } else { number };
                 options.push((parameter.name.to_string(), option.clone()));
                 if random.once_in(10) {

@@ -1,6 +1,6 @@
 //! Storages of lists: nodes of one pool, linked per pixel.
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step, Takes};
 
 pub(super) fn linked_list() -> Row {
     Row {
@@ -76,6 +76,7 @@ pub(super) fn ordered_list() -> Row {
         parameters: vec![Parameter {
             name: "retries".into(),
             constant: "LINK_TRIES".into(),
+            takes: Takes::Number,
             default: "4096".into(),
             range: (1, 1 << 24),
             summary: "tries to link a node before its fragment is given up and counted".into(),

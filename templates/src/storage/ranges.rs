@@ -1,7 +1,7 @@
 //! A storage of depth ranges: one fragment in each.
 
 use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::vocabulary::{Access, Blend, Fact, Hazard, Parameter, Pass, Row, Step, Takes};
 
 /// The nearest fragment of each of k ranges of depth.
 pub(super) fn depth_ranges() -> Row {
@@ -41,6 +41,7 @@ fn depth(name: &'static str, constant: &'static str, default: &'static str, summ
     Parameter {
         name: name.into(),
         constant: constant.into(),
+        takes: Takes::Number,
         default: default.into(),
         range: (0, 1_000_000),
         summary: summary.into(),

@@ -1,7 +1,7 @@
 //! Storages that count first, and give every pixel a region of exactly the size it needs.
 
 use super::reset_pass;
-use crate::vocabulary::{Access, Blend, Element, Fact, Host, Parameter, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Element, Fact, Host, Parameter, Pass, Resource, Row, Step, Takes};
 
 pub(super) fn exact_regions() -> Row {
     let mut resources = counted_resources("fragments of the pixel; the store pass counts them down again");
@@ -86,6 +86,7 @@ pub(super) fn bounded_regions() -> Row {
         parameters: vec![Parameter {
             name: "array".into(),
             constant: "ARRAY_MOST".into(),
+            takes: Takes::Number,
             default: "16".into(),
             range: (0, 1024),
             summary: "the greatest k for which a crowded pixel keeps an array; beyond it keeps a heap".into(),

@@ -1,7 +1,7 @@
 //! Storages that keep the worst entry at slot 0 and replace it inside a critical section.
 
 use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step, Takes};
 
 pub(super) fn max_array() -> Row {
     Row {
@@ -47,6 +47,7 @@ pub(super) fn revised_array() -> Row {
         parameters: vec![Parameter {
             name: "wait".into(),
             constant: "WAIT_LIMIT".into(),
+            takes: Takes::Number,
             default: "4096".into(),
             range: (1, 1 << 24),
             summary: "looks at the slots of others before a fragment is given up and counted".into(),

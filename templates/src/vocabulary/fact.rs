@@ -45,10 +45,12 @@ facts! {
     CanReplace "that a kept fragment can be replaced";
     Counted "the number of fragments of each pixel, known before they are stored";
     LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
+    KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
     Indexed "kept fragments with an index";
     Passes "a build step for every kept fragment";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
+    StableSort "a sort that leaves fragments of equal depth as the storage gives them";
     // What a description offers.
     Limited "a limit on what is kept: `keep 8`";
     DepthKey "that depth decides which fragment is worst: no criterion";
@@ -59,6 +61,7 @@ facts! {
     Fences "memory fences in fragment shaders";
     Coherent "coherent plain words in buffers";
     Interlock "fragment shader interlock";
+    OrderedInterlock "fragment shader interlock in the order of submission";
     U64Atomics "64-bit atomic operations that return a value";
     EarlyDepth "a forced early depth test";
     MinMaxBlend "blending by minimum and maximum";

@@ -20,5 +20,5 @@ pub use pass::{
     Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
 };
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
-pub use row::{Axis, Hazard, Order, Parameter, Row, Soundness, Template};
+pub use row::{Axis, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
 pub use technique::{KeepDefault, Technique};

@@ -67,6 +67,15 @@ pub struct Template {
     pub own: Option<Text>,
 }
 
+/// What is written as the value of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// A whole number.
+    Number,
+    /// The name of an attribute, which stands for its place among the attributes.
+    Attribute,
+}
+
 /// A number that a user can set on a row; it becomes a generated constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
@@ -74,6 +83,8 @@ pub struct Parameter {
     pub name: Text,
     /// The generated constant.
     pub constant: Text,
+    /// What a user writes.
+    pub takes: Takes,
     /// The value when nothing is said, over the symbols of generation time.
     pub default: Formula,
     /// Least and greatest.
@@ -111,6 +122,10 @@ pub enum Soundness {
 pub enum Order {
     /// By their remaining words: the result depends on the multiset of fragments alone.
     Payload,
+    /// As `Payload`, the words of the attribute that the row's parameter names before all others.
+    Attribute,
+    /// By their order of submission.
+    Submission,
     /// Not at all: whichever comes first.
     Unordered,
 }

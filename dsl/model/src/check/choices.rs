@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Axis, Parameter, Row, Technique};
+use fragbuf_templates::vocabulary::{Axis, Parameter, Row, Takes, Technique};
 
 use super::nearest::{listed, suggestion};
 use crate::variant::{Chosen, Selected};
-use crate::{Alternative, Choice, Diagnostic, Diagnostics, Draft, OptionValue, Origin, Spanned, codes};
+use crate::{Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, Origin, Spanned, codes};
 
 /// The preset that the draft names.
 pub(super) fn technique<'a>(
@@ -32,6 +32,7 @@ pub(super) fn technique<'a>(
 /// The choices on all axes that a user chooses on, in the order of the axes.
 pub(super) fn resolve(
     draft: &Draft,
+    attributes: &[Attribute],
     technique: Option<&Technique>,
     registry: &Registry,
     diagnostics: &mut Diagnostics,
@@ -41,7 +42,7 @@ pub(super) fn resolve(
         // Without its preset nothing is known of the other choices; only what the description says can be looked up.
         for choice in &draft.choices {
             if registry.axis(&choice.axis.value).is_some_and(|axis| axis.chosen) {
-                said(choice, registry, diagnostics);
+                said(choice, attributes, registry, diagnostics);
             }
         }
         return Vec::new();
@@ -51,10 +52,10 @@ pub(super) fn resolve(
         let chosen = match draft.choices.iter().find(|choice| choice.axis.value == axis.key) {
             Some(choice) if !choice.only_options() => {
                 closure_and_effect(draft, choice, diagnostics);
-                said(choice, registry, diagnostics)
+                said(choice, attributes, registry, diagnostics)
             }
             Some(choice) => unsaid(axis, draft, technique, &choices, registry, diagnostics)
-                .map(|chosen| with_options(chosen, choice, diagnostics)),
+                .map(|chosen| with_options(chosen, choice, attributes, diagnostics)),
             None => unsaid(axis, draft, technique, &choices, registry, diagnostics),
         };
         choices.extend(chosen);
@@ -104,7 +105,12 @@ fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnost
 }
 
 /// The options of a choice that names no value belong to the value that is taken anyway.
-fn with_options(mut chosen: Chosen, choice: &Choice, diagnostics: &mut Diagnostics) -> Chosen {
+fn with_options(
+    mut chosen: Chosen,
+    choice: &Choice,
+    attributes: &[Attribute],
+    diagnostics: &mut Diagnostics,
+) -> Chosen {
     let options = choice.alternatives.iter().flat_map(|alternative| &alternative.options);
     for (name, value) in options {
         // An option belongs to every alternative that has it; where none has, the first says what it has.
@@ -112,7 +118,7 @@ fn with_options(mut chosen: Chosen, choice: &Choice, diagnostics: &mut Diagnosti
         let known = chosen.alternatives.iter().any(knows);
         for (index, selected) in chosen.alternatives.iter_mut().enumerate() {
             if knows(selected) || (!known && index == 0) {
-                selected.options.extend(option(&selected.row, name, value, diagnostics));
+                selected.options.extend(option(&selected.row, attributes, name, value, diagnostics));
             }
         }
     }
@@ -120,11 +126,16 @@ fn with_options(mut chosen: Chosen, choice: &Choice, diagnostics: &mut Diagnosti
 }
 
 /// What the description says on an axis.
-fn said(choice: &Choice, registry: &Registry, diagnostics: &mut Diagnostics) -> Option<Chosen> {
+fn said(
+    choice: &Choice,
+    attributes: &[Attribute],
+    registry: &Registry,
+    diagnostics: &mut Diagnostics,
+) -> Option<Chosen> {
     let alternatives: Vec<Selected> = choice
         .alternatives
         .iter()
-        .filter_map(|alternative| selected(&choice.axis, alternative, registry, diagnostics))
+        .filter_map(|alternative| selected(&choice.axis, alternative, attributes, registry, diagnostics))
         .collect();
     let origin = choice.alternatives.first().map_or(&choice.axis.origin, |first| &first.value.origin);
     (!alternatives.is_empty()).then(|| Chosen { axis: choice.axis.value.clone(), origin: origin.clone(), alternatives })
@@ -173,6 +184,7 @@ fn unsaid(
 fn selected(
     axis: &Spanned<String>,
     alternative: &Alternative,
+    attributes: &[Attribute],
     registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) -> Option<Selected> {
@@ -198,13 +210,17 @@ fn selected(
         ));
         return None;
     };
-    let options =
-        alternative.options.iter().filter_map(|(name, value)| option(row, name, value, diagnostics)).collect();
+    let options = alternative
+        .options
+        .iter()
+        .filter_map(|(name, value)| option(row, attributes, name, value, diagnostics))
+        .collect();
     Some(Selected { row: Arc::new(row.clone()), options })
 }
 
 fn option(
     row: &Row,
+    attributes: &[Attribute],
     name: &Spanned<String>,
     value: &Spanned<OptionValue>,
     diagnostics: &mut Diagnostics,
@@ -224,25 +240,34 @@ fn option(
         ));
         return None;
     };
-    match value.value {
-        OptionValue::Number(number) if in_range(parameter, number) => Some((name.value.clone(), number)),
-        _ => {
-            diagnostics.push(bad_option(parameter, &value.origin));
-            None
+    let number = match (&value.value, parameter.takes) {
+        (OptionValue::Number(number), Takes::Number) => Some(*number).filter(|number| in_range(parameter, *number)),
+        (OptionValue::Word(word), Takes::Attribute) => {
+            attributes.iter().position(|attribute| attribute.name.value == *word).map(|index| index as u32)
         }
+        _ => None,
+    };
+    if number.is_none() {
+        diagnostics.push(bad_option(parameter, attributes, &value.origin));
     }
+    number.map(|number| (name.value.clone(), number))
 }
 
 fn in_range(parameter: &Parameter, number: u32) -> bool {
     (parameter.range.0..=parameter.range.1).contains(&number)
 }
 
-fn bad_option(parameter: &Parameter, origin: &Origin) -> Diagnostic {
+fn bad_option(parameter: &Parameter, attributes: &[Attribute], origin: &Origin) -> Diagnostic {
     let (least, greatest) = parameter.range;
+    let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.value.as_str()).collect();
+    let wanted = match parameter.takes {
+        Takes::Number => format!("a whole number from {least} to {greatest}"),
+        Takes::Attribute => format!("an attribute of the payload: {}", listed(&names)),
+    };
     Diagnostic::new(
         codes::BAD_OPTION,
         origin,
-        format!("`{}` is a whole number from {least} to {greatest}", parameter.name),
+        format!("`{}` is {wanted}", parameter.name),
         format!("{}; {} when nothing is said", parameter.summary, parameter.default),
     )
 }

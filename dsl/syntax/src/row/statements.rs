@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Use,
+    Access, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Takes, Use,
 };
 
 use super::line::Line;
@@ -295,6 +295,7 @@ impl Statements {
         self.own.row.parameters.push(Parameter {
             name: name.value.into(),
             constant: constant.value.into(),
+            takes: Takes::Number,
             default: default.value.into(),
             range: (least.value, greatest.value),
             summary: summary(line).into(),
