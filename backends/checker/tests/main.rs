@@ -9,8 +9,10 @@
 )]
 
 mod compiles;
+mod hazards;
 mod litmus;
 mod mutation;
 mod regressions;
+mod repeated;
 mod subjects;
 mod verdicts;

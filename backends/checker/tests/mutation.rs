@@ -34,13 +34,34 @@ const CASCADE: &[Check] = &[
 ];
 const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_array", &[], "wgsl", Model::Late)];
 
-/// Storages whose changes are not tried yet. Of 273 changes to the first four, 35 go unnoticed and unexplained: most want cases
-/// with too little room, which are not tried for storages that keep the k best, because how many find none depends on the
-/// order; one deletes a fence of the revised array.
-const NOT_YET: [&str; 6] =
-    ["revised_array", "ordered_list", "bounded_regions", "wide_cascade", "distinct_cascade", "depth_ranges"];
+const REVISED: &[Check] = &[
+    ("kplus_array_revised", &[], "wgsl", Model::Sequential),
+    ("kplus_array_revised", &[("sync", "interlock")], "spirv", Model::Late),
+    ("kplus_array_revised", &[], "spirv", Model::Late),
+];
+const ORDERED: &[Check] = &[("kb_ll", &[], "wgsl", Model::Sequential), ("kb_ll", &[], "spirv", Model::Late)];
+const BOUNDED: &[Check] = &[
+    ("kplus_ab_sb", &[], "wgsl", Model::Sequential),
+    // A heap for every k.
+    ("kplus_ab_sb", &[("storage.array", "0")], "wgsl", Model::Sequential),
+    ("kplus_ab_sb", &[], "spirv", Model::Late),
+];
+const WIDE: &[Check] =
+    &[("kb_mdt64", &[], "wgsl-native", Model::Sequential), ("kb_mdt64", &[], "wgsl-native", Model::Late)];
+const DISTINCT: &[Check] = &[
+    ("kb_mdt32", &[], "wgsl", Model::Sequential),
+    ("kb_mdt32", &[], "wgsl", Model::Late),
+    ("kb_mdt32", &[("fragment.color", "vec4")], "wgsl", Model::Sequential),
+];
+const RANGES: &[Check] = &[
+    ("depth_partition", &[("sync", "spin_lock")], "wgsl", Model::Sequential),
+    ("depth_partition", &[("storage.near", "200000"), ("storage.far", "600000")], "wgsl", Model::Sequential),
+    // No range but the last begins before it ends; the fifth candidate lies one millionth behind its beginning.
+    ("depth_partition", &[("storage.near", "188795"), ("storage.far", "188795")], "wgsl", Model::Sequential),
+    ("depth_partition", &[("sync", "interlock")], "spirv", Model::Late),
+];
 
-const MUTATED: [(&str, &str, &[Check]); 9] = [
+const MUTATED: [(&str, &str, &[Check]); 15] = [
     ("storage", "max_heap", HEAP),
     ("storage", "cascade", CASCADE),
     ("storage", "fixed_array", ARRAY),
@@ -48,6 +69,12 @@ const MUTATED: [(&str, &str, &[Check]); 9] = [
     ("storage", "sorted_array", SORTED),
     ("storage", "linked_list", LIST),
     ("storage", "exact_regions", REGIONS),
+    ("storage", "revised_array", REVISED),
+    ("storage", "ordered_list", ORDERED),
+    ("storage", "bounded_regions", BOUNDED),
+    ("storage", "wide_cascade", WIDE),
+    ("storage", "distinct_cascade", DISTINCT),
+    ("storage", "depth_ranges", RANGES),
     ("sync", "spin_lock", KPLUS),
     ("sync", "slot_counter", LIST),
 ];
@@ -150,6 +177,95 @@ const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "child += 1u; worst = sibling;",
         "variables of one invocation",
     ),
+    (
+        "storage/revised_array",
+        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
+        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
+        "in what is written inside the lock: nobody reads between the two there, and who waits outside reads keys alone, of \
+         slots that were written before",
+    ),
+    (
+        "storage/revised_array",
+        "for (var attempt = 0u; attempt < WAIT_LIMIT; attempt++) {",
+        "for (var attempt = 0u; attempt <= WAIT_LIMIT; attempt++) {",
+        "one look more: the number of looks is a bound, not a promise",
+    ),
+    (
+        "storage/revised_array",
+        "if worst_slot != 0u {",
+        "if worst_slot != 4294967295u {",
+        "where slot 0 is the worst it already holds the entry, which is written there once more",
+    ),
+    (
+        "storage/revised_array",
+        "worst = resident; worst_slot = slot;",
+        "worst_slot = slot; worst = resident;",
+        "variables of one invocation",
+    ),
+    (
+        "storage/ordered_list",
+        "for (var attempt = 0u; attempt < LINK_TRIES; attempt++) {",
+        "for (var attempt = 0u; attempt <= LINK_TRIES; attempt++) {",
+        "one try more: the number of tries is a bound, not a promise",
+    ),
+    (
+        "storage/ordered_list",
+        "on_lost(nodes_load(beyond - 1u), DISPLACED);",
+        "on_lost(nodes_load(beyond - 2u), DISPLACED);",
+        "`overflow: drop`, the only one that there is, counts a fragment and does not look at it",
+    ),
+    (
+        "storage/bounded_regions",
+        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
+        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
+        "a slot of a pixel that is not crowded is one invocation's, and nobody reads it before the pass has ended",
+    ),
+    (
+        "storage/bounded_regions",
+        "if !bounded_regions_is_crowded(pixel) || offsets_load(pixel + 1u) > frame.kept {",
+        "if !bounded_regions_is_crowded(pixel) || offsets_load(pixel + 1u) >= frame.kept {",
+        "the last region that there is room for has no bound then: nobody is culled there early, and the lock turns away \
+         whom it must",
+    ),
+    (
+        "storage/bounded_regions",
+        "if frame.k > ARRAY_MOST {",
+        "if frame.k >= ARRAY_MOST {",
+        "array and heap keep the same fragments: which of them does is a matter of speed",
+    ),
+    (
+        "storage/bounded_regions",
+        "if slot >= size || begin + slot >= frame.kept {",
+        "if slot > size || begin + slot >= frame.kept {",
+        "slots count down from size - 1 to 0 and then wrap to far beyond any region: none is size itself",
+    ),
+    (
+        "storage/bounded_regions",
+        "return bounded_regions_cursor(pixel, select(left, 0u, left > size));",
+        "return bounded_regions_cursor(pixel, select(left, 0u, left >= size));",
+        "as many are left as the region has slots only where it has none: positions are invariant, so whoever was counted \
+         comes again",
+    ),
+    (
+        "storage/wide_cascade",
+        "return packed_with(packed_of_key(key), 0u, u32(wide - (u64(key) << 32u)));",
+        "return packed_with(packed_of_key(key), 0u, u32(wide - (u64(key) << 33u)));",
+        "what is taken off does not touch the lower word, and u32() takes the lower word here; the template takes \
+         the upper one off all the same, so as to rest on no language's rule for numbers that are too great",
+    ),
+    (
+        "storage/distinct_cascade",
+        "if key >= entry.key {",
+        "if key > entry.key {",
+        "a way out early: slots behind that of a key have greater ones",
+    ),
+    ("storage/distinct_cascade", "return;", "", "the same, in the second pass"),
+    (
+        "storage/depth_ranges",
+        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
+        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
+        "inside the critical section nobody reads between the two, and nothing is read outside it",
+    ),
     ("sync/spin_lock", "const TAKEN = 1u;", "const TAKEN = 2u;", "every word but FREE means taken"),
     (
         "sync/spin_lock",
@@ -168,11 +284,23 @@ struct Mutant {
 }
 
 #[test]
-fn every_storage_is_changed_or_named() {
+fn every_storage_is_changed() {
     let registry = Registry::builtin();
     for row in registry.rows_of("storage") {
-        let changed = MUTATED.iter().any(|(axis, key, _)| *axis == row.axis && *key == row.key);
-        assert!(changed != NOT_YET.contains(&row.key.as_str()), "{}", row.key);
+        assert!(MUTATED.iter().any(|(axis, key, _)| *axis == row.axis && *key == row.key), "{}", row.key);
+    }
+}
+
+/// Without a change nothing is to be noticed.
+#[test]
+fn every_check_of_a_change_holds_without_it() {
+    let registry = Registry::builtin();
+    for (technique, set, target, model) in MUTATED.iter().flat_map(|(_, _, checks)| *checks) {
+        for limits in [limits(2, *model), deep(*model)] {
+            let report = report(technique, set, target, &limits, &registry).unwrap();
+            let fault = report.failure.filter(|_| !report.is_stated);
+            assert_eq!(fault, None, "{technique} {set:?} {target} {model:?}");
+        }
     }
 }
 
@@ -207,16 +335,18 @@ fn every_small_change_is_noticed() {
         results.iter().filter(|(outcome, _)| *outcome == Outcome::Survived).map(|(_, name)| name).collect();
     survivors.sort();
     println!("{} changes: {noticed} noticed, {illegal} are no legal WGSL, {} survive", results.len(), survivors.len());
-    let excused = |name: &&&String| {
-        SURVIVORS.iter().any(|(row, before, after, _)| **name == &format!("{row}: `{before}` -> `{after}`"))
-    };
-    let unexcused: Vec<&&String> = survivors.iter().filter(|name| !excused(name)).collect();
+    let excuses: Vec<String> =
+        SURVIVORS.iter().map(|(row, before, after, _)| format!("{row}: `{before}` -> `{after}`")).collect();
+    // A line that stands in a template twice has two names that are alike, and needs two reasons.
+    let count_of = |name: &String, all: &[&String]| all.iter().filter(|other| **other == name).count();
+    let excuses: Vec<&String> = excuses.iter().collect();
+    let unexcused: Vec<&&String> =
+        survivors.iter().filter(|name| count_of(name, &survivors) > count_of(name, &excuses)).collect();
     assert!(unexcused.is_empty(), "nothing notices:\n{unexcused:#?}");
-    assert!(noticed > 100, "only {noticed} changes");
-    for (row, before, after, reason) in SURVIVORS {
-        let name = format!("{row}: `{before}` -> `{after}`");
-        assert!(survivors.contains(&&name), "{name} is noticed by now, though it should survive: {reason}");
-    }
+    let noticed_by_now: Vec<&&String> =
+        excuses.iter().filter(|name| count_of(name, &survivors) < count_of(name, &excuses)).collect();
+    assert!(noticed_by_now.is_empty(), "noticed by now, though they should survive:\n{noticed_by_now:#?}");
+    assert!(noticed > 400, "only {noticed} changes");
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,7 +372,7 @@ fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     for (technique, set, target, model) in checks {
         for limits in [limits(2, *model), deep(*model)] {
             match report(technique, set, target, &limits, &registry) {
-                Ok(report) if report.failure.is_some() => return Outcome::Noticed,
+                Ok(report) if report.failure.is_some() && !report.is_stated => return Outcome::Noticed,
                 Ok(_) => {}
                 Err(Error::Unable(_)) => return Outcome::Noticed,
                 Err(Error::Description(faults)) => {
