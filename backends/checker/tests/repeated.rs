@@ -33,7 +33,7 @@ fn registry(text: &str, at_most: &'static str) -> Registry {
 }
 
 fn checked(registry: &Registry, model: Model, entries: &[u32], fragments: u32) -> Report {
-    let limits = Limits { entries: entries.to_vec(), ..limits(fragments, model) };
+    let limits = Limits { fragments: vec![fragments], entries: entries.to_vec(), ..limits(2, model) };
     report("kb", &[("sort", "insertion")], "wgsl", &limits, registry).unwrap()
 }
 
