@@ -21,7 +21,7 @@ pub(crate) const WIDTH: u32 = 2;
 const LONGEST: usize = 256;
 
 /// What memory holds before anybody has written to it: neither zero nor a sentinel, and a better key than any.
-const STALE: u32 = 17;
+pub(crate) const STALE: u32 = 17;
 
 /// A frame on its way.
 #[derive(Clone, Debug)]

@@ -8,6 +8,7 @@ use std::ops::RangeInclusive;
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Effect;
 
+use crate::frame::STALE;
 use crate::promise::Promise;
 
 /// What is promised for one pixel.
@@ -190,7 +191,8 @@ impl Policy {
         let may = |effect| self.effects.contains(&effect);
         let has_word = |at: usize, word: u32| {
             let torn = |other: &Vec<u32>| may(Effect::Torn) || may(Effect::TornEquals) && other[0] == entry[0];
-            self.fragments.iter().any(|other| other[at] == word && torn(other))
+            let is_stale = may(Effect::Stale) && at > 0 && word == STALE;
+            is_stale || self.fragments.iter().any(|other| other[at] == word && torn(other))
         };
         self.fragments.iter().any(|other| other == entry)
             || entry.iter().enumerate().all(|(at, word)| has_word(at, *word))

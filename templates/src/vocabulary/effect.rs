@@ -12,6 +12,8 @@ pub enum Effect {
     Duplicate,
     /// Every word of an entry is that word of some fragment of the pixel, but not all of one.
     Torn,
+    /// A word beside a key is what stood there before the frame.
+    Stale,
     /// Entries are not in the order that the row promises.
     Unsorted,
     /// Of fragments with equal keys one is kept, and the others are counted.
@@ -26,10 +28,11 @@ pub enum Effect {
 }
 
 /// Every name that says an effect.
-const NAMES: [(&str, Effect); 8] = [
+const NAMES: [(&str, Effect); 9] = [
     ("lost-update", Effect::Lost),
     ("duplicate", Effect::Duplicate),
     ("torn", Effect::Torn),
+    ("stale", Effect::Stale),
     ("unsorted", Effect::Unsorted),
     ("equal-keys", Effect::EqualKeys),
     ("torn-equal-keys", Effect::TornEquals),
