@@ -9,6 +9,7 @@ use std::collections::{HashMap, HashSet};
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
 use fragbuf_interpreter::{Exit, Machine, Program};
+use fragbuf_templates::vocabulary::Fact;
 
 use crate::case::Case;
 use crate::explore::{End, Failure, Found, Judge, Step, What, explore};
@@ -38,8 +39,8 @@ pub(crate) struct Trial<'s> {
     pub(crate) rounds: Vec<Round<'s>>,
     neighbour: Fragment,
     policy: Policy,
-    /// What the host must make room for.
-    wanted: u64,
+    /// What the host must make room for, where the rows say that a pass counts it.
+    wanted: Option<u64>,
 }
 
 /// One beginning of the pass under test.
@@ -68,6 +69,7 @@ impl<'s> Trial<'s> {
         let real = case.new.len() - usize::from(case.has_helper);
         let counted = case.prior.len() + real - usize::from(case.room.has_unseen);
         let wanted = case.k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1;
+        let wanted = subject.plan.selection.offers().contains(&Fact::Counted).then_some(wanted);
         let fragments = case.prior.iter().chain(&case.new[..real]).map(|fragment| fragment.words.clone()).collect();
         let policy = Policy {
             promise: Promise::new(subject, case.k),
@@ -221,8 +223,10 @@ impl<'s> EndJudge<'_, 's> {
             self.goes_on.insert(words.to_vec(), frame);
             return Ok(End::GoesOn);
         }
-        if let Some(asked) = frame.asked.filter(|asked| *asked != trial.wanted) {
-            return Ok(End::Wrong(format!("room is made for {asked} fragments, and {} are stored", trial.wanted)));
+        if let (Some(asked), Some(wanted)) = (frame.asked, trial.wanted)
+            && asked != wanted
+        {
+            return Ok(End::Wrong(format!("room is made for {asked} fragments, and {wanted} are stored")));
         }
         let kept = frame.read_out(trial.case.pixel)?;
         let beside = frame.read_out(WIDTH - 1 - trial.case.pixel)?;
