@@ -169,6 +169,9 @@ fn as_text(key: &str, on: &str, limits: &Limits, report: &Report) -> String {
             text.push_str(&format!("  stated: {name}: {what}\n"));
         }
         text.push('\n');
+    } else if !report.hazards.is_empty() {
+        let names: Vec<&str> = report.hazards.iter().map(|(name, _)| name.as_str()).collect();
+        text.push_str(&format!("  beyond what is stated, which is {}\n\n", names.join(", ")));
     }
     text.push_str(&schedule_text(schedule));
     text

@@ -72,6 +72,11 @@ fn sorted_array() -> Row {
                 unless: Some(Fact::Critical),
             },
             Hazard {
+                name: "stale".into(),
+                what: "a key is seen before what stands beside it, and moves on with what the slot held before".into(),
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
                 name: "unsorted".into(),
                 what: "the entries of a pixel are not in the order of their keys".into(),
                 unless: Some(Fact::Critical),

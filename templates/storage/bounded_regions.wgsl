@@ -40,9 +40,6 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_reserve(pixel: u32, entry: Packed) -> bool {
-    if is_helper_lane() {
-        return true;
-    }
     if bounded_regions_is_crowded(pixel) {
         return false;
     }

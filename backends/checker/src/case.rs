@@ -4,41 +4,51 @@
 //! orders of arrival) with fragments between, before, behind and equal to what is there; too little room; a pass that did
 //! not see a fragment. Which of the new fragments comes first is the search's affair.
 
-use fragbuf_templates::vocabulary::{Fact, Kind, Step};
+use fragbuf_templates::vocabulary::{Fact, Kind};
 
 use crate::fragments::{Candidates, Fragment};
-use crate::frame::{Symbols, WIDTH};
+use crate::room::{Asking, Room, rooms};
 use crate::subject::Subject;
 
 /// One case.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    pub(crate) symbols: Symbols,
+    pub(crate) k: Option<u32>,
     /// In the order of arrival.
     pub(crate) prior: Vec<Fragment>,
     pub(crate) new: Vec<Fragment>,
     /// The pass whose fragments come at once, by its number among those that compute or draw.
     pub(crate) pass: usize,
-    /// Whether earlier geometry passes did not see the last new fragment.
-    pub(crate) has_unseen: bool,
-    /// Fragments that a pool has no room for.
-    pub(crate) too_many: u32,
-    /// The room that was reserved in place of what the host would allocate: too little, and the neighbour's is gone too.
-    pub(crate) reserved: Option<u32>,
+    pub(crate) room: Room,
+    /// The pixel under test, of two.
+    pub(crate) pixel: u32,
     /// Whether the last new fragment is a helper invocation.
     pub(crate) has_helper: bool,
     /// In words.
     pub(crate) what: String,
 }
 
+/// The fragments of a case, before it is said which pass they come to and what room there is.
+struct Comers {
+    k: Option<u32>,
+    prior: Vec<Fragment>,
+    new: Vec<Fragment>,
+    what: String,
+    may_give_up: bool,
+}
+
 /// How the keys of new fragments lie to those that are there.
-const PATTERNS: [(&str, [Pick; 4]); 5] = [
+const PATTERNS: [(&str, [Pick; 4]); 6] = [
     ("keys between those kept", [Pick::Rank(4), Pick::Rank(2), Pick::Rank(6), Pick::Rank(1)]),
     ("keys better than all kept", [Pick::Rank(0), Pick::Rank(1), Pick::Rank(2), Pick::Rank(0)]),
     ("keys worse than all kept", [Pick::Rank(20), Pick::Rank(21), Pick::Rank(22), Pick::Rank(23)]),
     ("one key, two payloads", [Pick::Rank(5), Pick::Twin(5), Pick::Rank(5), Pick::Twin(5)]),
+    (TWO_ALIKE, [Pick::Rank(4), Pick::Rank(4), Pick::Rank(6), Pick::Rank(2)]),
     ("all alike", [Pick::Rank(5), Pick::Rank(5), Pick::Rank(5), Pick::Rank(5)]),
 ];
+
+/// Of two fragments it says no more than that all are alike.
+const TWO_ALIKE: &str = "two alike and others";
 
 #[derive(Clone, Copy)]
 enum Pick {
@@ -49,13 +59,20 @@ enum Pick {
 /// What a pixel may hold before.
 const PRIOR: [usize; 8] = [3, 5, 7, 9, 13, 15, 17, 19];
 
-/// Every case for `count` new fragments and `k` entries; `k` is `None` where all are kept.
-pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: Option<u32>) -> Vec<Case> {
+/// Every case for `count` new fragments and `k` entries; `k` is `None` where all are kept. `may_give_up`: tries are bounded
+/// so low that fragments may be.
+pub(crate) fn cases(
+    subject: &Subject,
+    candidates: &Candidates,
+    (count, k): (u32, Option<u32>),
+    may_give_up: bool,
+) -> Result<Vec<Case>, String> {
     let mut cases = Vec::new();
     for (prior, arrival) in priors(k) {
         for (pattern, picks) in &PATTERNS {
             let alone = prior.is_empty();
-            if alone && (pattern.contains("better") || pattern.contains("worse")) {
+            let is_told_elsewhere = alone && (pattern.contains("better") || pattern.contains("worse"));
+            if is_told_elsewhere || *pattern == TWO_ALIKE && count < 3 {
                 continue;
             }
             let picked = picks.iter().cycle().take(count as usize).map(|pick| match pick {
@@ -65,21 +82,10 @@ pub(crate) fn cases(subject: &Subject, candidates: &Candidates, count: u32, k: O
             let new: Vec<Fragment> = picked.collect();
             let prior: Vec<Fragment> = prior.iter().map(|rank| candidates.ranked[*rank].clone()).collect();
             let what = format!("{arrival}, {count} at once, {pattern}");
-            let base = Case {
-                symbols: Symbols { k, fragments: None, kept: None },
-                prior,
-                new,
-                pass: 0,
-                has_unseen: false,
-                too_many: 0,
-                reserved: None,
-                has_helper: false,
-                what,
-            };
-            placed(subject, &base, &mut cases);
+            placed(subject, &Comers { k, prior, new, what, may_give_up }, &mut cases)?;
         }
     }
-    cases
+    Ok(cases)
 }
 
 /// What may be there before, by rank in the order of arrival, and what it is called: every order of up to three, five
@@ -137,53 +143,41 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
     orders
 }
 
-/// The same case for every pass that draws, with enough room, too little, and a fragment that was not seen before.
-fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
-    let frame = &subject.plan.frame;
-    let is_set = subject.plan.steps.iter().any(|step| matches!(step, Step::Host(_)));
-    let needs_room = frame.iter().any(|field| field == "fragments" || field == "n") && !is_set;
-    let total = (base.prior.len() + base.new.len()) as u32 + WIDTH - 1;
-    let mut drawn_before = false;
-    for (pass, runnable) in subject.passes.iter().enumerate().filter(|(_, pass)| pass.pass.kind == Kind::Geometry) {
-        let name = format!("pass {}, {}", runnable.pass.anchor, base.what);
-        let case = Case { pass, what: name, ..base.clone() };
-        // A helper invocation takes no room.
-        let with_room = |too_many: u32| {
-            let symbols = Symbols { fragments: needs_room.then_some(total - too_many), ..base.symbols.clone() };
-            Case { symbols, too_many, ..case.clone() }
+/// The same fragments for every pass that draws, with enough room, too little, and one that was not seen before; at the last
+/// pixel of the frame too; and one that is a helper invocation.
+fn placed(subject: &Subject, comers: &Comers, cases: &mut Vec<Case>) -> Result<(), String> {
+    let Comers { k, prior, new, may_give_up, .. } = comers;
+    let drawn = subject.passes.iter().enumerate().filter(|(_, pass)| pass.pass.kind == Kind::Geometry);
+    for (number, (pass, runnable)) in drawn.enumerate() {
+        let case = |room: Room, pixel: u32, has_helper: bool| {
+            let place = if pixel > 0 { "the last pixel" } else { "" };
+            let notes = [place, room.what, if has_helper { "the last a helper invocation" } else { "" }];
+            let notes: String = notes.iter().filter(|note| !note.is_empty()).map(|note| format!(", {note}")).collect();
+            let what = format!("pass {}, {}{notes}", runnable.pass.anchor, comers.what);
+            Case { k: *k, prior: prior.clone(), new: new.clone(), pass, room, pixel, has_helper, what }
         };
-        cases.push(with_room(0));
-        // How many find no room where fragments can be turned away first depends on the order.
-        if needs_room && !subject.keeps_best() {
-            let short = with_room(1);
-            cases.push(Case { what: format!("{}, room for one less", short.what), ..short });
+        let asking = |new, pixel| Asking { prior, new, k: *k, may_give_up: *may_give_up, pixel };
+        for room in rooms(subject, &asking(new, 0), number > 0)? {
+            cases.push(case(room, 0, false));
         }
-        if drawn_before && is_set && !subject.keeps_best() {
-            let what = format!("{}, room reserved for one less", case.what);
-            let room = total - WIDTH;
-            cases.push(Case { too_many: 1, reserved: Some(room), what, ..with_room(0) });
+        if !comers.what.contains("between") {
+            continue;
         }
-        if drawn_before && is_set && !subject.keeps_best() {
-            let what = format!("{}, one not seen by the pass before", case.what);
-            cases.push(Case { has_unseen: true, what, ..with_room(0) });
+        for room in rooms(subject, &asking(new, 1), number > 0)? {
+            cases.push(case(room, 1, false));
         }
-        if subject.has_fences && base.what.contains("between") {
-            let what = format!("{}, the last a helper invocation", case.what);
-            cases.push(Case { has_helper: true, what, too_many: 0, ..with_room(u32::from(needs_room)) });
+        // A helper invocation takes no room.
+        if subject.has_fences {
+            let enough = rooms(subject, &asking(&new[..new.len() - 1], 0), false)?.into_iter().next();
+            cases.extend(enough.map(|room| case(room, 0, true)));
         }
-        drawn_before = true;
     }
+    Ok(())
 }
 
 impl Subject {
     /// Whether the storage keeps no more than k; else it keeps all.
     pub(crate) fn keeps_best(&self) -> bool {
         !self.plan.selection.offers().contains(&Fact::KeepsAll)
-    }
-
-    /// Whether what must be kept is known: all, or the k best. Of any other storage only that is known which holds for all.
-    pub(crate) fn is_known(&self) -> bool {
-        let offers = self.plan.selection.offers();
-        offers.contains(&Fact::KeepsAll) || offers.contains(&Fact::KeepsBest)
     }
 }

@@ -15,20 +15,55 @@ use crate::state::{Ground, Mishap, State, Status, race};
 pub(crate) trait Judge {
     /// What is wrong with memory at this instant.
     fn instant(&mut self, words: &[u32]) -> Option<String>;
-    /// What is wrong with memory at the end.
-    fn end(&mut self, words: &[u32]) -> Option<String>;
+    /// What is to be said of memory at the end.
+    fn end(&mut self, words: &[u32]) -> End;
+}
+
+/// What a judge says of an end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    Right,
+    /// Not right, in words, but no worse than is stated.
+    Stated(String),
+    Wrong(String),
+    /// It is no end: the pass is drawn again.
+    GoesOn,
 }
 
 /// One step: which fragment, and in which of the ways.
 pub(crate) type Step = (usize, u32);
 
 /// What a search found.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Found {
     pub(crate) states: usize,
     /// Whether every state was followed, or some were beyond the limit.
     pub(crate) is_whole: bool,
     pub(crate) failure: Option<Failure>,
+    /// The first end that is no worse than is stated.
+    pub(crate) stated: Option<Failure>,
+    /// Memory at ends from which the pass is drawn again, and how each was reached first.
+    pub(crate) goes_on: Vec<(Vec<u32>, Vec<Step>)>,
+}
+
+impl Found {
+    /// Takes note of an end that the steps lead to; the failure, if it is one.
+    pub(crate) fn note(&mut self, end: End, words: &[u32], steps: impl FnOnce() -> Vec<Step>) -> Option<Failure> {
+        match end {
+            End::Right => None,
+            End::Wrong(text) => Some(Failure { steps: steps(), what: What::Outcome(text) }),
+            End::Stated(text) => {
+                self.stated.get_or_insert_with(|| Failure { steps: steps(), what: What::Outcome(text) });
+                None
+            }
+            End::GoesOn => {
+                if !self.goes_on.iter().any(|(known, _)| known == words) {
+                    self.goes_on.push((words.to_vec(), steps()));
+                }
+                None
+            }
+        }
+    }
 }
 
 /// The shortest way to a failure.
@@ -63,7 +98,7 @@ pub(crate) fn explore(ground: &Ground<'_>, first: State, judge: &mut dyn Judge, 
         edges: Vec::new(),
         ends: Vec::new(),
         waiting: VecDeque::new(),
-        states: 0,
+        found: Found::default(),
     };
     let running = (0..first.fragments.len()).filter(|fragment| first.fragments[*fragment] != Status::Ended).collect();
     search.visit(first, None);
@@ -71,7 +106,7 @@ pub(crate) fn explore(ground: &Ground<'_>, first: State, judge: &mut dyn Judge, 
     if failure.is_none() && search.waiting.is_empty() {
         failure = search.dead_end().map(|steps| Failure { steps, what: What::Circling(running) });
     }
-    Found { states: search.states, is_whole: search.waiting.is_empty() || failure.is_some(), failure }
+    Found { is_whole: search.waiting.is_empty() || failure.is_some(), failure, ..search.found }
 }
 
 struct Search<'a, 'p> {
@@ -84,7 +119,7 @@ struct Search<'a, 'p> {
     edges: Vec<(u32, u32)>,
     ends: Vec<u32>,
     waiting: VecDeque<(State, u32)>,
-    states: usize,
+    found: Found,
 }
 
 impl Search<'_, '_> {
@@ -97,7 +132,7 @@ impl Search<'_, '_> {
                 let (parent, (fragment, choice)) = from.unwrap_or((u32::MAX, (0, 0)));
                 self.parents.push((parent, fragment as u8, choice as u8));
                 self.waiting.push_back((state, number));
-                self.states += 1;
+                self.found.states += 1;
                 number
             }
         };
@@ -111,7 +146,7 @@ impl Search<'_, '_> {
             if let Some(what) = self.follow(&state, number, judge) {
                 return Some(what);
             }
-            if self.states >= limit {
+            if self.found.states >= limit {
                 return None;
             }
         }
@@ -129,7 +164,8 @@ impl Search<'_, '_> {
             (0..state.fragments.len()).filter(|fragment| state.fragments[*fragment] != Status::Ended).collect();
         if running.is_empty() {
             self.ends.push(number);
-            return judge.end(&state.words).and_then(|text| fail(self, What::Outcome(text)));
+            let parents = &self.parents;
+            return self.found.note(judge.end(&state.words), &state.words, || path(parents, number));
         }
         for &fragment in &running {
             if self.ground.waits(&mut self.machine, state, fragment) {
@@ -181,19 +217,23 @@ impl Search<'_, '_> {
         ends.iter().position(|reaches| !reaches).map(|state| self.path(state as u32))
     }
 
-    /// The steps that lead to a state.
-    fn path(&self, mut number: u32) -> Vec<Step> {
-        let mut steps = Vec::new();
-        while let Some(&(parent, fragment, choice)) = self.parents.get(number as usize) {
-            if parent == u32::MAX {
-                break;
-            }
-            steps.push((usize::from(fragment), u32::from(choice)));
-            number = parent;
-        }
-        steps.reverse();
-        steps
+    fn path(&self, number: u32) -> Vec<Step> {
+        path(&self.parents, number)
     }
+}
+
+/// The steps that lead to a state.
+fn path(parents: &[(u32, u8, u8)], mut number: u32) -> Vec<Step> {
+    let mut steps = Vec::new();
+    while let Some(&(parent, fragment, choice)) = parents.get(number as usize) {
+        if parent == u32::MAX {
+            break;
+        }
+        steps.push((usize::from(fragment), u32::from(choice)));
+        number = parent;
+    }
+    steps.reverse();
+    steps
 }
 
 /// Two fragments that are about to race. What a helper invocation reads is of no consequence.

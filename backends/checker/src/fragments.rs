@@ -4,7 +4,6 @@
 //! as. The words are what the program itself makes of the fragment; the order over them is stated here anew.
 
 use fragbuf_interpreter::{Exit, Input, Machine, Program};
-use fragbuf_templates::vocabulary::Order;
 use naga::{Binding, BuiltIn, ScalarKind};
 
 use crate::frame::Memory;
@@ -166,13 +165,4 @@ fn seeded(input: &Input, seed: u32) -> Vec<u32> {
             }
         })
         .collect()
-}
-
-/// The words that decide which fragment is better, from the first on.
-pub(crate) fn deciding_words(subject: &Subject) -> usize {
-    let order = subject.plan.selection.rows.iter().find_map(|selected| selected.row.order);
-    match order {
-        Some(Order::Unordered | Order::Submission) => 1,
-        Some(Order::Payload | Order::Attribute) | None => subject.plan.layout.entry_words() as usize,
-    }
 }

@@ -4,44 +4,24 @@
 //! with anything else.
 
 use fragbuf_codegen::FIRST_BINDING;
+use fragbuf_frame::{Decision, Symbols, resource};
 use fragbuf_interpreter::{Dispatch, Exit, Machine, Program, Sequential, Space, dispatch};
-use fragbuf_templates::vocabulary::{Kind, Step};
+use fragbuf_templates::vocabulary::{Host, Kind, Step};
 
 use crate::subject::{Runnable, Subject};
+use crate::turns::Turn;
 
 /// One row of words per binding; what is not a buffer is empty.
 pub(crate) type Memory = Vec<Vec<u32>>;
 
-/// Pixels of the frame: the one under test, and a neighbour that must stay as it is.
+/// Pixels of the frame, which is one row: the one under test, and a neighbour that must stay as it is.
 pub(crate) const WIDTH: u32 = 2;
 
 /// Fragments that a walk over a pixel reads before it is said to have no end.
 const LONGEST: usize = 256;
 
 /// What memory holds before anybody has written to it: neither zero nor a sentinel, and a better key than any.
-const STALE: u32 = 17;
-
-/// Values of symbols.
-#[derive(Clone, Debug)]
-pub(crate) struct Symbols {
-    pub(crate) k: Option<u32>,
-    pub(crate) fragments: Option<u32>,
-    pub(crate) kept: Option<u32>,
-}
-
-/// The value of a symbol, where it has one by now.
-pub(crate) fn value(subject: &Subject, symbols: &Symbols, symbol: &str) -> Option<u64> {
-    match symbol {
-        "width" | "pixels" => Some(WIDTH.into()),
-        "height" => Some(1),
-        "k" => symbols.k.map(u64::from),
-        "fragments" => symbols.fragments.map(u64::from),
-        "kept" => symbols.kept.map(u64::from),
-        // Slots of each pixel: the one under test gets all the room but the neighbour's.
-        "n" => symbols.fragments.map(|fragments| u64::from(fragments.saturating_sub(WIDTH - 1))),
-        _ => subject.plan.bound.value(symbol),
-    }
-}
+pub(crate) const STALE: u32 = 17;
 
 /// A frame on its way.
 #[derive(Clone, Debug)]
@@ -51,102 +31,116 @@ pub(crate) struct Frame<'s> {
     pub(crate) symbols: Symbols,
     /// The most that host steps allocate.
     pub(crate) reserved: Option<u32>,
+    /// What host steps would allocate.
+    pub(crate) asked: Option<u64>,
+    /// The round of the loop that ends when a word is zero.
+    round: u32,
 }
+
+/// How the fragments of a pass are given: one row of words per input.
+pub(crate) type Fragments<'a> = dyn Fn(&Runnable) -> Vec<Vec<Vec<u32>>> + 'a;
 
 impl<'s> Frame<'s> {
     /// Memory before the first step. What no symbol sizes yet is empty.
-    pub(crate) fn new(subject: &'s Subject, symbols: Symbols) -> Self {
+    pub(crate) fn new(subject: &'s Subject, symbols: Symbols) -> Result<Self, String> {
         let count = FIRST_BINDING as usize + subject.plan.resources.len();
-        let mut frame = Frame { subject, memory: vec![Vec::new(); count], symbols, reserved: None };
+        let memory = vec![Vec::new(); count];
+        let mut frame = Frame { subject, memory, symbols, reserved: None, asked: None, round: 0 };
         // Every component of every uniform is 1: constraints by a bound admit something.
         frame.memory[1] = vec![1f32.to_bits(); 256];
         frame.memory[2] = vec![0; 16];
-        frame.allocate();
-        frame
+        frame.allocate()?;
+        Ok(frame)
     }
 
     /// Gives room to whatever can be sized by now, and tells the programs.
-    fn allocate(&mut self) {
-        let (subject, symbols) = (self.subject, self.symbols.clone());
-        for (planned, words) in subject.plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
-            if let Ok(size) = planned.words.evaluate(&|symbol| value(subject, &symbols, symbol)) {
-                words.resize((size as usize).max(1), STALE);
-            }
+    fn allocate(&mut self) -> Result<(), String> {
+        let plan = &self.subject.plan;
+        for (planned, words) in plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
+            let size = self.symbols.evaluate(plan, &planned.words, &planned.resource.name);
+            words.resize((size.map_err(|error| error.to_string())? as usize).max(1), STALE);
         }
-        let fields = subject.plan.frame.iter();
-        self.memory[0] = fields.map(|field| value(subject, &symbols, field).unwrap_or(0) as u32).collect();
+        self.enter(0)
     }
 
-    /// Does the steps from `from` up to that of the number `to`. Geometry passes insert `fragments`.
-    pub(crate) fn advance(
-        &mut self,
-        from: usize,
-        to: usize,
-        fragments: &dyn Fn(&Runnable) -> Vec<Vec<Vec<u32>>>,
-    ) -> Result<(), String> {
+    /// Does turns, beginning with that of the number `from`, up to the turn `to`; whether it came to that, or to the end.
+    /// Geometry passes insert `fragments`.
+    pub(crate) fn advance(&mut self, from: usize, to: usize, fragments: &Fragments<'_>) -> Result<bool, String> {
         let subject = self.subject;
-        for (number, (step, round)) in subject.steps.iter().enumerate().take(to).skip(from) {
-            self.enter(*round);
-            match step {
-                Step::Clear { resource, value } => self.resource(resource)?.fill(*value),
-                Step::Pass(_) => {
-                    if let Some(runnable) = subject.passes.iter().find(|other| other.step == number) {
-                        self.pass(runnable, fragments)?;
-                    }
+        let mut number = from;
+        while let Some(turn) = subject.turns.get(number) {
+            if number == to {
+                return Ok(true);
+            }
+            match turn {
+                Turn::Step { step, round } => {
+                    self.enter(*round)?;
+                    self.step(step, number, fragments)?;
+                    number += 1;
                 }
-                Step::Host(host) => {
-                    for (read, set) in host.reads.iter().zip(&host.sets) {
-                        let decided = self.host_value(read)?;
-                        let room = self.reserved.map_or(decided, |room| room.min(decided));
-                        match set.as_str() {
-                            "fragments" => self.symbols.fragments = Some(room),
-                            "kept" => self.symbols.kept = Some(room),
-                            other => return Err(format!("the checker does not know what sets `{other}`")),
-                        }
-                    }
-                    self.allocate();
+                Turn::Again { from, word, at_most } => {
+                    let is_over = self.memory[FIRST_BINDING as usize + word].first().is_none_or(|word| *word == 0);
+                    let goes_on = !is_over && self.round + 1 < *at_most;
+                    self.round = if goes_on { self.round + 1 } else { 0 };
+                    number = if goes_on { *from } else { number + 1 };
                 }
-                Step::Copy { .. } | Step::Swap(..) | Step::Repeat(_) => {
-                    return Err("the checker does not run copies, exchanges or loops of unknown length yet".to_owned());
+            }
+        }
+        Ok(false)
+    }
+
+    fn step(&mut self, step: &Step, number: usize, fragments: &Fragments<'_>) -> Result<(), String> {
+        match step {
+            Step::Clear { resource, value } => self.resource(resource)?.fill(*value),
+            Step::Pass(_) => {
+                if let Some(runnable) = self.subject.passes.iter().find(|other| other.turn == number) {
+                    self.pass(runnable, fragments)?;
                 }
+            }
+            Step::Host(host) => self.decide(host)?,
+            Step::Copy { .. } | Step::Swap(..) | Step::Repeat(_) => {
+                return Err("the checker does not run copies and exchanges yet".to_owned());
             }
         }
         Ok(())
     }
 
     /// Tells the programs the round of the loop that they are in.
-    pub(crate) fn enter(&mut self, round: u32) {
-        let fields = self.subject.plan.frame.iter();
-        for (field, word) in fields.zip(&mut self.memory[0]) {
-            if field == "iteration" {
-                *word = round;
-            }
-        }
+    pub(crate) fn enter(&mut self, round: u32) -> Result<(), String> {
+        let words = self.symbols.frame_words(&self.subject.plan, 0, self.round + round);
+        self.memory[0] = words.map_err(|error| error.to_string())?;
+        Ok(())
     }
 
     fn resource(&mut self, name: &str) -> Result<&mut Vec<u32>, String> {
-        let found = self.subject.plan.resources.iter().position(|planned| planned.resource.name == name);
-        let index = found.ok_or_else(|| format!("no resource `{name}`"))?;
+        let index = resource(&self.subject.plan, name).map_err(|error| error.to_string())?;
         Ok(&mut self.memory[FIRST_BINDING as usize + index])
     }
 
-    /// `offsets[pixels]`
-    fn host_value(&mut self, read: &str) -> Result<u32, String> {
-        let (name, place) = read.split_once('[').unwrap_or((read, "0]"));
-        let place = fragbuf_templates::vocabulary::Formula::from(place.trim_end_matches(']').to_owned());
-        let (subject, symbols) = (self.subject, self.symbols.clone());
-        let at = place.evaluate(&|symbol| value(subject, &symbols, symbol)).map_err(|error| error.to_string())?;
-        let words = self.resource(name)?;
-        words.get(at as usize).copied().ok_or_else(|| format!("`{read}` is not there"))
+    /// The host reads, decides, and makes room, but no more than is reserved.
+    fn decide(&mut self, host: &Host) -> Result<(), String> {
+        let plan = &self.subject.plan;
+        let decision = Decision::of(host, plan).map_err(|error| error.to_string())?;
+        let mut read = Vec::new();
+        for (resource, place) in &decision.reads {
+            let at = self.symbols.evaluate(plan, place, &host.function).map_err(|error| error.to_string())?;
+            let word = self.memory[FIRST_BINDING as usize + resource].get(at as usize);
+            read.push(*word.ok_or_else(|| format!("word {at}, which the host reads, is not there"))?);
+        }
+        decision.apply(&read, &mut self.symbols);
+        self.asked = self.symbols.counted.iter().filter_map(|(_, room)| *room).max();
+        if let Some(most) = self.reserved.map(u64::from) {
+            self.symbols.counted.iter_mut().for_each(|(_, room)| *room = room.map(|room| room.min(most)));
+        }
+        self.allocate()
     }
 
-    fn pass(&mut self, runnable: &Runnable, fragments: &dyn Fn(&Runnable) -> Vec<Vec<Vec<u32>>>) -> Result<(), String> {
-        let (subject, symbols) = (self.subject, self.symbols.clone());
+    fn pass(&mut self, runnable: &Runnable, fragments: &Fragments<'_>) -> Result<(), String> {
         match &runnable.pass.kind {
             Kind::Compute { groups } => {
                 let mut counts = [1; 3];
                 for (count, formula) in counts.iter_mut().zip(groups) {
-                    let groups = formula.evaluate(&|symbol| value(subject, &symbols, symbol));
+                    let groups = self.symbols.evaluate(&self.subject.plan, formula, &runnable.pass.anchor);
                     *count = groups.map_err(|error| error.to_string())? as u32;
                 }
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {

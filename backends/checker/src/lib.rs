@@ -31,11 +31,14 @@ mod fragments;
 mod frame;
 mod model;
 mod policy;
+mod promise;
 mod report;
+mod room;
 mod shader;
 mod state;
 mod subject;
 mod trial;
+mod turns;
 mod verdict;
 mod walk;
 

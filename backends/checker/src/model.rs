@@ -11,20 +11,7 @@
 //! last write and hands the view of that on. This is the relaxed part of the memory models of C++, Vulkan and WGSL, except
 //! that no load sees a store that its own fragment, or a later cause, has yet to make.
 
-use fragbuf_interpreter::{Access, Event, Operation, Program};
-
-impl Model {
-    /// Why the model cannot be asked about a program, if it cannot.
-    pub(crate) fn refusal(self, program: &Program) -> Option<String> {
-        let wide = program.buffers.iter().find(|buffer| buffer.is_written && buffer.is_wide);
-        wide.filter(|_| self == Model::Late).map(|buffer| {
-            format!(
-                "the late model knows words of 32 bits alone, and `{}` has accesses of 64: check it with sc",
-                buffer.name
-            )
-        })
-    }
-}
+use fragbuf_interpreter::{Access, Event, Operation};
 
 /// How memory behaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,12 +55,18 @@ struct Views {
 
 impl Late {
     /// Histories of one write each; `private` words are no fragment's but the writer's until the pass ends.
-    pub(crate) fn new(words: &[u32], fragments: usize, private: &[bool]) -> Self {
+    ///
+    /// A word of 64 bits has the history of its lower half: no access takes either half alone, because every place in a
+    /// buffer has one type.
+    pub(crate) fn new(words: &[u32], fragments: usize, private: Vec<bool>, wide: &[bool]) -> Self {
         let zero = vec![0; words.len()];
         let views = Views { own: zero.clone(), seen: zero.clone(), given: zero.clone() };
-        let history = |word: &u32| vec![Write { value: u64::from(*word), follows: false, view: zero.clone() }];
-        let words = words.iter().map(history).collect();
-        Late { words, fragments: vec![views; fragments], critical: zero.clone(), private: private.to_vec() }
+        let behind = words.iter().skip(1).chain(&[0]);
+        let high = behind.zip(wide).map(|(word, is_wide)| if *is_wide { u64::from(*word) << 32 } else { 0 });
+        let values = words.iter().zip(high).map(|(low, high)| u64::from(*low) | high);
+        let history = |value| vec![Write { value, follows: false, view: zero.clone() }];
+        let words = values.map(history).collect();
+        Late { words, fragments: vec![views; fragments], critical: zero.clone(), private }
     }
 
     /// In how many ways the access can happen.
@@ -99,7 +92,7 @@ impl Late {
             Operation::Load => {
                 let at = self.words[word].len() - 1 - choice as usize;
                 self.see(fragment, word, at);
-                self.words[word][at].value
+                narrowed(self.words[word][at].value, access)
             }
             Operation::Store => {
                 let at = self.places(fragment, word).nth(choice as usize).unwrap_or(self.words[word].len());
@@ -110,7 +103,7 @@ impl Late {
             Operation::Atomic(_) => {
                 let last = self.words[word].len() - 1;
                 self.see(fragment, word, last);
-                let old = self.words[word][last].value;
+                let old = narrowed(self.words[word][last].value, access);
                 let mut view = self.fragments[fragment].given.clone();
                 join(&mut view, &self.words[word][last].view);
                 let value = access.new_value(old);
@@ -187,6 +180,11 @@ impl Late {
     pub(crate) fn last(&self, word: usize) -> u64 {
         self.words[word].last().map_or(0, |write| write.value)
     }
+}
+
+/// As much of a value as an access is wide.
+fn narrowed(value: u64, access: &Access) -> u64 {
+    if access.words == 2 { value } else { value & u64::from(u32::MAX) }
 }
 
 /// Takes in what another view says of words that fragments share.

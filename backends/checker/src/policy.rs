@@ -1,19 +1,24 @@
 //! Which end states are legal: what the variant states, worked out from the fragments alone.
 //!
-//! In: the fragments of a pixel, what it holds afterwards, the counters. Out: what is wrong, in words. The order over
-//! fragments is stated here anew, apart from the templates and from what is generated.
+//! In: the fragments of a pixel, what it holds afterwards, the counters. Out: right, wrong by a hazard that the rows state,
+//! or wrong, in words. The order over fragments is stated here anew, apart from the templates and from what is generated.
+
+use std::ops::RangeInclusive;
 
 use fragbuf_templates::COUNTERS;
+use fragbuf_templates::vocabulary::Effect;
+
+use crate::frame::STALE;
+use crate::promise::Promise;
 
 /// What is promised for one pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Policy {
-    /// How many of the best stay; all, if none is said.
-    pub(crate) k: Option<usize>,
-    /// Words of an entry that decide, from the first on.
-    pub(crate) deciding: usize,
-    /// Fragments that a pool has no room for.
-    pub(crate) too_many: u32,
+    pub(crate) promise: Promise,
+    /// What the rows state that may go wrong.
+    pub(crate) effects: Vec<Effect>,
+    /// How many fragments may find no room.
+    pub(crate) short: RangeInclusive<u32>,
     /// Whether tries are bounded so low that fragments may be given up.
     pub(crate) may_give_up: bool,
     /// Whether fragments can be turned away without being counted as a loss.
@@ -25,7 +30,16 @@ pub(crate) struct Policy {
     pub(crate) neighbours_lost: u32,
 }
 
-/// What the counters say.
+/// What is to be said of an end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Finding {
+    Right,
+    /// Not what is promised, in words, but a hazard that the rows state.
+    Stated(String),
+    Wrong(String),
+}
+
+/// What the counters say of this pixel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counts {
     generated: u32,
@@ -35,76 +49,81 @@ struct Counts {
     no_room: u32,
 }
 
+impl Counts {
+    /// Fragments that were given up or found no room, whatever their keys.
+    fn gone(self) -> usize {
+        (self.given_up + self.no_room) as usize
+    }
+}
+
 impl Policy {
-    /// What is wrong with a pixel that holds `kept`.
-    pub(crate) fn fault(&self, kept: &[Vec<u32>], counters: &[u32]) -> Option<String> {
-        let mut counts = counts(counters);
-        counts.no_room = counts.no_room.wrapping_sub(self.neighbours_lost);
-        counts.lost = counts.lost.wrapping_sub(self.neighbours_lost);
+    /// What is to be said of a pixel that holds `kept`, in the order in which it is read out.
+    pub(crate) fn finding(&self, kept: &[Vec<u32>], counters: &[u32]) -> Finding {
+        let counts = self.counts(counters);
+        if let Some(text) = self.miscarried(counts) {
+            return Finding::Wrong(text);
+        }
+        let Some(text) = self.fault(kept, counts) else { return Finding::Right };
+        let is_stated = !self.effects.is_empty() && self.is_stated(kept, counts);
+        if is_stated { Finding::Stated(text) } else { Finding::Wrong(text) }
+    }
+
+    /// What is wrong whatever the rows state: fragments were given up, or found no room, that should not.
+    fn miscarried(&self, counts: Counts) -> Option<String> {
         if counts.given_up > 0 && !self.may_give_up {
             return Some(format!("{} fragments gave up waiting for the lock", counts.given_up));
         }
-        if counts.no_room != self.too_many {
-            return Some(format!("{} fragments found no room, and should be {}", counts.no_room, self.too_many));
+        // Who gives up has not asked for room.
+        let (least, most) = (self.short.start().saturating_sub(counts.given_up), *self.short.end());
+        if !(least..=most).contains(&counts.no_room) {
+            let wanted = if least == most { least.to_string() } else { format!("from {least} to {most}") };
+            return Some(format!("{} fragments found no room, and should be {wanted}", counts.no_room));
         }
-        let gone = (counts.given_up + counts.no_room) as usize;
-        if gone > self.fragments.len() || !self.is_kept_by_some(kept, gone) {
-            return Some(self.difference(kept, gone));
+        (counts.gone() > self.fragments.len()).then(|| "more fragments are counted than there are".to_owned())
+    }
+
+    /// What is wrong, hazards apart.
+    fn fault(&self, kept: &[Vec<u32>], counts: Counts) -> Option<String> {
+        if self.promise.is_unknown() {
+            return self.foreign(kept).or_else(|| self.miscounted(kept.len() as u32, counts));
+        }
+        if !self.is_kept_by_some(kept, counts.gone()) {
+            return Some(self.difference(kept, counts.gone()));
+        }
+        if !self.promise.is_in_order(kept) {
+            return Some(format!("the entries are not in order: {}", listed(&kept.iter().collect::<Vec<_>>())));
         }
         self.miscounted(kept.len() as u32, counts)
     }
 
-    /// What is wrong with a pixel that holds `kept`, whatever its storage promises: fragments that nobody sent, or twice, or
-    /// torn, and fragments that went uncounted.
-    pub(crate) fn fault_of_any(&self, kept: &[Vec<u32>], counters: &[u32]) -> Option<String> {
-        let wrong = kept.iter().find(|entry| times(kept, entry) > times(&self.fragments, entry));
-        match wrong {
-            Some(entry) => {
-                let words: Vec<String> = entry.iter().map(|word| format!("{word:08x}")).collect();
-                Some(format!("the pixel holds ({}), which no fragment is", words.join(" ")))
-            }
-            None => self.miscounted(kept.len() as u32, counts(counters)),
-        }
+    /// An entry that is no fragment's, or stands there too often.
+    fn foreign(&self, kept: &[Vec<u32>]) -> Option<String> {
+        let wrong = kept.iter().find(|entry| times(kept, entry) > times(&self.fragments, entry))?;
+        Some(format!("the pixel holds {}, which no fragment is", listed(&[wrong])))
     }
 
     /// Whether `kept` is what stays of some choice of all fragments but `gone`.
     fn is_kept_by_some(&self, kept: &[Vec<u32>], gone: usize) -> bool {
-        let count = self.fragments.len();
-        (0..1u32 << count).filter(|out| out.count_ones() as usize == gone).any(|out| {
-            let left = (0..count).filter(|at| out >> at & 1 == 0).map(|at| self.fragments[at].clone()).collect();
-            self.agrees(kept, self.best_of(left))
-        })
+        self.choices(gone).any(|left| self.agrees(kept, &self.promise.best_of(left)))
     }
 
-    /// What stays of these fragments, best first.
-    fn best_of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
-        fragments.sort();
-        fragments.truncate(self.k.unwrap_or(usize::MAX));
-        fragments
+    /// The fragments without `gone` of them, in every way.
+    pub(crate) fn choices(&self, gone: usize) -> impl Iterator<Item = Vec<Vec<u32>>> {
+        let count = self.fragments.len();
+        (0..1u32 << count)
+            .filter(move |out| out.count_ones() as usize == gone)
+            .map(move |out| (0..count).filter(|at| out >> at & 1 == 0).map(|at| self.fragments[at].clone()).collect())
     }
 
     /// The same multiset. Where only the key decides, ties at the edge may fall either way.
-    fn agrees(&self, kept: &[Vec<u32>], wanted: Vec<Vec<u32>>) -> bool {
-        let mut kept = kept.to_vec();
-        kept.sort();
-        if self.deciding >= kept.first().map_or(0, Vec::len) {
-            return kept == wanted;
-        }
-        let decides =
-            |entries: &[Vec<u32>]| entries.iter().map(|entry| entry[..self.deciding].to_vec()).collect::<Vec<_>>();
-        let mut left = self.fragments.clone();
-        decides(&kept) == decides(&wanted)
-            && kept.iter().all(|entry| match left.iter().position(|other| other == entry) {
-                Some(at) => {
-                    left.swap_remove(at);
-                    true
-                }
-                None => false,
-            })
+    fn agrees(&self, kept: &[Vec<u32>], wanted: &[Vec<u32>]) -> bool {
+        let deciding = self.promise.deciding;
+        prefixes(kept, deciding) == prefixes(wanted, deciding)
+            && kept.iter().all(|entry| times(kept, entry) <= times(&self.fragments, entry))
     }
 
     fn difference(&self, kept: &[Vec<u32>], gone: usize) -> String {
-        let wanted = self.best_of(self.fragments.clone());
+        let wanted = self.promise.best_of(self.fragments.clone());
         let mut kept = kept.to_vec();
         kept.sort();
         let missing: Vec<&Vec<u32>> = wanted.iter().filter(|entry| !kept.contains(entry)).collect();
@@ -142,39 +161,112 @@ impl Policy {
         })
     }
 
-    /// Whether `kept` is one of the things that races by design may leave: every word is some fragment's.
-    pub(crate) fn is_within_hazards(&self, kept: &[Vec<u32>]) -> bool {
-        kept.iter().all(|entry| {
-            entry.iter().enumerate().all(|(at, word)| self.fragments.iter().any(|fragment| fragment[at] == *word))
-        })
+    /// Whether what is wrong is no more than the stated hazards allow.
+    fn is_stated(&self, kept: &[Vec<u32>], counts: Counts) -> bool {
+        let may = |effect| self.effects.contains(&effect);
+        let is_ordered = may(Effect::Unsorted) || self.promise.is_in_order(kept);
+        let is_all = may(Effect::Lost) || self.choices(counts.gone()).any(|left| self.is_complete(kept, left));
+        let is_known = kept.iter().all(|entry| self.is_someones(entry)) && self.is_often_enough(kept);
+        is_ordered && is_all && is_known && self.is_counted(kept.len() as u32, counts)
+    }
+
+    /// Whether everything that is wanted of `left` is there, and, unless things may be doubled, nothing else.
+    fn is_complete(&self, kept: &[Vec<u32>], left: Vec<Vec<u32>>) -> bool {
+        let may = |effect| self.effects.contains(&effect);
+        let loosely = may(Effect::Torn) || may(Effect::TornEquals) || may(Effect::EqualKeys);
+        let deciding = if loosely { 1 } else { self.promise.deciding };
+        let wanted = match may(Effect::EqualKeys) {
+            true => self.promise.best_of_distinct(left),
+            false => self.promise.best_of(left),
+        };
+        let (kept, wanted) = (prefixes(kept, deciding), prefixes(&wanted, deciding));
+        match may(Effect::Duplicate) {
+            true => wanted.iter().all(|entry| times(&wanted, entry) <= times(&kept, entry)),
+            false => kept == wanted,
+        }
+    }
+
+    /// Whether an entry is a fragment, as torn as it may be.
+    fn is_someones(&self, entry: &[u32]) -> bool {
+        let may = |effect| self.effects.contains(&effect);
+        let has_word = |at: usize, word: u32| {
+            let torn = |other: &Vec<u32>| may(Effect::Torn) || may(Effect::TornEquals) && other[0] == entry[0];
+            let is_stale = may(Effect::Stale) && at > 0 && word == STALE;
+            is_stale || self.fragments.iter().any(|other| other[at] == word && torn(other))
+        };
+        self.fragments.iter().any(|other| other == entry)
+            || entry.iter().enumerate().all(|(at, word)| has_word(at, *word))
+    }
+
+    /// Whether nothing stands there more often than it may, and no more than there is room for.
+    fn is_often_enough(&self, kept: &[Vec<u32>]) -> bool {
+        let may = |effect| self.effects.contains(&effect);
+        let words = if may(Effect::Torn) || may(Effect::TornEquals) { 1 } else { usize::MAX };
+        let (held, sent) = (prefixes(kept, words), prefixes(&self.fragments, words));
+        let least = |entry: &Vec<u32>| if may(Effect::EqualKeys) { 1 } else { times(&sent, entry) };
+        let keys = prefixes(kept, 1);
+        self.promise.most().is_none_or(|most| kept.len() <= most)
+            && (may(Effect::Duplicate) || held.iter().all(|entry| times(&held, entry) <= least(entry)))
+            && (!may(Effect::EqualKeys) || keys.iter().all(|key| times(&keys, key) == 1))
+    }
+
+    /// Whether the counters say what they can: nobody counts what a race has lost, and an entry that stands there twice may
+    /// be displaced twice.
+    fn is_counted(&self, kept: u32, counts: Counts) -> bool {
+        let may = |effect| self.effects.contains(&effect);
+        let total = self.fragments.len() as u32;
+        let counted = counts.lost + counts.culled;
+        if may(Effect::Uncounted) {
+            return kept + counts.lost <= total;
+        }
+        match (may(Effect::Lost), may(Effect::Duplicate)) {
+            (false, false) => self.miscounted(kept, counts).is_none(),
+            (is_lossy, is_doubling) => {
+                counted <= total
+                    && (is_doubling || kept + counted <= total)
+                    && (is_lossy || self.culls || kept + counted >= total)
+            }
+        }
     }
 
     /// The least bound that turns away none of the fragments that stay.
     pub(crate) fn least_bound(&self) -> u32 {
-        let best = self.best_of(self.fragments.clone());
+        let best = match self.effects.contains(&Effect::EqualKeys) {
+            true => self.promise.best_of_distinct(self.fragments.clone()),
+            false => self.promise.best_of(self.fragments.clone()),
+        };
         best.last().map_or(0, |entry| entry[0])
     }
+
+    fn counts(&self, counters: &[u32]) -> Counts {
+        let mut counts = Counts::default();
+        for ((name, is_loss, _), count) in COUNTERS.iter().zip(counters) {
+            if *is_loss {
+                counts.lost += count;
+            }
+            match *name {
+                "generated" => counts.generated = *count,
+                "culled" => counts.culled = *count,
+                "spin_exhausted" => counts.given_up = *count,
+                "pool_exhausted" => counts.no_room = *count,
+                _ => {}
+            }
+        }
+        counts.no_room = counts.no_room.wrapping_sub(self.neighbours_lost);
+        counts.lost = counts.lost.wrapping_sub(self.neighbours_lost);
+        counts
+    }
+}
+
+/// The first words of entries, in order.
+fn prefixes(entries: &[Vec<u32>], words: usize) -> Vec<Vec<u32>> {
+    let mut prefixes: Vec<Vec<u32>> = entries.iter().map(|entry| entry.iter().take(words).copied().collect()).collect();
+    prefixes.sort();
+    prefixes
 }
 
 fn times(entries: &[Vec<u32>], entry: &Vec<u32>) -> usize {
     entries.iter().filter(|other| *other == entry).count()
-}
-
-fn counts(counters: &[u32]) -> Counts {
-    let mut counts = Counts::default();
-    for ((name, is_loss, _), count) in COUNTERS.iter().zip(counters) {
-        if *is_loss {
-            counts.lost += count;
-        }
-        match *name {
-            "generated" => counts.generated = *count,
-            "culled" => counts.culled = *count,
-            "spin_exhausted" => counts.given_up = *count,
-            "pool_exhausted" => counts.no_room = *count,
-            _ => {}
-        }
-    }
-    counts
 }
 
 /// Entries as their words.

@@ -161,21 +161,32 @@ pub(crate) fn fault(what: &What, ground: &Ground<'_>, source: &Source) -> String
     }
 }
 
-/// The schedule of a trial's failure.
-pub(crate) fn schedule(trial: &Trial<'_>, failure: &Failure) -> Schedule {
+/// The schedule of a failure in one round of a trial: the rounds before it, and its own steps.
+pub(crate) fn schedule(trial: &Trial<'_>, round: usize, failure: &Failure) -> Schedule {
     let subject = trial.subject;
     let source = &subject.passes[trial.case.pass].source;
     let resource = |memory: usize, word: u32| resource(subject, &trial.case, memory, word);
     let value = |value: u64| value_name(trial, value);
     let names = Names { resource: &resource, value: &value };
-    let steps = trial.first.as_ref().map(|first| lines(&trial.ground, first, failure, source, &names));
+    let mut steps = Vec::new();
+    let mut chain = vec![(round, failure.clone())];
+    while let Some((before, taken)) = chain.last().and_then(|(round, _)| trial.rounds[*round].before.clone()) {
+        chain.push((before, Failure { steps: taken, what: failure.what.clone() }));
+    }
+    for (round, failure) in chain.iter().rev() {
+        let round = &trial.rounds[*round];
+        if let Ok(first) = &round.first {
+            steps.extend(lines(&round.ground, first, failure, source, &names));
+        }
+    }
     let words = |words: &[u32]| words.iter().map(|word| format!("{word:08x}")).collect::<Vec<_>>().join(" ");
+    let rounds = if chain.len() > 1 { format!(", drawn {} times", chain.len()) } else { String::new() };
     Schedule {
-        case: trial.case.what.clone(),
+        case: format!("{}{rounds}", trial.case.what),
         fragments: trial.case.new.iter().enumerate().map(|(at, new)| (letter(at), words(&new.words))).collect(),
         prior: trial.case.prior.iter().map(|prior| words(&prior.words)).collect(),
-        steps: steps.unwrap_or_default(),
-        fault: fault(&failure.what, &trial.ground, source),
+        steps,
+        fault: fault(&failure.what, &trial.rounds[round].ground, source),
     }
 }
 
@@ -201,7 +212,7 @@ fn resource(subject: &Subject, case: &crate::case::Case, memory: usize, word: u3
     let mut element = word / width;
     let mut parts = Vec::new();
     for extent in planned.resource.extents.iter().rev() {
-        let length = extent.length.evaluate(&|symbol| crate::frame::value(subject, &case.symbols, symbol));
+        let length = case.room.symbols.evaluate(&subject.plan, &extent.length, &extent.name);
         let length = length.map_or(u32::MAX, |length| length as u32).max(1);
         parts.push(format!("{} {}", extent.name, element % length));
         element /= length;

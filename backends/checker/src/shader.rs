@@ -10,7 +10,7 @@ use fragbuf_interpreter::{Exit, Machine, Options, Program, Space, Unsupported};
 use fragbuf_model::Origin;
 use naga::{Binding, BuiltIn, ScalarKind};
 
-use crate::explore::{Judge, explore};
+use crate::explore::{End, Judge, explore};
 use crate::frame::{Memory, run_alone};
 use crate::model::Model;
 use crate::report::{Names, Schedule, fault, letter, lines};
@@ -56,9 +56,6 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
         return Err(Error::Unable(
             "the checker runs no workgroup variables: invocations share buffers alone".to_owned(),
         ));
-    }
-    if let Some(text) = limits.model.refusal(&program) {
-        return Err(Error::Unable(text));
     }
     let memory = memory(&[Some(&program), holds.as_ref()], shader);
     let source = Source { text: shader.text.to_owned(), lines: LineMap::default(), file: shader.file.to_owned() };
@@ -191,8 +188,8 @@ impl Judge for ShaderJudge<'_, '_> {
         None
     }
 
-    fn end(&mut self, words: &[u32]) -> Option<String> {
-        let holds = self.holds?;
+    fn end(&mut self, words: &[u32]) -> End {
+        let Some(holds) = self.holds else { return End::Right };
         for (buffer, home) in self.ground.program.buffers.iter().zip(&self.ground.homes) {
             if let Home::Moving { first, words: count, .. } = home {
                 let memory = &mut self.memory[Subject::memory_of(buffer.binding)];
@@ -201,9 +198,9 @@ impl Judge for ShaderJudge<'_, '_> {
         }
         let mut machine = Machine::new(holds);
         match run_alone(&mut machine, &mut self.memory) {
-            Ok(Exit::Ended) if machine.result() == [1] => None,
-            Ok(Exit::Ended) => Some(format!("`{HOLDS}` gives false")),
-            _ => Some(format!("`{HOLDS}` does not end, or goes out of bounds")),
+            Ok(Exit::Ended) if machine.result() == [1] => End::Right,
+            Ok(Exit::Ended) => End::Wrong(format!("`{HOLDS}` gives false")),
+            _ => End::Wrong(format!("`{HOLDS}` does not end, or goes out of bounds")),
         }
     }
 }

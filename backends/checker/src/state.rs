@@ -5,7 +5,7 @@
 
 use std::hash::{Hash, Hasher};
 
-use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
+use fragbuf_interpreter::{Access, Buffer, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
 
 use crate::model::{Late, Model};
 use crate::subject::Subject;
@@ -117,15 +117,15 @@ impl Ground<'_> {
         (homes, words, ordered)
     }
 
-    /// Per ordered word, whether its buffer is neither atomic nor coherent.
-    fn private(&self) -> Vec<bool> {
-        let mut private = vec![false; self.ordered];
+    /// Per ordered word, what its buffer is.
+    fn each_ordered(&self, is: impl Fn(&Buffer) -> bool) -> Vec<bool> {
+        let mut all = vec![false; self.ordered];
         for (buffer, home) in self.program.buffers.iter().zip(&self.homes) {
             if let Home::Moving { first, words, commutes: false } = home {
-                private[*first..first + words].fill(!buffer.is_coherent);
+                all[*first..first + words].fill(is(buffer));
             }
         }
-        private
+        all
     }
 
     /// The number of a place among the moving words.
@@ -138,8 +138,12 @@ impl Ground<'_> {
 
     /// The state before the first event of each machine.
     pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, Mishap> {
-        let late = (self.model == Model::Late)
-            .then(|| Box::new(Late::new(&words[..self.ordered], machines.len(), &self.private())));
+        let late = (self.model == Model::Late).then(|| {
+            // What is neither atomic nor coherent is private.
+            let private = self.each_ordered(|buffer| !buffer.is_coherent);
+            let wide = self.each_ordered(|buffer| buffer.is_wide);
+            Box::new(Late::new(&words[..self.ordered], machines.len(), private, &wide))
+        });
         let mut state = State { words, fragments: Vec::new(), inside: None, late };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
             let status = self.run(&mut machine, fragment, None, &mut state.words)?;
@@ -230,7 +234,11 @@ impl Ground<'_> {
             Some(late) => {
                 let old = late.perform(fragment, word, access, choice);
                 if access.writes() {
-                    state.words[word] = late.last(word) as u32;
+                    let last = late.last(word);
+                    state.words[word] = last as u32;
+                    if access.words == 2 {
+                        state.words[word + 1] = (last >> 32) as u32;
+                    }
                 }
                 old
             }

@@ -8,7 +8,9 @@ use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, pla
 use fragbuf_interpreter::{Marker, Options, Program, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Until, Use};
+use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+
+use crate::turns::{Turn, turns};
 
 /// `templates/shared/markers.wgsl`.
 pub(crate) const MARKERS: [(&str, Marker); 4] = [
@@ -38,8 +40,7 @@ pub(crate) enum Tries {
 #[derive(Debug)]
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
-    /// The plan's steps, loops unrolled, each with its round.
-    pub(crate) steps: Vec<(Step, u32)>,
+    pub(crate) turns: Vec<Turn>,
     pub(crate) passes: Vec<Runnable>,
     /// The cursor after so many fragments of a pixel.
     pub(crate) walk: Program,
@@ -53,8 +54,8 @@ pub(crate) struct Subject {
 #[derive(Debug)]
 pub(crate) struct Runnable {
     pub(crate) pass: Pass,
-    /// Its place among the subject's steps, and the round of the loop that it is in.
-    pub(crate) step: usize,
+    /// Its place among the subject's turns, and the round of the loop that has been written out around it.
+    pub(crate) turn: usize,
     pub(crate) round: u32,
     pub(crate) program: Program,
     /// From what the rasteriser gives to words: for a geometry pass.
@@ -112,7 +113,10 @@ impl Subject {
         }
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let origin = &variant.name.origin;
-        let steps = unrolled(&plan);
+        let turns = turns(&plan).map_err(|error| {
+            let text = format!("the checker cannot run it: {error}");
+            Diagnostics::from(Diagnostic::new(codes::INTERNAL, origin, text, "what it runs is in its documentation"))
+        })?;
         let mut passes = Vec::new();
         let mut asked = Vec::new();
         for (text, pass) in link(&asking, &linking, &registry)?.passes.into_iter().zip(asking.passes()) {
@@ -121,14 +125,14 @@ impl Subject {
                 READ_OUT | READ_BOUND => asked.push(checked),
                 _ if pass.kind == Kind::Fullscreen => {}
                 _ => {
-                    for (step, (_, round)) in steps.iter().enumerate().filter(|(_, (step, _))| is_pass(step, pass)) {
+                    for (turn, round) in turns.iter().enumerate().filter_map(|(at, turn)| round_of(at, turn, pass)) {
                         let made = runnable(pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?;
-                        passes.push(Runnable { step, round: *round, ..made });
+                        passes.push(Runnable { turn, round, ..made });
                     }
                 }
             }
         }
-        passes.sort_by_key(|runnable| runnable.step);
+        passes.sort_by_key(|runnable| runnable.turn);
         let ask = |number: usize, name: &str| {
             let checked: &Checked = &asked[number];
             Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
@@ -140,7 +144,7 @@ impl Subject {
             read: ask(0, "storage_read")?,
             bound: if wants_bound { Some(ask(1, "storage_bound")?) } else { None },
             has_fences: target.offers.contains(&Fact::Fences),
-            steps,
+            turns,
             plan,
         }))
     }
@@ -156,30 +160,12 @@ impl Subject {
     }
 }
 
-fn is_pass(step: &Step, pass: &Pass) -> bool {
-    matches!(step, Step::Pass(other) if other.anchor == pass.anchor)
-}
-
-/// The steps of a plan, those of loops of a known number of rounds once for each.
-fn unrolled(plan: &Plan) -> Vec<(Step, u32)> {
-    let mut steps = Vec::new();
-    for step in &plan.steps {
-        let rounds = match step {
-            Step::Repeat(repeat) => match &repeat.until {
-                Until::Times(times) => times.evaluate(&|symbol| plan.bound.value(symbol)).ok(),
-                _ => None,
-            },
-            _ => None,
-        };
-        match (step, rounds) {
-            (Step::Repeat(repeat), Some(rounds)) => {
-                let round = |round| repeat.body.iter().map(move |step| (step.clone(), round));
-                steps.extend((0..rounds as u32).flat_map(round));
-            }
-            _ => steps.push((step.clone(), 0)),
-        }
+/// The turn's number and round, if it is of the pass.
+fn round_of(at: usize, turn: &Turn, pass: &Pass) -> Option<(usize, u32)> {
+    match turn {
+        Turn::Step { step: Step::Pass(other), round } if other.anchor == pass.anchor => Some((at, *round)),
+        _ => None,
     }
-    steps
 }
 
 /// Sets every number of rows that lock to its least; whether there was one.
@@ -245,7 +231,7 @@ fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>
         _ => None,
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
-    Ok(Runnable { pass: pass.clone(), step: 0, round: 0, program, fragment, source })
+    Ok(Runnable { pass: pass.clone(), turn: 0, round: 0, program, fragment, source })
 }
 
 fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {

@@ -1,19 +1,23 @@
 //! One case, tried: memory is brought to the prior state, the fragments are set off, ends are judged.
 //!
 //! In: a subject and a case. Out: what the search found. The judge reads a pixel out through the storage's own functions
-//! after the remaining steps of the frame have been done.
+//! after the remaining steps of the frame have been done. Where a loop brings the frame back to the pass under test, every
+//! end of one round is the beginning of a search of the next.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use fragbuf_codegen::FIRST_BINDING;
+use fragbuf_frame::COUNTERS_RESOURCE;
 use fragbuf_interpreter::{Exit, Machine, Program};
+use fragbuf_templates::vocabulary::Fact;
 
 use crate::case::Case;
-use crate::explore::{Failure, Found, Judge, What, explore};
-use crate::fragments::{Fragment, at_pixel, deciding_words};
-use crate::frame::{Frame, Memory, run_alone};
+use crate::explore::{End, Failure, Found, Judge, Step, What, explore};
+use crate::fragments::{Fragment, at_pixel};
+use crate::frame::{Frame, Memory, WIDTH, run_alone};
 use crate::model::Model;
-use crate::policy::Policy;
+use crate::policy::{Finding, Policy};
+use crate::promise::{Promise, effects};
 use crate::state::{Ground, Home, Mishap, State};
 use crate::subject::{Runnable, Subject};
 use crate::walk::walk;
@@ -32,97 +36,136 @@ pub(crate) struct Search {
 pub(crate) struct Trial<'s> {
     pub(crate) subject: &'s Subject,
     pub(crate) case: Case,
+    pub(crate) rounds: Vec<Round<'s>>,
+    neighbour: Fragment,
+    policy: Policy,
+    /// What the host must make room for, where the rows say that a pass counts it.
+    wanted: Option<u64>,
+}
+
+/// One beginning of the pass under test.
+pub(crate) struct Round<'s> {
     pub(crate) ground: Ground<'s>,
     pub(crate) first: Result<State, Mishap>,
-    judge: EndJudge<'s>,
+    /// The round that it comes after, and the steps there.
+    pub(crate) before: Option<(usize, Vec<Step>)>,
+    /// The frame up to here.
+    frame: Frame<'s>,
+}
+
+/// What a trial found.
+pub(crate) struct Outcome {
+    pub(crate) states: usize,
+    pub(crate) is_whole: bool,
+    /// The first failure and its round.
+    pub(crate) failure: Option<(usize, Failure)>,
+    /// The first end that is no worse than the rows state.
+    pub(crate) stated: Option<(usize, Failure)>,
 }
 
 impl<'s> Trial<'s> {
     /// Does everything that comes before the fragments under test.
     pub(crate) fn new(subject: &'s Subject, case: Case, neighbour: &Fragment, search: &Search) -> Result<Self, String> {
-        let mut frame = Frame::new(subject, case.symbols.clone());
-        frame.reserved = case.reserved;
-        let runnable = &subject.passes[case.pass];
-        if let Some(text) = search.model.refusal(&runnable.program) {
-            return Err(text);
-        }
-        let others = |runnable: &Runnable, with_new: usize| {
-            let beside = at_pixel(neighbour, &runnable.program, 1);
-            let all = std::iter::once(&beside).chain(&case.prior).chain(case.new.iter().take(with_new));
-            all.map(|fragment| fragment.inputs.clone()).collect::<Vec<_>>()
-        };
-        let seen = case.new.len() - usize::from(case.has_unseen || case.has_helper);
-        frame.advance(0, runnable.step, &|runnable| others(runnable, seen))?;
-        frame.enter(runnable.round);
-        for inputs in others(runnable, 0) {
-            frame.insert(runnable, &inputs)?;
-        }
-        let (mut ground, words) = ground(subject, &runnable.program, &frame.memory, search.model);
-        ground.helper = case.has_helper.then(|| case.new.len() - 1);
-        let real = &case.new[..case.new.len() - usize::from(case.has_helper)];
-        let machines = case.new.iter().map(|fragment| machine(&runnable.program, &fragment.inputs)).collect();
-        let first = ground.start(words, machines);
-        let fragments = case.prior.iter().chain(real).map(|fragment| fragment.words.clone()).collect();
+        let real = case.new.len() - usize::from(case.has_helper);
+        let counted = case.prior.len() + real - usize::from(case.room.has_unseen);
+        let wanted = case.k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1;
+        let wanted = subject.plan.selection.offers().contains(&Fact::Counted).then_some(wanted);
+        let fragments = case.prior.iter().chain(&case.new[..real]).map(|fragment| fragment.words.clone()).collect();
         let policy = Policy {
-            k: subject.keeps_best().then(|| case.symbols.k.unwrap_or(u32::MAX) as usize),
-            deciding: deciding_words(subject),
-            too_many: case.too_many + u32::from(case.has_unseen),
+            promise: Promise::new(subject, case.k),
+            effects: effects(subject),
+            short: case.room.short.clone(),
             may_give_up: search.may_give_up,
             culls: subject.bound.is_some(),
             fragments,
             neighbours: 1,
-            neighbours_lost: u32::from(case.reserved.is_some()),
+            neighbours_lost: case.room.neighbours_lost,
         };
-        let judge = EndJudge {
-            frame,
-            step: runnable.step + 1,
-            homes: homes_by_memory(&runnable.program, &ground),
-            rest: real.to_vec(),
-            prior: case.prior.clone(),
-            neighbour: neighbour.clone(),
-            beside: case.reserved.map_or(vec![neighbour.words.clone()], |_| Vec::new()),
-            policy,
-            is_racy: subject.is_racy(),
-            known: HashMap::new(),
-        };
-        Ok(Trial { subject, case, ground, first, judge })
+        let mut frame = Frame::new(subject, case.room.symbols.clone())?;
+        frame.reserved = case.room.reserved;
+        let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour: neighbour.clone(), policy, wanted };
+        let turn = trial.runnable().turn;
+        let seen = trial.case.new.len() - usize::from(trial.case.room.has_unseen || trial.case.has_helper);
+        frame.advance(0, turn, &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))?;
+        trial.begin(frame, None, search.model)?;
+        Ok(trial)
     }
 
-    /// Searches.
-    pub(crate) fn run(&mut self, search: &Search) -> Found {
-        match &self.first {
+    fn runnable(&self) -> &'s Runnable {
+        &self.subject.passes[self.case.pass]
+    }
+
+    /// The inputs of the neighbour, of what was there before, and of `new`.
+    fn inputs(&self, runnable: &Runnable, new: &[Fragment]) -> Vec<Vec<Vec<u32>>> {
+        let pixel = self.case.pixel;
+        let beside = (&self.neighbour, WIDTH - 1 - pixel);
+        let all = std::iter::once(beside).chain(self.case.prior.iter().chain(new).map(|fragment| (fragment, pixel)));
+        all.map(|(fragment, pixel)| at_pixel(fragment, &runnable.program, pixel).inputs).collect()
+    }
+
+    /// Sets the fragments off where the frame stands before the pass under test.
+    fn begin(&mut self, mut frame: Frame<'s>, before: Option<(usize, Vec<Step>)>, model: Model) -> Result<(), String> {
+        let runnable = self.runnable();
+        frame.enter(runnable.round)?;
+        for inputs in self.inputs(runnable, &[]) {
+            frame.insert(runnable, &inputs)?;
+        }
+        let (mut ground, words) = ground(self.subject, &runnable.program, &frame.memory, model);
+        ground.helper = self.case.has_helper.then(|| self.case.new.len() - 1);
+        let new = self.case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, self.case.pixel));
+        let machines = new.map(|fragment| machine(&runnable.program, &fragment.inputs)).collect();
+        let first = ground.start(words, machines);
+        self.rounds.push(Round { ground, first, before, frame });
+        Ok(())
+    }
+
+    /// Searches, round after round.
+    pub(crate) fn run(&mut self, search: &Search) -> Result<Outcome, String> {
+        let mut outcome = Outcome { states: 0, is_whole: true, failure: None, stated: None };
+        let mut known: HashSet<Memory> = HashSet::new();
+        let mut at = 0;
+        while at < self.rounds.len() && outcome.failure.is_none() {
+            let (found, frames) = self.search(at, search);
+            outcome.states += found.states;
+            outcome.is_whole &= found.is_whole;
+            outcome.failure = found.failure.map(|failure| (at, failure));
+            outcome.stated = outcome.stated.or(found.stated.map(|failure| (at, failure)));
+            for (words, steps) in found.goes_on {
+                let Some(frame) = frames.get(&words).filter(|frame| known.insert(frame.memory.clone())) else {
+                    continue;
+                };
+                self.begin(frame.clone(), Some((at, steps)), search.model)?;
+            }
+            at += 1;
+        }
+        Ok(outcome)
+    }
+
+    /// Searches one round. Also: the frame, come back to the pass, for every end that goes on.
+    fn search(&self, at: usize, search: &Search) -> (Found, HashMap<Vec<u32>, Frame<'s>>) {
+        let round = &self.rounds[at];
+        let first = match &round.first {
             Err(mishap) => {
                 let what = What::Mishap(0, *mishap);
                 let failure = Some(Failure { steps: Vec::new(), what });
-                Found { states: 1, is_whole: true, failure }
+                return (Found { states: 1, is_whole: true, failure, ..Found::default() }, HashMap::new());
             }
-            Ok(first) => match search.seeds {
-                Some(seeds) => walk(&self.ground, first, &mut self.judge, seeds),
-                None => explore(&self.ground, first.clone(), &mut self.judge, search.limit),
-            },
-        }
-    }
-
-    /// The words that the steps of a failure leave.
-    pub(crate) fn end_of(&self, failure: &Failure) -> Vec<u32> {
-        let Ok(first) = &self.first else { return Vec::new() };
-        let mut machine = Machine::new(self.ground.program);
-        let mut state = first.clone();
-        for (fragment, choice) in &failure.steps {
-            match self.ground.step(&mut machine, &state, *fragment, *choice) {
-                Ok((next, _)) => state = next,
-                Err(_) => break,
-            }
-        }
-        state.words
-    }
-
-    /// Whether a failed end state is one that the rows state.
-    pub(crate) fn is_within_hazards(&mut self, words: &[u32]) -> bool {
-        let Ok((kept, _, counters)) = self.judge.read(words) else { return false };
-        // Only races may lose a fragment uncounted.
-        let counted = self.judge.is_racy || self.judge.policy.fault_of_any(&kept, &counters).is_none();
-        counted && self.judge.policy.is_within_hazards(&kept)
+            Ok(first) => first,
+        };
+        let homes = homes_by_memory(round.ground.program, &round.ground);
+        let mut judge = EndJudge {
+            trial: self,
+            frame: round.frame.clone(),
+            homes,
+            is_racy: self.subject.is_racy(),
+            known: HashMap::new(),
+            goes_on: HashMap::new(),
+        };
+        let found = match search.seeds {
+            Some(seeds) => walk(&round.ground, first, &mut judge, seeds),
+            None => explore(&round.ground, first.clone(), &mut judge, search.limit),
+        };
+        (found, judge.goes_on)
     }
 }
 
@@ -150,78 +193,82 @@ fn homes_by_memory(program: &Program, ground: &Ground<'_>) -> Vec<(usize, usize,
         .collect()
 }
 
-struct EndJudge<'s> {
+struct EndJudge<'t, 's> {
+    trial: &'t Trial<'s>,
     frame: Frame<'s>,
-    step: usize,
     homes: Vec<(usize, usize, usize)>,
-    rest: Vec<Fragment>,
-    prior: Vec<Fragment>,
-    neighbour: Fragment,
-    /// What the neighbouring pixel must hold.
-    beside: Vec<Vec<u32>>,
-    policy: Policy,
     is_racy: bool,
-    known: HashMap<Vec<u32>, Option<String>>,
+    known: HashMap<Vec<u32>, End>,
+    /// Where the frame stands when it has come back to the pass, by the words of the end.
+    goes_on: HashMap<Vec<u32>, Frame<'s>>,
 }
 
-/// What two pixels hold, and the counters.
-type ReadOut = (Vec<Vec<u32>>, Vec<Vec<u32>>, Vec<u32>);
-
-impl EndJudge<'_> {
-    /// Finishes the frame from these words and reads both pixels.
-    fn read(&mut self, words: &[u32]) -> Result<ReadOut, String> {
+impl<'s> EndJudge<'_, 's> {
+    /// The frame with these words in memory.
+    fn frame_of(&self, words: &[u32]) -> Frame<'s> {
         let mut frame = self.frame.clone();
         for (memory, first, count) in &self.homes {
             frame.memory[*memory].copy_from_slice(&words[*first..first + count]);
         }
-        let end = frame.subject.steps.len();
-        frame.advance(self.step, end, &|runnable| {
-            let beside = at_pixel(&self.neighbour, &runnable.program, 1);
-            let all = std::iter::once(&beside).chain(&self.prior).chain(&self.rest);
-            all.map(|fragment| fragment.inputs.clone()).collect()
-        })?;
-        let kept = frame.read_out(0)?;
-        let beside = frame.read_out(1)?;
-        let plan = &frame.subject.plan;
-        let counters = plan.resources.iter().position(|planned| planned.resource.name == "counters");
-        let counters = counters.map(|at| frame.memory[FIRST_BINDING as usize + at].clone());
-        Ok((kept, beside, counters.unwrap_or_default()))
+        frame
     }
 
-    fn fault(&mut self, words: &[u32]) -> Option<String> {
-        match self.read(words) {
-            Err(text) => Some(text),
-            Ok((_, beside, _)) if beside != self.beside => Some("the neighbouring pixel has changed".to_owned()),
-            Ok((kept, _, counters)) if !self.frame.subject.is_known() => self.policy.fault_of_any(&kept, &counters),
-            Ok((kept, _, counters)) => self.policy.fault(&kept, &counters),
+    /// Finishes the frame from these words, reads both pixels and judges.
+    fn judged(&mut self, words: &[u32]) -> Result<End, String> {
+        let trial = self.trial;
+        let mut frame = self.frame_of(words);
+        let real = &trial.case.new[..trial.case.new.len() - usize::from(trial.case.has_helper)];
+        let turn = trial.runnable().turn;
+        if frame.advance(turn + 1, turn, &|runnable| trial.inputs(runnable, real))? {
+            self.goes_on.insert(words.to_vec(), frame);
+            return Ok(End::GoesOn);
         }
+        if let (Some(asked), Some(wanted)) = (frame.asked, trial.wanted)
+            && asked != wanted
+        {
+            return Ok(End::Wrong(format!("room is made for {asked} fragments, and {wanted} are stored")));
+        }
+        let kept = frame.read_out(trial.case.pixel)?;
+        let beside = frame.read_out(WIDTH - 1 - trial.case.pixel)?;
+        let is_lost = trial.policy.neighbours_lost > 0;
+        if beside != if is_lost { Vec::new() } else { vec![trial.neighbour.words.clone()] } {
+            return Ok(End::Wrong("the neighbouring pixel has changed".to_owned()));
+        }
+        let plan = &frame.subject.plan;
+        let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);
+        let counters = counters.map_or(&[][..], |at| &frame.memory[FIRST_BINDING as usize + at]);
+        Ok(match trial.policy.finding(&kept, counters) {
+            Finding::Right => End::Right,
+            Finding::Stated(text) => End::Stated(text),
+            Finding::Wrong(text) => End::Wrong(text),
+        })
     }
 }
 
-impl Judge for EndJudge<'_> {
+impl Judge for EndJudge<'_, '_> {
     fn instant(&mut self, words: &[u32]) -> Option<String> {
         let bound = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy)?;
         for (memory, first, count) in &self.homes {
             self.frame.memory[*memory].copy_from_slice(&words[*first..first + count]);
         }
         let mut machine = Machine::new(bound);
-        machine.set_input(0, &[0]);
+        machine.set_input(0, &[self.trial.case.pixel]);
         match run_alone(&mut machine, &mut self.frame.memory) {
             Ok(Exit::Ended) => {}
             _ => return Some("the bound cannot be read".to_owned()),
         }
-        let (found, least) = (machine.result()[0], self.policy.least_bound());
+        let (found, least) = (machine.result()[0], self.trial.policy.least_bound());
         (found < least).then(|| {
             format!("storage_bound is {found:08x}, and the key {least:08x} of a fragment that must stay exceeds it")
         })
     }
 
-    fn end(&mut self, words: &[u32]) -> Option<String> {
+    fn end(&mut self, words: &[u32]) -> End {
         if let Some(known) = self.known.get(words) {
             return known.clone();
         }
-        let fault = self.fault(words);
-        self.known.insert(words.to_vec(), fault.clone());
-        fault
+        let end = self.judged(words).unwrap_or_else(End::Wrong);
+        self.known.insert(words.to_vec(), end.clone());
+        end
     }
 }

@@ -1,25 +1,27 @@
 //! A whole check: every case of a variant on a target, and the tier that follows from what held.
 //!
-//! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure ends it.
+//! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure that no row states ends it.
 
 use fragbuf_backends::Target;
 use fragbuf_model::{Diagnostics, Variant};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Kind;
 
-use crate::case::cases;
-use crate::explore::What;
+use crate::case::{Case, cases};
 use crate::fragments::Candidates;
-use crate::frame::{Frame, Symbols};
+use crate::frame::Frame;
 use crate::model::Model;
+use crate::promise::Promise;
 use crate::report::{Schedule, schedule};
+use crate::room::plenty;
 use crate::subject::{Subject, Tries};
 use crate::trial::{Search, Trial};
 
 /// How far to go.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Numbers of fragments that come at once.
+    /// Numbers of fragments that come at once. Of a row that races by design none behind the first with which it fails as
+    /// stated is tried.
     pub fragments: Vec<u32>,
     /// Numbers of entries; more than the variant's capacity are left out.
     pub entries: Vec<u32>,
@@ -53,11 +55,11 @@ pub struct Report {
     pub states: usize,
     /// Whether every order of every case was tried.
     pub is_whole: bool,
-    /// The first failure.
+    /// The first failure that no row states; where there is none, the first that one does.
     pub failure: Option<Schedule>,
     /// What can go wrong by design, as (name, what); a failure is then as stated.
     pub hazards: Vec<(String, String)>,
-    /// Whether the failure is one of those.
+    /// Whether the failure is one of those; then all there are are.
     pub is_stated: bool,
     /// Whether what the storage must keep is known; else that is not judged.
     pub is_judged: bool,
@@ -104,11 +106,11 @@ pub fn check_variant(
     let mut report = Report::new(limits);
     for tries in [Tries::AsStated, Tries::Least] {
         let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
-        report.is_judged = subject.is_known();
+        report.is_judged = !Promise::new(&subject, None).is_unknown();
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.what.to_string())).collect();
         try_all(&subject, limits, tries, &mut report, progress).map_err(Error::Unable)?;
-        if report.failure.is_some() {
+        if report.failure.is_some() && !report.is_stated {
             break;
         }
     }
@@ -122,7 +124,7 @@ fn try_all(
     report: &mut Report,
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
-    let mut frame = Frame::new(subject, Symbols { k: Some(1), fragments: Some(16), kept: Some(16) });
+    let mut frame = Frame::new(subject, plenty(subject)?)?;
     let candidates = Candidates::new(subject, &mut frame.memory)?;
     let search =
         Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
@@ -137,25 +139,30 @@ fn try_all(
     };
     for &count in &limits.fragments {
         for &k in &entries {
-            for case in cases(subject, &candidates, count, k) {
+            for case in cases(subject, &candidates, (count, k), search.may_give_up)? {
                 let k = k.map_or(String::new(), |k| format!("k = {k}, "));
                 progress(&format!("{k}{}", case.what));
-                let case = crate::case::Case { what: format!("{k}{}", case.what), ..case };
+                let case = Case { what: format!("{k}{}", case.what), ..case };
                 let mut trial = Trial::new(subject, case, &candidates.ranked[11], &search)?;
-                let found = trial.run(&search);
+                let found = trial.run(&search)?;
                 report.cases += 1;
                 report.states += found.states;
                 report.is_whole &= found.is_whole;
-                if let Some(failure) = found.failure {
-                    report.is_stated =
-                        !subject.plan.hazards.is_empty() && matches!(failure.what, What::Outcome(_)) && {
-                            let end = trial.end_of(&failure);
-                            trial.is_within_hazards(&end)
-                        };
-                    report.failure = Some(schedule(&trial, &failure));
+                if let Some((round, failure)) = found.failure {
+                    report.is_stated = false;
+                    report.failure = Some(schedule(&trial, round, &failure));
                     return Ok(());
                 }
+                // What is stated is shown, and the search for what is not goes on.
+                if let (None, Some((round, failure))) = (&report.failure, found.stated) {
+                    report.is_stated = true;
+                    report.failure = Some(schedule(&trial, round, &failure));
+                }
             }
+        }
+        // Races show with few fragments, and more of them have orders beyond counting.
+        if subject.is_racy() && report.failure.is_some() {
+            return Ok(());
         }
     }
     Ok(())

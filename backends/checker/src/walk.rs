@@ -5,7 +5,7 @@
 
 use fragbuf_interpreter::Machine;
 
-use crate::explore::{Failure, Found, Judge, Step, What, racing};
+use crate::explore::{End, Failure, Found, Judge, Step, What, racing};
 use crate::state::{Ground, State, Status};
 
 /// Steps that a walk takes at most.
@@ -13,18 +13,22 @@ const LONGEST: usize = 100_000;
 
 /// One walk per seed.
 pub(crate) fn walk(ground: &Ground<'_>, first: &State, judge: &mut dyn Judge, seeds: u32) -> Found {
-    let mut states = 0;
+    let mut found = Found::default();
     let mut machine = Machine::new(ground.program);
     for seed in 0..seeds {
         let mut walker = Walker { ground, chance: Chance::new(seed), steps: Vec::new(), by_priority: seed % 2 == 1 };
-        let failure = walker.run(&mut machine, first.clone(), judge);
-        states += walker.steps.len();
-        if let Some(what) = failure {
-            let failure = Some(Failure { steps: walker.steps, what });
-            return Found { states, is_whole: false, failure };
+        let end = walker.run(&mut machine, first.clone(), judge);
+        found.states += walker.steps.len();
+        found.failure = match end {
+            Err(what) => Some(Failure { steps: walker.steps, what }),
+            Ok(None) => None,
+            Ok(Some((end, words))) => found.note(end, &words, || walker.steps),
+        };
+        if found.failure.is_some() {
+            break;
         }
     }
-    Found { states, is_whole: false, failure: None }
+    found
 }
 
 struct Walker<'a, 'p> {
@@ -35,16 +39,22 @@ struct Walker<'a, 'p> {
 }
 
 impl<'p> Walker<'_, 'p> {
-    fn run(&mut self, machine: &mut Machine<'p>, mut state: State, judge: &mut dyn Judge) -> Option<What> {
+    /// `Ok(None)`: it did not come to an end in time.
+    fn run(
+        &mut self,
+        machine: &mut Machine<'p>,
+        mut state: State,
+        judge: &mut dyn Judge,
+    ) -> Result<Option<(End, Vec<u32>)>, What> {
         let mut priorities: Vec<u32> = state.fragments.iter().map(|_| self.chance.below(1 << 20)).collect();
         while self.steps.len() < LONGEST {
             if let Some((one, other)) = racing(self.ground, &state) {
-                return Some(What::Race(one, other));
+                return Err(What::Race(one, other));
             }
             let running: Vec<usize> =
                 (0..state.fragments.len()).filter(|at| state.fragments[*at] != Status::Ended).collect();
             if running.is_empty() {
-                return judge.end(&state.words).map(What::Outcome);
+                return Ok(Some((judge.end(&state.words), state.words)));
             }
             let able: Vec<usize> = running
                 .iter()
@@ -52,24 +62,24 @@ impl<'p> Walker<'_, 'p> {
                 .filter(|at| self.ground.choices(&state, *at) > 0 && !self.ground.waits(machine, &state, *at))
                 .collect();
             if able.is_empty() {
-                return Some(What::Waiting(running));
+                return Err(What::Waiting(running));
             }
             let fragment = self.pick(&able, &mut priorities);
             let choice = self.chance.below(self.ground.choices(&state, fragment));
             self.steps.push((fragment, choice));
             match self.ground.step(machine, &state, fragment, choice) {
-                Err(mishap) => return Some(What::Mishap(fragment, mishap)),
+                Err(mishap) => return Err(What::Mishap(fragment, mishap)),
                 Ok((next, _)) => {
                     if next.words != state.words
                         && let Some(text) = judge.instant(&next.words)
                     {
-                        return Some(What::Instant(text));
+                        return Err(What::Instant(text));
                     }
                     state = next;
                 }
             }
         }
-        None
+        Ok(None)
     }
 
     fn pick(&mut self, able: &[usize], priorities: &mut [u32]) -> usize {

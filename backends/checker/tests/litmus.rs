@@ -150,3 +150,21 @@ fn main(@location(0) a: f32) { x = dpdx(a); }";
     let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else { panic!("it is run") };
     assert_eq!(text, "litmus.wgsl:4: the interpreter does not run derivatives");
 }
+
+#[test]
+fn a_word_of_64_bits_comes_late_too_but_whole() {
+    let text = |fence: &str, holds: &str| {
+        let writer = format!("_ = atomicMax(&wide, (u64(7u) << 32u) | u64(7u)); {fence} atomicStore(&y, 1u);");
+        let reader = format!(
+            "seen[0] = atomicLoad(&y); {fence} let word = atomicLoad(&wide);
+             seen[1] = u32(word >> 32u); seen[2] = u32(word - (u64(seen[1]) << 32u));"
+        );
+        let wide = "@group(0) @binding(3) var<storage, read_write> wide: atomic<u64>;\n";
+        format!("{wide}{}", litmus(&writer, &reader, holds))
+    };
+    let (announced, whole) = ("!(seen[0] == 1u && seen[1] == 0u)", "seen[1] == seen[2]");
+    assert!(holds(&text("", announced), Model::Sequential));
+    assert!(!holds(&text("", announced), Model::Late));
+    assert!(holds(&text("memory_fence();", announced), Model::Late));
+    assert!(holds(&text("", whole), Model::Late));
+}

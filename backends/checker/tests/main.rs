@@ -9,8 +9,12 @@
 )]
 
 mod compiles;
+mod hazards;
 mod litmus;
+mod mutants;
 mod mutation;
 mod regressions;
+mod repeated;
 mod subjects;
+mod survivors;
 mod verdicts;

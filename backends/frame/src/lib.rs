@@ -10,6 +10,7 @@ mod pass_time;
 mod room;
 mod symbols;
 mod uniforms;
+mod unrolled;
 
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, POOL_EXHAUSTED};
 pub use error::Error;
@@ -18,6 +19,7 @@ pub use pass_time::PassTime;
 pub use room::{Counting, Room, Sizing, bytes, reserve, symbols};
 pub use symbols::Symbols;
 pub use uniforms::{Value, set, zeros};
+pub use unrolled::{Turn, rounds, unrolled};
 
 use fragbuf_codegen::Plan;
 

@@ -2,8 +2,8 @@
 //! anything is made.
 
 use fragbuf_codegen::Plan;
-use fragbuf_frame::{Decision, resource as index, unsupported};
-use fragbuf_templates::vocabulary::{Access, Element, Objects, Pass, Repeat, Step, Until};
+use fragbuf_frame::{Decision, Turn, resource as index, unrolled, unsupported};
+use fragbuf_templates::vocabulary::{Access, Element, Objects, Pass, Step};
 
 use crate::Error;
 
@@ -38,70 +38,29 @@ pub(crate) fn actions(plan: &Plan) -> Result<Vec<Action>, Error> {
             return Err(refused(format!("`{}`, a texture", planned.resource.name)));
         }
     }
-    let mut unrolled = Unrolled { plan, passes: 0, runs: 0, actions: Vec::new() };
-    unrolled.steps(&plan.steps, 0)?;
-    Ok(unrolled.actions)
-}
-
-struct Unrolled<'a> {
-    plan: &'a Plan,
-    passes: usize,
-    runs: usize,
-    actions: Vec<Action>,
-}
-
-impl Unrolled<'_> {
-    fn steps(&mut self, steps: &[Step], round: u32) -> Result<(), Error> {
-        let plan = self.plan;
-        for step in steps {
-            let action = match step {
-                Step::Pass(pass) => {
-                    check_pass(pass)?;
-                    let run = Run { pass: self.passes, number: self.runs, round };
-                    self.passes += 1;
-                    self.runs += 1;
-                    Action::Pass(run)
-                }
-                Step::Clear { resource, value } => Action::Clear { resource: index(plan, resource)?, value: *value },
-                Step::Copy { from, to } => Action::Copy { from: index(plan, from)?, to: index(plan, to)? },
-                Step::Host(host) => Action::Host(Decision::of(host, plan)?),
-                Step::Swap(a, b) => return Err(refused(format!("the exchange of `{a}` and `{b}`"))),
-                Step::Repeat(repeat) => {
-                    self.rounds(repeat)?;
-                    continue;
-                }
-            };
-            self.actions.push(action);
-        }
-        Ok(())
-    }
-
-    /// The body once for every round. Its passes keep their numbers in the plan.
-    fn rounds(&mut self, repeat: &Repeat) -> Result<(), Error> {
-        let Until::Times(times) = &repeat.until else {
-            return Err(refused("a loop whose end is found out on the device".to_owned()));
-        };
-        let rounds = times.evaluate(&|symbol| self.plan.bound.value(symbol));
-        let rounds = rounds.map_err(|error| Error::Formula { what: "the rounds of a loop".to_owned(), error })?;
-        let rounds = u32::try_from(rounds).map_err(|_| refused(format!("a loop of {rounds} rounds")))?;
-        let first = self.passes;
-        for round in 0..rounds {
-            self.passes = first;
-            self.steps(&repeat.body, round)?;
-        }
-        self.passes = first + count(&repeat.body);
-        Ok(())
-    }
-}
-
-/// Passes among steps, those inside loops included.
-fn count(steps: &[Step]) -> usize {
-    let passes = steps.iter().map(|step| match step {
-        Step::Pass(_) => 1,
-        Step::Repeat(repeat) => count(&repeat.body),
-        _ => 0,
+    let mut runs = 0;
+    let turns = unrolled(plan, &plan.steps, 0)?;
+    let actions = turns.iter().map(|turn| {
+        let action = action(plan, turn, runs)?;
+        runs += usize::from(matches!(action, Action::Pass(_)));
+        Ok(action)
     });
-    passes.sum()
+    actions.collect()
+}
+
+/// `number` counts the runs of passes.
+fn action(plan: &Plan, turn: &Turn<'_>, number: usize) -> Result<Action, Error> {
+    Ok(match turn.step {
+        Step::Pass(pass) => {
+            check_pass(pass)?;
+            Action::Pass(Run { pass: turn.pass, number, round: turn.round })
+        }
+        Step::Clear { resource, value } => Action::Clear { resource: index(plan, resource)?, value: *value },
+        Step::Copy { from, to } => Action::Copy { from: index(plan, from)?, to: index(plan, to)? },
+        Step::Host(host) => Action::Host(Decision::of(host, plan)?),
+        Step::Swap(a, b) => return Err(refused(format!("the exchange of `{a}` and `{b}`"))),
+        Step::Repeat(_) => return Err(refused("a loop whose end is found out on the device".to_owned())),
+    })
 }
 
 fn check_pass(pass: &Pass) -> Result<(), Error> {

@@ -3,75 +3,41 @@
 use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step, Takes};
 
 pub(super) fn linked_list() -> Row {
+    let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
     Row {
         template: Some(template!("storage/linked_list")),
-        resources: vec![
-            Resource::new("heads", Element::Word, "first node of the pixel's list, plus one; 0: empty")
-                .by("pixel", "pixels")
-                .cleared(0),
-            Resource::new("links", Element::Word, "the node after this one, plus one; 0: the last")
-                .by("node", "fragments"),
-            Resource::new("nodes", Element::Entry, "the fragment of this node").by("node", "fragments"),
-            Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
-        ],
-        steps: vec![
-            Step::Pass(
-                Pass::geometry("store", "store")
-                    .uses("heads", Access::Atomic)
-                    .uses("links", Access::Plain)
-                    .uses("nodes", Access::Plain)
-                    .uses("pool", Access::Atomic),
-            ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("heads", Access::Read)
-                    .uses("links", Access::Read)
-                    .uses("nodes", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        calls: vec!["overflow", "counters"],
+        resources: resources([
+            "first node of the pixel's list, plus one; 0: empty",
+            "the node after this one, plus one; 0: the last",
+            "the fragment of this node",
+        ]),
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
-        ..Row::new("storage", "linked_list", "a list per pixel through one pool of nodes", "Yang et al. 2010; K15 §2")
+        ..list(
+            store,
+            Row::new(
+                "storage",
+                "linked_list",
+                "a list per pixel through one pool of nodes",
+                "Yang et al. 2010; K15 §2",
+            ),
+        )
     }
 }
 
 /// A list that is in order at every instant.
 pub(super) fn ordered_list() -> Row {
+    let store = |pass: Pass| pass.uses("links", Access::Atomic).uses("nodes", Access::Coherent);
     Row {
         template: Some(template!("storage/ordered_list")),
-        resources: vec![
-            Resource::new("heads", Element::Word, "the pixel's best node, plus one; 0: none")
-                .by("pixel", "pixels")
-                .cleared(0),
-            Resource::new("links", Element::Word, "the next best node after this one, plus one; 0: the last")
-                .by("node", "fragments"),
-            Resource::new("nodes", Element::Entry, "the fragment of this node, written once").by("node", "fragments"),
-            Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
-        ],
-        steps: vec![
-            Step::Pass(
-                Pass::geometry("store", "store")
-                    .uses("heads", Access::Atomic)
-                    .uses("links", Access::Atomic)
-                    .uses("nodes", Access::Coherent)
-                    .uses("pool", Access::Atomic),
-            ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("heads", Access::Read)
-                    .uses("links", Access::Read)
-                    .uses("nodes", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        calls: vec!["overflow", "counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::LosesWhole],
+        resources: resources([
+            "the pixel's best node, plus one; 0: none",
+            "the next best node after this one, plus one; 0: the last",
+            "the fragment of this node, written once",
+        ]),
+        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::SparesRoom, Fact::LosesWhole],
         // The list is in the order of its keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
-        requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],
         parameters: vec![Parameter {
             name: "retries".into(),
@@ -83,11 +49,44 @@ pub(super) fn ordered_list() -> Row {
         }],
         // Readers follow a link to words that its writer stored plainly.
         soundness: Soundness::Lock,
-        ..Row::new(
-            "storage",
-            "ordered_list",
-            "a list per pixel in order, linked by compare and exchange, read no further than k nodes",
-            "Yu et al. 2012; K15 §2 (KB-LL)",
+        ..list(
+            store,
+            Row::new(
+                "storage",
+                "ordered_list",
+                "a list per pixel in order, linked by compare and exchange, read no further than k nodes",
+                "Yu et al. 2012; K15 §2 (KB-LL)",
+            ),
         )
+    }
+}
+
+/// What a list keeps in memory: what its heads, links and nodes are.
+fn resources([heads, links, nodes]: [&'static str; 3]) -> Vec<Resource> {
+    vec![
+        Resource::new("heads", Element::Word, heads).by("pixel", "pixels").cleared(0),
+        Resource::new("links", Element::Word, links).by("node", "fragments"),
+        Resource::new("nodes", Element::Entry, nodes).by("node", "fragments"),
+        Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
+    ]
+}
+
+/// What lists share; `store` says how fragments touch links and nodes.
+fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
+    let touched = store(Pass::geometry("store", "store").uses("heads", Access::Atomic));
+    Row {
+        steps: vec![
+            Step::Pass(touched.uses("pool", Access::Atomic)),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("heads", Access::Read)
+                    .uses("links", Access::Read)
+                    .uses("nodes", Access::Read)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        calls: vec!["overflow", "counters"],
+        requires: vec![Fact::FragmentAtomics],
+        ..row
     }
 }

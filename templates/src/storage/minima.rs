@@ -63,7 +63,7 @@ pub(super) fn distinct_cascade() -> Row {
                 unless: None,
             },
             Hazard {
-                name: "torn".into(),
+                name: "torn-equal-keys".into(),
                 what: "what stands beside a key comes from several fragments of that key, where it is several words"
                     .into(),
                 unless: None,

@@ -40,6 +40,7 @@ facts! {
     // What a storage can be asked.
     KeepsAll "a storage that keeps every fragment";
     KeepsBest "a storage that keeps the k best";
+    SparesRoom "a storage that gives no room to a fragment behind k better ones";
     SelectsBest "that the k best are chosen among all";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
     CanReplace "that a kept fragment can be replaced";

@@ -96,7 +96,7 @@ pub struct Parameter {
 /// What can go wrong by design, and is kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hazard {
-    /// Its name.
+    /// Its name; one that says an [`Effect`](super::Effect) is checked.
     pub name: Text,
     /// What happens.
     pub what: Text,

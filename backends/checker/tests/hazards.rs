@@ -1,0 +1,92 @@
+//! What rows state that may go wrong: all of it does, and nothing else.
+
+use fragbuf_checker::{Model, Report};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Effect, Row};
+
+use crate::subjects::{limits, report};
+
+/// Technique, changes, storage.
+type Racy = (&'static str, &'static [(&'static str, &'static str)], &'static str);
+
+/// Every technique whose rows state hazards of races, so that each of them shows.
+const STATED: [Racy; 2] = [
+    ("kb", &[], "sorted_array"),
+    // An entry of several words, so that it can be torn.
+    ("kb_mdt32", &[("fragment.color", "vec4")], "distinct_cascade"),
+];
+
+fn checked((key, set, _): &Racy, model: Model, registry: &Registry) -> Report {
+    let report = report(key, set, "wgsl", &limits(2, model), registry).unwrap();
+    assert!(report.is_whole || !report.is_stated, "{key} has states beyond the limit");
+    report
+}
+
+/// Whether what goes wrong under one of the models is not stated.
+fn fails(racy: &Racy, registry: &Registry) -> bool {
+    [Model::Sequential, Model::Late].into_iter().any(|model| !checked(racy, model, registry).is_stated)
+}
+
+/// The registry with a row of the storage's that `change` has changed.
+fn with(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
+    let registry = Registry::builtin();
+    let mut row = registry.row("storage", key).unwrap().clone();
+    change(&mut row);
+    registry.with(row)
+}
+
+#[test]
+fn whatever_goes_wrong_is_stated() {
+    for racy in &STATED {
+        for model in [Model::Sequential, Model::Late] {
+            let report = checked(racy, model, &Registry::builtin());
+            assert!(report.failure.is_some() && report.is_stated, "{} {model:?}: {:#?}", racy.0, report.failure);
+        }
+    }
+}
+
+#[test]
+fn a_row_that_states_fewer_hazards_than_it_has_fails() {
+    for racy in &STATED {
+        let hazards = Registry::builtin().row("storage", racy.2).unwrap().hazards.clone();
+        assert!(hazards.len() > 1);
+        for hazard in hazards {
+            assert!(Effect::of(&hazard.name).is_some(), "{} says no effect", hazard.name);
+            let registry = with(racy.2, |row| row.hazards.retain(|other| other.name != hazard.name));
+            assert!(fails(racy, &registry), "{} without {}", racy.0, hazard.name);
+        }
+    }
+}
+
+/// The statement of a hazard excuses that hazard alone.
+#[test]
+fn a_hazard_of_another_name_excuses_nothing() {
+    let registry = with("sorted_array", |row| {
+        row.hazards.iter_mut().for_each(|hazard| hazard.name = format!("my-{}", hazard.name).into());
+    });
+    assert!(fails(&STATED[0], &registry));
+}
+
+/// What is no hazard of the row's fails, stated hazards or not.
+#[test]
+fn a_racy_row_that_is_wrong_beyond_its_hazards_fails() {
+    let changes = [
+        // Words that no fragment has.
+        ("carried = resident;", "carried = packed_of_key(resident.key + 1u);"),
+        // More is counted than there is.
+        (
+            "on_lost(pixel, carried, DISPLACED);",
+            "on_lost(pixel, carried, DISPLACED); on_lost(pixel, carried, DISPLACED);",
+        ),
+        // A loss that no race excuses.
+        ("on_lost(pixel, carried, DISPLACED);", "on_lost(pixel, carried, POOL_EXHAUSTED);"),
+    ];
+    for (before, after) in changes {
+        let registry = with("sorted_array", |row| {
+            let template = row.template.as_mut().unwrap();
+            assert!(template.text.contains(before));
+            template.text = template.text.replace(before, after).into();
+        });
+        assert!(!checked(&STATED[0], Model::Sequential, &registry).is_stated, "{after}");
+    }
+}

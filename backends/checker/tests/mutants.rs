@@ -1,0 +1,130 @@
+//! Every small change to a WGSL text: a statement less, two that follow each other exchanged, an atomic operation as a read
+//! and a write, a number one more or one less, `<` ↔ `<=`.
+
+/// One change.
+pub(crate) struct Mutant {
+    pub(crate) text: String,
+    /// The line that was changed, and what it became.
+    pub(crate) before: String,
+    pub(crate) after: String,
+}
+
+/// Every change, in the order of the lines.
+pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
+        let mut change = |new: Vec<String>, extra: &str| {
+            let after = new.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ");
+            let head = lines[..at].iter().map(|line| (*line).to_owned());
+            let tail = lines[at + 1..].iter().map(|line| (*line).to_owned());
+            let all: Vec<String> = head.chain(new).chain(tail).collect();
+            found.push(Mutant { text: format!("{}\n{extra}", all.join("\n")), before: line.trim().to_owned(), after });
+        };
+        if is_statement(line) {
+            change(Vec::new(), "");
+        }
+        for new in numbers(line).into_iter().chain(comparisons(line)) {
+            change(vec![new], "");
+        }
+        if let Some((new, function)) = plain(line) {
+            change(vec![new], &function);
+        }
+        if let Some(next) = lines.get(at + 1).filter(|next| is_swappable(line) && is_swappable(next)) {
+            let mut swapped: Vec<&str> = lines.clone();
+            swapped.swap(at, at + 1);
+            let text = format!("{}\n", swapped.join("\n"));
+            let after = format!("{} {}", next.trim(), line.trim());
+            found.push(Mutant { text, before: format!("{} {}", line.trim(), next.trim()), after });
+        }
+    }
+    found
+}
+
+fn is_statement(line: &str) -> bool {
+    line.starts_with("    ") && line.trim_end().ends_with(';')
+}
+
+fn is_swappable(line: &str) -> bool {
+    let text = line.trim_start();
+    is_statement(line) && !["let ", "var ", "return"].iter().any(|word| text.starts_with(word))
+}
+
+/// Every number one more and one less.
+fn numbers(line: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let bytes = line.as_bytes();
+    let mut at = 0;
+    while at < bytes.len() {
+        let starts =
+            bytes[at].is_ascii_digit() && (at == 0 || !bytes[at - 1].is_ascii_alphanumeric() && bytes[at - 1] != b'_');
+        let length = bytes[at..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        if starts && bytes.get(at + length) == Some(&b'u') {
+            let number: u32 = line[at..at + length].parse().unwrap();
+            for other in [number.wrapping_add(1), number.wrapping_sub(1)] {
+                found.push(format!("{}{other}{}", &line[..at], &line[at + length..]));
+            }
+        }
+        at += length.max(1);
+    }
+    found
+}
+
+/// Every comparison with or without equality.
+fn comparisons(line: &str) -> Vec<String> {
+    let pairs = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > ")];
+    let places = pairs.iter().flat_map(|(old, new)| line.match_indices(old).map(move |(at, _)| (at, old, new)));
+    places.map(|(at, old, new)| format!("{}{new}{}", &line[..at], &line[at + old.len()..])).collect()
+}
+
+/// `x_atomic_op(…)` as a read and a write of its own.
+fn plain(line: &str) -> Option<(String, String)> {
+    let at = line.find("_atomic_")?;
+    let start =
+        line[..at].rfind(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').map_or(0, |at| at + 1);
+    let resource = &line[start..at];
+    let rest = &line[at + "_atomic_".len()..];
+    let (operation, arguments) = rest.split_once('(')?;
+    let arguments = &arguments[..matching(arguments)?];
+    let values = if operation == "compare_exchange" { 2 } else { 1 };
+    let indices: Vec<String> = (values..arguments.split(',').count()).map(|number| format!("i{number}")).collect();
+    let parameters: Vec<String> = indices.iter().map(|index| format!("{index}: u32, ")).collect();
+    let index = indices.join(", ");
+    let comma = if indices.is_empty() { "" } else { ", " };
+    if operation == "compare_exchange" {
+        let function = format!(
+            "fn plainly({}expected: u32, value: u32) -> bool {{\n    let old = {resource}_load({index});\n    if old == expected {{\n        {resource}_store({index}{comma}value);\n    }}\n    return old == expected;\n}}\n",
+            parameters.concat()
+        );
+        return Some((line.replacen(&format!("{resource}_atomic_{operation}"), "plainly", 1), function));
+    }
+    let new = match operation {
+        "add" => "old + value",
+        "sub" => "old - value",
+        "exchange" => "value",
+        "min" => "min(old, value)",
+        other => panic!("no plain form of {other}"),
+    };
+    let function = format!(
+        "fn plainly({}value: u32) -> u32 {{\n    let old = {resource}_load({index});\n    {resource}_store({index}{comma}{new});\n    return old;\n}}\n",
+        parameters.concat()
+    );
+    Some((line.replacen(&format!("{resource}_atomic_{operation}"), "plainly", 1), function))
+}
+
+/// The length of the arguments up to the bracket that closes them.
+fn matching(text: &str) -> Option<usize> {
+    let mut depth = 0;
+    text.char_indices().find_map(|(at, letter)| match letter {
+        '(' => {
+            depth += 1;
+            None
+        }
+        ')' if depth == 0 => Some(at),
+        ')' => {
+            depth -= 1;
+            None
+        }
+        _ => None,
+    })
+}

@@ -1,0 +1,48 @@
+//! What hazards do to a pixel, as far as it can be said without knowing a technique.
+//!
+//! In: a hazard's name. Out: its effect. The names are words of the vocabulary, as those of facts are: a row that takes one
+//! for a hazard of its own means this by it, and a check of the row lets it do this and nothing else.
+
+/// What a hazard lets a pixel hold in the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Effect {
+    /// A fragment that should be there is not, and no counter says so.
+    Lost,
+    /// A fragment stands there several times.
+    Duplicate,
+    /// Every word of an entry is that word of some fragment of the pixel, but not all of one.
+    Torn,
+    /// A word beside a key is what stood there before the frame.
+    Stale,
+    /// Entries are not in the order that the row promises.
+    Unsorted,
+    /// Of fragments with equal keys one is kept, and the others are counted.
+    EqualKeys,
+    /// Every word of an entry is that word of some fragment with its key, but not all of one.
+    TornEquals,
+    /// Fragments that are not kept, as they should not be, are counted nowhere.
+    Uncounted,
+    /// Of the fragments in one of k equal ranges of depth the best is kept, and the others are counted. The ranges go from
+    /// `NEAR_MILLIONTHS` to `FAR_MILLIONTHS`, constants of the row; what lies outside belongs to the first or the last.
+    OnePerRange,
+}
+
+/// Every name that says an effect.
+const NAMES: [(&str, Effect); 9] = [
+    ("lost-update", Effect::Lost),
+    ("duplicate", Effect::Duplicate),
+    ("torn", Effect::Torn),
+    ("stale", Effect::Stale),
+    ("unsorted", Effect::Unsorted),
+    ("equal-keys", Effect::EqualKeys),
+    ("torn-equal-keys", Effect::TornEquals),
+    ("uncounted", Effect::Uncounted),
+    ("one-per-range", Effect::OnePerRange),
+];
+
+impl Effect {
+    /// The effect of a hazard of this name; `None`: the name says nothing that can be checked.
+    pub fn of(name: &str) -> Option<Self> {
+        NAMES.iter().find(|(known, _)| *known == name).map(|(_, effect)| *effect)
+    }
+}
