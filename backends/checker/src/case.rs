@@ -154,7 +154,7 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
         };
         cases.push(with_room(0));
         // How many find no room where fragments can be turned away first depends on the order.
-        if needs_room && !subject.keeps_best() {
+        if needs_room && !subject.keeps_best() && subject.has_exact_room() {
             let short = with_room(1);
             cases.push(Case { what: format!("{}, room for one less", short.what), ..short });
         }
@@ -179,6 +179,14 @@ impl Subject {
     /// Whether the storage keeps no more than k; else it keeps all.
     pub(crate) fn keeps_best(&self) -> bool {
         !self.plan.selection.offers().contains(&Fact::KeepsAll)
+    }
+
+    /// Whether there is room for exactly as many fragments as is said: none for none. Pages have more.
+    fn has_exact_room(&self) -> bool {
+        let none = Symbols { k: None, fragments: Some(0), kept: Some(0) };
+        self.plan.resources.iter().filter(|planned| planned.words.mentions("fragments")).all(|planned| {
+            planned.words.evaluate(&|symbol| crate::frame::value(self, &none, symbol)).is_ok_and(|words| words == 0)
+        })
     }
 
     /// Whether what must be kept is known: all, or the k best. Of any other storage only that is known which holds for all.

@@ -30,6 +30,8 @@ pub(crate) struct Policy {
 struct Counts {
     generated: u32,
     culled: u32,
+    /// Those that have left a stream.
+    emitted: u32,
     lost: u32,
     given_up: u32,
     no_room: u32,
@@ -132,7 +134,7 @@ impl Policy {
         let total = self.fragments.len() as u32;
         let all_counted = counts.generated == total + self.neighbours;
         let out = total - kept.min(total);
-        let counted = counts.lost + counts.culled;
+        let counted = counts.lost + counts.culled + counts.emitted;
         let wrong = if all_counted || !self.culls { counted != out } else { counts.lost > out };
         wrong.then(|| {
             format!(
@@ -169,6 +171,7 @@ fn counts(counters: &[u32]) -> Counts {
         match *name {
             "generated" => counts.generated = *count,
             "culled" => counts.culled = *count,
+            "emitted" => counts.emitted = *count,
             "spin_exhausted" => counts.given_up = *count,
             "pool_exhausted" => counts.no_room = *count,
             _ => {}

@@ -11,7 +11,7 @@ mod room;
 mod symbols;
 mod uniforms;
 
-pub use counters::{COUNTERS_RESOURCE, Counter, Counters, POOL_EXHAUSTED};
+pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, POOL_EXHAUSTED};
 pub use error::Error;
 pub use host::Decision;
 pub use pass_time::PassTime;

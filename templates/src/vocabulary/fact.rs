@@ -46,8 +46,11 @@ facts! {
     Counted "the number of fragments of each pixel, known before they are stored";
     Indexed "kept fragments with an index";
     Passes "a build step for every kept fragment";
+    Streams "a storage that hands fragments on in order, two neighbours at a time";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
+    // What they are worth.
+    ValuesPairs "a value for two neighbouring fragments";
     // What a description offers.
     Limited "a limit on what is kept: `keep 8`";
     DepthKey "that depth decides which fragment is worst: no criterion";
