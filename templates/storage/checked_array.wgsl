@@ -1,14 +1,14 @@
-// A k-buffer that notices its hazards (after Zhang 2014, KB-MHA, as K15 sec. 2 describes it; the paper's code was not at
-// hand, what follows is fragbuf's own). Writers of one pixel race as in the sorted array, but every entry of two words
-// carries a checksum over both, and entries in order are strictly so. A fragment reads all slots, drops those whose
-// checksum is wrong and those that are there twice, sorts the rest, takes its place among them, writes back what has
-// changed, and looks again: if it is gone, another fragment wrote over it, and it tries once more.
+// A k-buffer that notices its hazards (after Zhang 2014, KB-MHA, as K15 sec. 2 describes it; the paper was not at hand:
+// what follows is fragbuf's own). Writers of one pixel race as in the sorted array, but an entry of two words carries a
+// checksum over both. A fragment reads all slots, drops entries whose checksum is wrong and those that are there twice,
+// sorts the rest, takes its place among them, writes back what has changed, and looks again: if it is gone, another
+// fragment wrote over it, and it tries once more, REPAIRS times.
 //
-// Invariant: what a slot is read as is a fragment, or, one time in four of those torn, two fragments' words; never a
+// Invariant: what is read out of a slot is a fragment, or, for one in four of those torn, the words of two; and no
 // fragment twice. Nothing is promised for a schedule: a fragment can be written over after its last look.
 //
-// The checksum is the two bits that no depth from 0 to 1 needs: nothing of depth or payload is given up for it. Equal
-// fragments count as one.
+// The checksum is the two bits that no depth from 0 to 1 needs, so nothing of depth or payload is given up for it.
+// Fragments with the same words count as one.
 //
 // Memory: k * entry_words words per pixel, for at most two words an entry.
 

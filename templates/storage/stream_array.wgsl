@@ -1,13 +1,13 @@
 // The k-buffer as a stream (B06 sec. 3, second type; sec. 4.3): k entries per pixel in the order of their keys. Once
-// there are k, every fragment that comes pushes the nearest of all k + 1 out: it is composited, with the next behind it,
-// into the pixel's colour, and leaves. The resolve pass streams what is still there.
+// there are k, every fragment that comes pushes the nearest of all k + 1 out: it is composited, with the next behind
+// it, into the pixel's colour, and leaves. The resolve pass streams what is still there.
 //
-// Invariant: inside the critical section the entries are in order without a gap, and `emitted` holds the farthest key
-// that has left. A fragment nearer than that is nearer than all entries, leaves at once, and comes out of order: that
-// is counted. So the picture is that of all fragments in order if nothing is counted, which is so where no fragment
-// comes more than k places late. Fragments of equal keys that no count tells apart leave in the order of arrival.
+// Invariant: inside the critical section the entries are in order without a gap, and `emitted` is the farthest key that
+// has left. A fragment nearer than that is nearer than all entries, leaves at once, and comes out of order: that is
+// counted. So nothing is counted where no fragment comes more than k places late, and where nothing is counted the
+// picture is that of all fragments in order; but for those of equal keys, which may leave in the order of arrival.
 //
-// Memory: k * entry_words + 5 words per pixel, and the lock's: entries, colour, the key that left last.
+// Memory: k * entry_words + 5 words per pixel, and the lock's: entries, a colour of four floats, the key that left.
 
 fn storage_reset(pixel: u32) {
     for (var slot = 0u; slot < frame.k; slot++) {
