@@ -12,5 +12,6 @@ mod compiles;
 mod litmus;
 mod mutation;
 mod regressions;
+mod repairs;
 mod subjects;
 mod verdicts;
