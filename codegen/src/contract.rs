@@ -34,6 +34,12 @@ pub const CONTRACTS: &[Contract] = &[
         "(pixel: u32, entry: Packed) -> bool",
         "outside any lock: stores a fragment that has a place of its own, or hands it to on_lost; false: insert it",
     ),
+    row(
+        "storage",
+        "storage_survey",
+        "(pixel: u32, entry: Packed)",
+        "learns of a fragment that a later pass will store",
+    ),
     row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment or hands one to on_lost"),
     row("storage", "storage_settle", "(pixel: u32, entry: Packed)", "settles more of a fragment that was stored"),
     row(
@@ -45,6 +51,12 @@ pub const CONTRACTS: &[Contract] = &[
     row("storage", "storage_first", "(pixel: u32) -> u32", "the cursor of a first fragment, or END"),
     row("storage", "storage_next", "(pixel: u32, cursor: u32) -> u32", "the cursor after this one, or END"),
     row("storage", "storage_read", "(pixel: u32, cursor: u32) -> Packed", "the fragment at a cursor"),
+    row(
+        "storage",
+        "storage_streamed",
+        "(pixel: u32) -> vec4<f32>",
+        "the premultiplied colour of the fragments that have left the pixel",
+    ),
     row("sync", "sync_store", "(pixel: u32, entry: Packed)", "calls storage_insert as the sync promises, or on_lost"),
     row("cull", "cull_fragment", "(pixel: u32, entry: Packed) -> bool", "whether the fragment is turned away"),
     row(
@@ -72,6 +84,12 @@ pub const CONTRACTS: &[Contract] = &[
         "resolve_layers",
         "() -> vec4<f32>",
         "a premultiplied colour from `layers`; called if there is at least one",
+    ),
+    row(
+        "resolve",
+        "stream_value",
+        "(front: Fragment, back: Fragment, gap: f32) -> vec4<f32>",
+        "a premultiplied colour from one fragment to the next, `gap` in depth behind it; the last is its own next",
     ),
 ];
 

@@ -62,14 +62,14 @@ pub struct Planned {
     pub words: Formula,
 }
 
-/// Values of the symbols that are bound when code is generated.
+/// Values of the symbols that are bound when code is generated; parameters of rows by their constants.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bound(pub Vec<(&'static str, u64)>);
+pub struct Bound(pub Vec<(String, u64)>);
 
 impl Bound {
     /// The value of `symbol`, if it is bound by now.
     pub fn value(&self, symbol: &str) -> Option<u64> {
-        self.0.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value)
+        self.0.iter().find(|(name, _)| name == symbol).map(|(_, value)| *value)
     }
 }
 
@@ -82,16 +82,19 @@ pub fn bucket(keep: Option<u32>) -> u32 {
 /// Plans one selection of a variant's rows.
 pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Result<Plan, Diagnostics> {
     let layout = Layout::of(variant);
-    let bound = Bound(vec![
-        ("capacity", u64::from(bucket(variant.keep))),
-        ("entry_words", u64::from(layout.entry_words())),
-        ("beside_words", u64::from(layout.beside_words())),
-    ]);
-    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
-    let built = build(selection, limit, registry, &bound).map_err(|problem| {
+    let fault = |problem: String| {
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
-    })?;
+    };
+    let mut bound = Bound(vec![
+        ("capacity".to_owned(), u64::from(bucket(variant.keep))),
+        ("entry_words".to_owned(), u64::from(layout.entry_words())),
+        ("beside_words".to_owned(), u64::from(layout.beside_words())),
+    ]);
+    let parameters = parameters(selection, &bound).map_err(|error| fault(error.to_string()))?;
+    bound.0.extend(parameters.iter().map(|(name, value)| (name.clone(), u64::from(*value))));
+    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
+    let built = build(selection, limit, registry, &bound).map_err(fault)?;
     let offers = selection.offers();
     let rows = || selection.rows.iter().map(|selected| &selected.row);
     let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
@@ -102,7 +105,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         variant: variant.clone(),
         selection: selection.clone(),
         layout,
-        constants: built.constants,
+        constants: constants(&bound, parameters),
         frame: built.frame,
         resources: built.resources,
         geometry_passes: geometry_passes(&built.steps, &bound).to_string(),
@@ -119,7 +122,6 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
 }
 
 struct Built {
-    constants: Vec<(String, u32)>,
     frame: Vec<String>,
     resources: Vec<Planned>,
     steps: Vec<Step>,
@@ -149,7 +151,6 @@ fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound
         planned.push(Planned { resource, binding, words });
     }
     Ok(Built {
-        constants: constants(selection, bound).map_err(|error| error.to_string())?,
         frame: frame(limit, &planned, &steps),
         words_per_pixel: words_per_pixel(&total).to_string(),
         resources: planned,
@@ -183,12 +184,13 @@ fn written_factor(factor: &Formula) -> String {
 }
 
 /// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
-/// node. Sizes that grow with neither, or with a fraction of the pixels, are left to the list of resources.
+/// node, and f/4 per word of a page of four. Sizes that grow with neither, or with a fraction of the pixels, are left to the list of resources.
 fn words_per_pixel(total: &Polynomial) -> Polynomial {
     total
         .coefficient("pixels")
         .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
         .plus(&total.coefficient("kept").times(&Polynomial::symbol("f_k")), 1)
+        .plus(&total.fractions("fragments", "f"), 1)
 }
 
 /// Times that the scene is drawn, as a formula over the bounds of loops.
@@ -207,11 +209,18 @@ fn geometry_passes(steps: &[Step], bound: &Bound) -> Polynomial {
     })
 }
 
-/// The parameters of the chosen rows, as set or by default.
-fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>, FormulaError> {
+/// What every program may name, then the parameters of the chosen rows.
+fn constants(bound: &Bound, parameters: Vec<(String, u32)>) -> Vec<(String, u32)> {
     let number = |symbol| bound.value(symbol).unwrap_or(0) as u32;
     let mut constants =
         vec![("CAPACITY".to_owned(), number("capacity")), ("BESIDE_WORDS".to_owned(), number("beside_words"))];
+    constants.extend(parameters);
+    constants
+}
+
+/// The parameters of the chosen rows by their constants, as set or by default.
+fn parameters(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>, FormulaError> {
+    let mut parameters = Vec::new();
     for selected in &selection.rows {
         for parameter in &selected.row.parameters {
             let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
@@ -219,10 +228,10 @@ fn constants(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>,
                 Some(value) => value,
                 None => parameter.default.evaluate(&|symbol| bound.value(symbol))? as u32,
             };
-            constants.push((parameter.constant.to_string(), value));
+            parameters.push((parameter.constant.to_string(), value));
         }
     }
-    Ok(constants)
+    Ok(parameters)
 }
 
 /// Whether a description keeps no more than k.

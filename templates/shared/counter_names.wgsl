@@ -7,3 +7,6 @@ const POOL_EXHAUSTED = 3u;
 const SPIN_EXHAUSTED = 4u;
 const LAYERS_EXCEEDED = 5u;
 const EQUAL_KEYS = 6u;
+const EMITTED = 7u;
+const OUT_OF_ORDER = 8u;
+const PAGES_LEAKED = 9u;

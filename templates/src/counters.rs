@@ -4,7 +4,7 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 7] = [
+pub const COUNTERS: [(&str, bool, &str); 10] = [
     ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
     ("culled", false, "fragments turned away by the cull"),
     ("displaced", true, "fragments rejected or replaced because better ones were there"),
@@ -12,6 +12,13 @@ pub const COUNTERS: [(&str, bool, &str); 7] = [
     ("spin_exhausted", true, "fragments given up because the lock, a slot or a link was not free in time"),
     ("layers_exceeded", true, "kept fragments beyond what the resolve pass can hold; the farthest are left out"),
     ("equal_keys", true, "fragments dropped because one with an equal key was kept"),
+    ("emitted", false, "fragments that a stream composited while it was filled; those at its end are not counted"),
+    (
+        "out_of_order",
+        false,
+        "fragments of those that came after one behind them had been composited; counted as losses are",
+    ),
+    ("pages_leaked", false, "pages taken from a pool by a fragment that found room in another's"),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

@@ -54,6 +54,18 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "overflow", "sort", "resolve"],
         ),
         row(
+            "resolve_stream",
+            "finishes the stream of each pixel's fragments",
+            template!("pass/resolve_stream"),
+            vec!["addressing", "storage", "overflow", "resolve"],
+        ),
+        row(
+            "survey",
+            "draws the scene ahead of the store pass, for a storage that must know what will come",
+            template!("pass/survey"),
+            vec!["addressing", "storage"],
+        ),
+        row(
             "settle",
             "draws the scene again for what a storage could not settle in one pass",
             template!("pass/settle"),

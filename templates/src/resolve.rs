@@ -10,6 +10,17 @@ pub(crate) fn rows() -> Vec<Row> {
             requires: vec![Fact::Sorted, Fact::Color],
             ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984")
         },
+        Row {
+            template: Some(template!("resolve/stream")),
+            requires: vec![Fact::Streams, Fact::Color],
+            offers: vec![Fact::ValuesPairs],
+            ..Row::new(
+                "resolve",
+                "stream",
+                "colours blended front to back while they are handed on",
+                "B06 §4.3; Porter & Duff 1984",
+            )
+        },
         Row::new("resolve", Registry::CLOSURE, "the description's own `resolve |fragments, u| { … }`", ""),
     ]
 }

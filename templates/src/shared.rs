@@ -2,12 +2,13 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 7] = [
+pub(crate) const TEMPLATES: [Template; 8] = [
     template!("shared/markers"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),
     template!("shared/encoding"),
     template!("shared/layers"),
     template!("shared/gap_sort"),
+    template!("shared/stream"),
     template!("shared/workgroup_scan"),
 ];

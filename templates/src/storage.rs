@@ -1,9 +1,12 @@
 //! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
 
+mod checked;
 mod list;
+mod lists;
 mod minima;
 mod ranges;
 mod regions;
+mod stream;
 mod worst_first;
 
 use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
@@ -23,6 +26,10 @@ pub(crate) fn rows() -> Vec<Row> {
         list::ordered_list(),
         ranges::depth_ranges(),
         regions::bounded_regions(),
+        lists::paged_list(),
+        lists::bucket_lists(),
+        stream::stream_array(),
+        checked::checked_array(),
     ]
 }
 

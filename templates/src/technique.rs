@@ -182,5 +182,42 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("sort", "insertion"),
             ],
         },
+        Technique {
+            key: "ab_ll_paged".to_owned(),
+            title: "AB_LL-Paged",
+            paper: "after Crassin 2010",
+            summary: "every fragment, in a list of pages per pixel",
+            keep: KeepDefault::All,
+            choices: vec![("storage", "paged_list"), ("sync", "slot_counter"), ("sort", "insertion")],
+        },
+        Technique {
+            key: "ab_ll_bun".to_owned(),
+            title: "AB_LL-BUN (BUN-LL)",
+            paper: "D13 §3.1.4; K15 §2",
+            summary: "every fragment, in a linked list per depth bucket of its pixel",
+            keep: KeepDefault::All,
+            choices: vec![("storage", "bucket_lists"), ("sync", "slot_counter"), ("sort", "insertion")],
+        },
+        Technique {
+            key: "kb_stream".to_owned(),
+            title: "KB as a stream",
+            paper: "B06 §3, §4.3; Callahan et al. 2005",
+            summary: "every fragment composited in order through k entries, if none comes more than k places late",
+            keep: KeepDefault::Best(8),
+            choices: vec![
+                ("storage", "stream_array"),
+                ("sync", "interlock else spin_lock"),
+                ("sort", "none"),
+                ("resolve", "stream"),
+            ],
+        },
+        Technique {
+            key: "kb_mha".to_owned(),
+            title: "KB-MHA",
+            paper: "after Zhang 2014, internals ours; K15 §2",
+            summary: "the k nearest by racing writers that notice and mend most of what races break",
+            keep: KeepDefault::Best(8),
+            choices: vec![("storage", "checked_array"), ("sync", "none"), ("sort", "insertion")],
+        },
     ]
 }

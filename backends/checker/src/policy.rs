@@ -44,6 +44,7 @@ pub(crate) enum Finding {
 struct Counts {
     generated: u32,
     culled: u32,
+    emitted: u32,
     lost: u32,
     given_up: u32,
     no_room: u32,
@@ -151,7 +152,7 @@ impl Policy {
         let total = self.fragments.len() as u32;
         let all_counted = counts.generated == total + self.neighbours;
         let out = total - kept.min(total);
-        let counted = counts.lost + counts.culled;
+        let counted = counts.lost + counts.culled + counts.emitted;
         let wrong = if all_counted || !self.culls { counted != out } else { counts.lost > out };
         wrong.then(|| {
             format!(
@@ -215,7 +216,7 @@ impl Policy {
     fn is_counted(&self, kept: u32, counts: Counts) -> bool {
         let may = |effect| self.effects.contains(&effect);
         let total = self.fragments.len() as u32;
-        let counted = counts.lost + counts.culled;
+        let counted = counts.lost + counts.culled + counts.emitted;
         if may(Effect::Uncounted) {
             return kept + counts.lost <= total;
         }
@@ -247,6 +248,7 @@ impl Policy {
             match *name {
                 "generated" => counts.generated = *count,
                 "culled" => counts.culled = *count,
+                "emitted" => counts.emitted = *count,
                 "spin_exhausted" => counts.given_up = *count,
                 "pool_exhausted" => counts.no_room = *count,
                 _ => {}

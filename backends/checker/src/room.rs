@@ -132,6 +132,9 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
         (true, false) => (total, total.min(asking.k.unwrap_or(u32::MAX))),
     };
     let mut rooms = vec![room(total)?];
+    if !has_exact_room(subject, &rooms[0])? {
+        return Ok(rooms);
+    }
     if most < total && !asking.may_give_up {
         rooms.push(Room { what: "room for those that ask", ..room(most)? });
     }
@@ -139,4 +142,15 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
     let short = least - nodes..=total - nodes;
     rooms.push(Room { short, what: "room for one less than ask", ..room(nodes)? });
     Ok(rooms)
+}
+
+/// Whether there is room for exactly as many fragments as is said: none for none. Pages have more.
+fn has_exact_room(subject: &Subject, room: &Room) -> Result<bool, String> {
+    let mut none = room.symbols.clone();
+    none.set("fragments", 0);
+    let mut pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
+    pooled.try_fold(true, |exact, planned| {
+        let words = none.evaluate(&subject.plan, &planned.words, &planned.resource.name);
+        Ok(exact && words.map_err(|error| error.to_string())? == 0)
+    })
 }

@@ -14,6 +14,7 @@ mod litmus;
 mod mutants;
 mod mutation;
 mod regressions;
+mod repairs;
 mod repeated;
 mod subjects;
 mod survivors;

@@ -29,9 +29,12 @@ fn found(report: &Report) -> Found {
 }
 
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
+const LOCK: &[(&str, &str)] = &[("sync", "spin_lock")];
+const PAGES_OF_ONE: &[(&str, &str)] = &[("storage.page", "1")];
+const PAGES_OF_TWO: &[(&str, &str)] = &[("storage.page", "2")];
 const INTERLOCK: &[(&str, &str)] = &[("sync", "interlock")];
 
-const VERDICTS: [Verdict; 40] = [
+const VERDICTS: [Verdict; 57] = [
     ("kb", &[], "wgsl", Model::Sequential, AsStated),
     ("kb", &[], "spirv", Model::Late, AsStated),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -72,6 +75,23 @@ const VERDICTS: [Verdict; 40] = [
     ("ab_ll", &[], "wgsl", Model::Late, Holds),
     ("ab_sb", &[], "wgsl", Model::Sequential, Holds),
     ("ab_sb", &[], "wgsl", Model::Late, Holds),
+    ("ab_ll_paged", &[], "wgsl", Model::Sequential, Holds),
+    ("ab_ll_paged", &[], "wgsl", Model::Late, Holds),
+    ("ab_ll_paged", PAGES_OF_TWO, "wgsl", Model::Sequential, Holds),
+    ("ab_ll_paged", PAGES_OF_TWO, "wgsl", Model::Late, Holds),
+    ("ab_ll_paged", PAGES_OF_ONE, "wgsl", Model::Sequential, Holds),
+    ("ab_ll_bun", &[], "wgsl", Model::Sequential, Holds),
+    ("ab_ll_bun", &[], "wgsl", Model::Late, Holds),
+    ("kb_stream", LOCK, "wgsl", Model::Sequential, Holds),
+    ("kb_stream", LOCK, "wgsl", Model::Late, Fails),
+    ("kb_stream", LOCK, "spirv", Model::Late, Holds),
+    ("kb_stream", &[], "spirv", Model::Sequential, Holds),
+    ("kb_stream", &[], "spirv", Model::Late, Holds),
+    ("kb_mha", &[], "wgsl", Model::Sequential, AsStated),
+    ("kb_mha", &[], "spirv", Model::Late, AsStated),
+    ("kb_mha", LOCK, "wgsl", Model::Sequential, Fails),
+    ("kb_mha", LOCK, "wgsl", Model::Late, Fails),
+    ("kb_mha", LOCK, "spirv", Model::Late, Fails),
 ];
 
 #[test]

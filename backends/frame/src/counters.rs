@@ -8,6 +8,9 @@ pub const COUNTERS_RESOURCE: &str = "counters";
 /// The counter of fragments that found no room.
 pub const POOL_EXHAUSTED: &str = "pool_exhausted";
 
+/// The counter of fragments that a stream composited too late.
+pub const OUT_OF_ORDER: &str = "out_of_order";
+
 /// What a frame counted. With `counters: losses`, the default, only losses are; the others stay 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counters(pub Vec<Counter>);

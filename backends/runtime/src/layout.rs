@@ -52,7 +52,8 @@ pub(crate) fn slots(plan: &Plan, pass: &Pass) -> Vec<Slot> {
 /// Whether a resource takes memory at all, in a frame of any size.
 pub(crate) fn has_words(plan: &Plan, index: usize) -> bool {
     let words = plan.resources.get(index).map(|planned| &planned.words);
-    let any_size = |symbol: &str| plan.bound.value(symbol).or(Some(1));
+    // Pages of many fragments are no memory for one.
+    let any_size = |symbol: &str| plan.bound.value(symbol).or(Some(4096));
     words.is_some_and(|words| words.evaluate(&any_size) != Ok(0))
 }
 

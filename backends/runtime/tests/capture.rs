@@ -207,6 +207,21 @@ fn the_linked_list() {
     check(&technique("ab_ll", &[]), &settings(), &PLAIN, |_| {});
 }
 
+/// Pages of one, of fewer than come, of as many and of more.
+#[test]
+fn the_list_of_pages() {
+    for page in ["1", "2", "3", "4", "8", "9"] {
+        check(&technique("ab_ll_paged", &[("storage.page", page)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+#[test]
+fn the_lists_per_depth_bucket() {
+    for sort in ["insertion", "bitonic"] {
+        check(&technique("ab_ll_bun", &[("sort", sort)]), &settings(), &PLAIN, |_| {});
+    }
+}
+
 #[test]
 fn exact_regions_cut_at_the_host_step() {
     check(&technique("ab_sb", &[]), &Settings { sizing: Sizing::Exact, ..settings() }, &PLAIN, |_| {});
@@ -314,7 +329,7 @@ fn a_description_that_keeps_all() {
         nearer: |quad| vec![quad.depth.to_bits(), u32::from_le_bytes(quad.color), quad.id],
         resolve: glass_resolve,
     };
-    for key in ["ab_ll", "ab_sb", "ab_array"] {
+    for key in ["ab_ll", "ab_sb", "ab_array", "ab_ll_paged", "ab_ll_bun"] {
         check(&glass(key, ""), &settings(), &rules, set_uniforms);
     }
 }

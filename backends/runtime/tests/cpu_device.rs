@@ -7,7 +7,7 @@ use std::sync::Arc;
 use fragbuf_backends::target;
 use fragbuf_cpu::{Code, Coverage, Device, Mesh, Order};
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Sizing, VertexInputs};
+use fragbuf_runtime::{Room, Sizing, VertexInputs};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
 
@@ -92,6 +92,35 @@ fn interleaving_changes_nothing_where_no_hazard_is_stated() {
                 assert!(expected == seen, "{key}, {name}, seed {seed}");
             }
         }
+    }
+}
+
+/// Pages that leak are counted, and missing from the pool; where there are enough of them no schedule shows.
+#[test]
+fn leaked_pages_lose_nothing_but_room() {
+    let variant = technique("ab_ll_paged", &[("counters", "all")]);
+    let quads: Vec<Quad> = scattered(24, 3).into_iter().map(|quad| quad.at(0, 0, SIZE, SIZE)).collect();
+    let with = |order: Order, room: u32| {
+        let code = Code::of(&variant, &Registry::builtin()).unwrap();
+        let sizing = Sizing::Reserve(Room::Fragments(room));
+        let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing, order, coverage: Coverage::Samples };
+        let mut device = Device::new(Arc::new(code), settings).unwrap();
+        let (kept, _) = draw(&mut device, &quads);
+        let counters = fragbuf_runtime::Counters::each(&device.words("counters").unwrap()).remove(0);
+        (kept, counters)
+    };
+    let fragments = 24 * SIZE * SIZE;
+    let (expected, counters) = with(Order::Submission, fragments);
+    assert_eq!((counters.get("pages_leaked"), counters.lost()), (0, 0));
+    for seed in 0..4 {
+        // A page for every fragment is enough for any schedule: none takes two.
+        let (kept, counters) = with(Order::Shuffled(seed), 4 * fragments);
+        assert!(kept == expected && counters.lost() == 0, "seed {seed}: {counters:?}");
+        assert!(counters.get("pages_leaked") > 0, "seed {seed} interleaves nothing");
+        let (kept, counters) = with(Order::Shuffled(seed), fragments);
+        let count: usize = kept.iter().map(Vec::len).sum();
+        assert_eq!(count as u64 + counters.lost(), u64::from(fragments), "seed {seed}: {counters:?}");
+        assert_eq!(counters.lost(), u64::from(counters.get("pool_exhausted")), "seed {seed}");
     }
 }
 

@@ -153,6 +153,48 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                     std::iter::successors(link(buffer("heads")[pixel]), |node| link(buffer("links")[*node as usize]));
                 nodes.map(|node| entry("nodes", node as usize)).collect()
             }
+            "paged_list" => {
+                let page = parameter(plan, "PAGE_ENTRIES");
+                let mut kept = Vec::new();
+                let mut end = buffer("cursors")[pixel] as usize;
+                while end > 0 {
+                    let first = (end - 1) / page * page;
+                    kept.extend((first..end).map(|place| entry("entries", place)));
+                    let pooled = (first / page).checked_sub(PIXELS);
+                    assert!(pooled.is_some() || first == pixel * page, "pixel {pixel} is in another's page");
+                    end = pooled.map_or(0, |number| buffer("links")[number] as usize);
+                    assert!(end.is_multiple_of(page), "a link of pixel {pixel} leads to a page that is not full");
+                }
+                kept
+            }
+            "bucket_lists" => {
+                let link = |word: u32| word.checked_sub(1);
+                let bucket = |number: usize| -> Vec<Words> {
+                    let head = link(buffer("heads")[number * PIXELS + pixel]);
+                    let nodes = std::iter::successors(head, |node| link(buffer("links")[*node as usize]));
+                    nodes.map(|node| entry("nodes", node as usize)).collect()
+                };
+                let buckets: Vec<Vec<Words>> = (0..5).map(bucket).collect();
+                let ends = |list: &Vec<Words>| Some((list.iter().min()?[0], list.iter().max()?[0]));
+                let ends: Vec<(u32, u32)> = buckets.iter().filter_map(ends).collect();
+                assert!(ends.is_sorted_by(|a, b| a.1 < b.0), "buckets of pixel {pixel} overlap: {buckets:?}");
+                buckets.concat()
+            }
+            "stream_array" => {
+                let kept: Vec<Words> =
+                    (0..k).map(|index| slot(index, pixel)).take_while(|words| words[0] != EMPTY).collect();
+                let rest = (kept.len()..k).map(|index| slot(index, pixel)[0]);
+                assert!(rest.clone().all(|key| key == EMPTY), "pixel {pixel} has a gap: {kept:?}");
+                assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
+                kept
+            }
+            "checked_array" => {
+                let open = |words: Words| [&[words[0] & 0x3fff_ffff], &words[1..]].concat();
+                let slots = (0..k).map(|index| slot(index, pixel)).filter(|words| words[0] != EMPTY);
+                let kept: Vec<Words> = slots.map(open).collect();
+                assert!(kept.is_sorted_by(|a, b| a < b), "pixel {pixel} is not in strict order: {kept:?}");
+                kept
+            }
             "exact_regions" => {
                 let offsets = buffer("offsets");
                 let end = offsets[pixel + 1].min(renderer.symbol("fragments").unwrap() as u32);
@@ -167,4 +209,10 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
         kept
     });
     pixels.collect()
+}
+
+/// A parameter of the chosen rows.
+fn parameter(plan: &Plan, constant: &str) -> usize {
+    let found = plan.constants.iter().find(|(name, _)| name == constant);
+    found.unwrap_or_else(|| panic!("no parameter `{constant}`")).1 as usize
 }

@@ -6,9 +6,9 @@ use fragbuf_model::Variant;
 
 use crate::capture::{compare, scattered};
 use crate::oracle::{self, PLAIN, Rules, Words};
-use crate::order::orders;
+use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE};
-use crate::stage::{self, Seen, renderer, see, settings, shaders, technique};
+use crate::stage::{self, BACKGROUND, Seen, renderer, see, settings, shaders, technique};
 
 /// Scenes with many equal depths, at most eight layers over a pixel.
 fn scenes() -> Vec<Vec<Quad>> {
@@ -107,5 +107,121 @@ fn ranges_that_hold_one_fragment_each_lose_nothing() {
         .collect();
     for quads in orders(&quads) {
         compare("ranges", &see(&stage, &mut renderer, &quads), &rules, &quads, (None, None));
+    }
+}
+
+/// What a stream of k entries composites of the fragments of a pixel, in which order, how many of those too late, and what
+/// it still holds: each time one more than k are there, the nearest leaves.
+fn streamed(fragments: &[Quad], k: usize) -> (Vec<Quad>, u32, Vec<Words>) {
+    let (mut held, mut gone): (Vec<Quad>, Vec<Quad>) = (Vec::new(), Vec::new());
+    let mut late = 0;
+    for quad in fragments {
+        held.push(*quad);
+        held.sort_by_key(PLAIN.words);
+        if held.len() > k {
+            let nearest = held.remove(0);
+            late += u32::from(gone.iter().any(|other| other.depth > nearest.depth));
+            gone.push(nearest);
+        }
+    }
+    let kept = held.iter().map(PLAIN.words).collect();
+    (gone.into_iter().chain(held).collect(), late, kept)
+}
+
+/// Whether `seen` is `layers` composited one after the other, at one pixel.
+fn assert_composited(seen: &[f32; 4], layers: &[Quad], what: &str) {
+    let color = oracle::over(layers);
+    for (channel, background) in BACKGROUND.into_iter().enumerate() {
+        let expected = color[channel] + (1.0 - color[3]) * background;
+        let off = 255.0 * (f64::from(seen[channel]) - expected).abs();
+        assert!(off <= 1.0, "{what}: channel {channel} is off by {off}/255");
+    }
+}
+
+/// In every order of arrival the picture is that of the stream, and what comes too late is counted, one by one.
+#[test]
+fn a_stream_composites_in_the_order_of_leaving() {
+    for k in [1, 3, 8] {
+        let variant = technique("kb_stream", &[("k", &k.to_string()), ("counters", "all")]);
+        let disorder = std::cell::Cell::new(0);
+        each_frame(&variant, |seen, quads| {
+            let (mut late_in_all, mut emitted) = (0, 0);
+            for ((kept, pixel), (x, y)) in seen.kept.iter().zip(&seen.pixels).zip(oracle::pixels()) {
+                let fragments = oracle::fragments(quads, x, y);
+                let (layers, late, held) = streamed(&fragments, k);
+                assert_eq!(*kept, held, "{x}, {y} of {quads:?}");
+                assert_composited(pixel, &layers, &format!("k = {k}, {x}, {y} of {quads:?}"));
+                late_in_all += late;
+                emitted += (fragments.len() - held.len()) as u32;
+            }
+            let count = |name: &str| seen.counters.get(name);
+            assert_eq!((count("out_of_order"), count("emitted"), seen.counters.lost()), (late_in_all, emitted, 0));
+            disorder.set(disorder.get() + late_in_all);
+        });
+        assert_eq!(disorder.get() > 0, k < 8, "eight layers are out of order for fewer than eight entries");
+    }
+}
+
+/// No fragment comes more than k places late: all of them are composited in order, however many there are.
+#[test]
+fn a_stream_of_what_is_nearly_sorted_is_everybodys_picture() {
+    let stage = stage::device();
+    let k = 3;
+    let mut renderer = renderer(&stage, &shaders(&technique("kb_stream", &[("k", "3")]), "wgsl"), &settings()).unwrap();
+    let color = |index: u32| [(index * 37 % 256) as u8, (index * 91 % 256) as u8, 40, 30 + index as u8];
+    let sorted: Vec<Quad> = (0..24).map(|index| Quad::whole(index as f32 / 32.0, color(index))).collect();
+    for seed in 0..16 {
+        let mut numbers = Numbers::seeded(seed);
+        // Each group of k + 1 in any order: none is more than k places late.
+        let nearly: Vec<Quad> = sorted
+            .chunks(k + 1)
+            .flat_map(|group| {
+                let mut group = group.to_vec();
+                (1..group.len()).rev().for_each(|end| group.swap(end, numbers.below(end as u32 + 1) as usize));
+                group
+            })
+            .collect();
+        let seen = see(&stage, &mut renderer, &nearly);
+        assert_eq!(seen.counters.get("out_of_order"), 0, "{nearly:?}");
+        for pixel in &seen.pixels {
+            assert_composited(pixel, &sorted, "nearly sorted");
+        }
+    }
+    let farthest_first: Vec<Quad> = sorted.iter().rev().copied().collect();
+    let seen = see(&stage, &mut renderer, &farthest_first);
+    // All that come once the farthest has left.
+    assert_eq!(seen.counters.get("out_of_order"), (24 - k as u32 - 1) * SIZE * SIZE);
+}
+
+/// On one device that runs the fragments of a pixel one after the other: the k nearest, equal fragments once.
+#[test]
+fn of_equal_fragments_a_checked_array_keeps_one() {
+    let red = [255, 0, 0, 128];
+    let twice = |quads: &[Quad]| -> Vec<Quad> { [quads, quads].concat() };
+    let equal = [Quad::whole(0.5, red), Quad::whole(0.5, [0, 255, 0, 64]), Quad::whole(0.25, red).at(0, 0, 5, 9)];
+    for k in [1, 3, 8] {
+        let variant = technique("kb_mha", &[("k", &k.to_string()), ("counters", "all")]);
+        let stage = stage::device();
+        let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
+        for scene in scenes().into_iter().chain([equal.to_vec(), twice(&equal), twice(&scattered(4, 5))]) {
+            for quads in orders(&scene) {
+                let seen = see(&stage, &mut renderer, &quads);
+                let mut repeated = 0;
+                for ((kept, pixel), (x, y)) in seen.kept.iter().zip(&seen.pixels).zip(oracle::pixels()) {
+                    let mut fragments = oracle::kept(&PLAIN, &quads, None, x, y);
+                    let all = fragments.len();
+                    fragments.dedup_by_key(|quad| (PLAIN.words)(quad));
+                    repeated += (all - fragments.len()) as u32;
+                    fragments.truncate(k);
+                    assert_eq!(*kept, fragments.iter().map(PLAIN.words).collect::<Vec<_>>(), "{x}, {y} of {quads:?}");
+                    assert_composited(pixel, &fragments, &format!("k = {k}, {x}, {y} of {quads:?}"));
+                }
+                let count = |name: &str| seen.counters.get(name);
+                let kept: u32 = seen.kept.iter().map(|kept| kept.len() as u32).sum();
+                assert_eq!(count("generated"), kept + count("displaced") + count("equal_keys"), "{:?}", seen.counters);
+                // Of equal fragments, some may be behind k others when they come.
+                assert!(count("equal_keys") <= repeated && (k < 8 || count("equal_keys") == repeated));
+            }
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, 
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
-const COUNTERS: u64 = 7;
+const COUNTERS: u64 = 10;
 
 fn open(stage: &Headless, key: &str, set: &[(&str, &str)], sizing: Sizing) -> Result<Renderer, Error> {
     renderer(stage, &shaders(&technique(key, set), "wgsl"), &Settings { sizing, ..settings() })
@@ -35,6 +35,13 @@ fn allocated_bytes_are_what_the_papers_say() {
         ("kb_ll", "5", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", reserve, PIXELS + 1 + 3 * 1000 + COUNTERS),
         ("ab_ll", "all", Sizing::Auto, PIXELS + 1 + 3 * 8 * PIXELS + COUNTERS),
+        // A page of four for every pixel, and one with its link for every four fragments: 9f/4 + 9.
+        ("ab_ll_paged", "all", reserve, PIXELS + 1 + 250 + 8 * (PIXELS + 250) + COUNTERS),
+        // Five heads and two ends of a range: 3f + 7.
+        ("ab_ll_bun", "all", reserve, 7 * PIXELS + 1 + 3 * 1000 + COUNTERS),
+        // A colour of four words, the key that left last, and the lock.
+        ("kb_stream", "5", Sizing::Auto, (2 * 5 + 6) * PIXELS + COUNTERS),
+        ("kb_mha", "5", Sizing::Auto, 2 * 5 * PIXELS + COUNTERS),
         ("ab_sb", "all", reserve, PIXELS + (PIXELS + 1) + 1 + 2 * 1000 + COUNTERS),
         ("ab_sb", "all", Sizing::Exact, PIXELS + (PIXELS + 1) + 1 + 2 * fragments + COUNTERS),
     ];
@@ -98,7 +105,7 @@ fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
     let quads = scattered(8, 5);
     let fragments = total(&PLAIN, &quads);
     for room in [0, 1, fragments / 2, fragments - 1, fragments, fragments + 1] {
-        for key in ["ab_ll", "ab_sb"] {
+        for key in ["ab_ll", "ab_sb", "ab_ll_bun"] {
             let sizing = Sizing::Reserve(Room::Fragments(room as u32));
             let mut renderer = open(&stage, key, &[("counters", "all")], sizing).unwrap();
             let seen = see(&stage, &mut renderer, &quads);
@@ -110,6 +117,32 @@ fn a_pool_that_runs_over_counts_every_fragment_that_it_loses() {
             assert_eq!(seen.kept.iter().map(Vec::len).sum::<usize>(), fragments - lost);
             for (kept, all) in seen.kept.iter().zip(all) {
                 assert!(kept.iter().all(|words| all.contains(words)), "{key} keeps what was never drawn");
+            }
+        }
+    }
+}
+
+/// Every pixel has a page of its own; the pool holds one for every four fragments that there is room for. So that many fit
+/// however they lie, and of more some may.
+#[test]
+fn pages_have_room_for_what_is_said_however_it_lies() {
+    let stage = device();
+    let color = [9, 90, 200, 60];
+    let piled = |count: u32| (0..count).map(|id| Quad::whole(0.5, color).at(3, 3, 5, 4).named(id)).collect::<Vec<_>>();
+    for quads in [scattered(8, 5), scattered(30, 6), piled(4), piled(5), piled(21)] {
+        let fragments = total(&PLAIN, &quads);
+        let wanted: usize = kept_words(&PLAIN, &quads, None).iter().map(|all| all.len().saturating_sub(1) / 4).sum();
+        for room in [0, 4, fragments / 2, 4 * wanted.saturating_sub(1), 4 * wanted, fragments] {
+            let sizing = Sizing::Reserve(Room::Fragments(room as u32));
+            let mut renderer = open(&stage, "ab_ll_paged", &[("counters", "all")], sizing).unwrap();
+            let seen = see(&stage, &mut renderer, &quads);
+            let (kept, lost) = (seen.kept.iter().map(Vec::len).sum::<usize>(), seen.counters.lost() as usize);
+            assert_eq!(seen.counters.get("pool_exhausted") as usize, lost, "{:?}", seen.counters);
+            assert_eq!((kept + lost, lost == 0), (fragments, room / 4 >= wanted), "room for {room} of {fragments}");
+            assert_eq!(seen.counters.get("pages_leaked"), 0, "fragments come one after the other");
+            for (kept, all) in seen.kept.iter().zip(kept_words(&PLAIN, &quads, None)) {
+                assert!(kept.iter().all(|words| all.contains(words)) && kept.len() <= all.len());
+                assert!(kept.len() == all.len() || kept.len() >= 4, "the first page is the pixel's own");
             }
         }
     }

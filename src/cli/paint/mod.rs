@@ -8,7 +8,7 @@ mod cpu;
 mod gpu;
 
 use fragbuf::{Plan, Registry, Variant};
-use fragbuf_frame::{Counters, PassTime};
+use fragbuf_frame::{Counters, OUT_OF_ORDER, PassTime};
 use fragbuf_scene::Scene;
 
 use super::device::Picked;
@@ -143,6 +143,12 @@ impl Painted {
             // What better fragments displaced is what the description asked for.
             if counter.loss && counter.count > 0 && counter.name != "displaced" {
                 warn(&format!("{description}: {} fragments lost: {}", counter.count, counter.name));
+            }
+            if counter.name == OUT_OF_ORDER && counter.count > 0 {
+                warn(&format!(
+                    "{description}: {} fragments came after farther ones had been composited; draw from front to back, or keep more",
+                    counter.count
+                ));
             }
         }
     }

@@ -49,9 +49,12 @@ facts! {
     KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
     Indexed "kept fragments with an index";
     Passes "a build step for every kept fragment";
+    Streams "a storage that hands fragments on in order, two neighbours at a time";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
     StableSort "a sort that leaves fragments of equal depth as the storage gives them";
+    // What they are worth.
+    ValuesPairs "a value for two neighbouring fragments";
     // What a description offers.
     Limited "a limit on what is kept: `keep 8`";
     DepthKey "that depth decides which fragment is worst: no criterion";

@@ -1,7 +1,8 @@
 //! Sizes as formulas: the same text in a row, in a plan's dump and in the manifest.
 //!
 //! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
-//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`), allocation (`width height
+//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`, and parameters of the chosen
+//! rows by their constants, such as `PAGE_ENTRIES`), allocation (`width height
 //! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned.
 
 use std::borrow::Cow;
@@ -151,6 +152,7 @@ fn opaque(operator: &str, parts: &[Polynomial]) -> Polynomial {
     }
     let texts: Vec<String> = parts.iter().map(Polynomial::to_string).collect();
     match (operator, texts.as_slice()) {
+        ("/", [_, one]) if one == "1" => parts[0].clone(),
         ("/", [a, b]) => Polynomial::symbol(&format!("({a}/{b})")),
         _ => Polynomial::symbol(&format!("{operator}({})", texts.join(", "))),
     }
@@ -206,6 +208,23 @@ impl Polynomial {
                 let mut rest = symbols.clone();
                 rest.remove(index);
                 terms.insert(rest, *coefficient);
+            }
+        }
+        Polynomial(terms)
+    }
+
+    /// The terms with a fraction of the symbol `name` in them, whose fractions are called those of `other`: `8(a/4)` is
+    /// `8b/4` for `a` and `b`.
+    pub fn fractions(&self, name: &str, other: &str) -> Polynomial {
+        let renamed = |symbol: &String| {
+            let below = symbol.strip_prefix('(')?.strip_prefix(name)?.strip_prefix('/')?.strip_suffix(')')?;
+            below.parse::<u32>().is_ok().then(|| format!("{other}/{below}"))
+        };
+        let mut terms = BTreeMap::new();
+        for (symbols, coefficient) in &self.0 {
+            if symbols.iter().any(|symbol| renamed(symbol).is_some()) {
+                let symbols = symbols.iter().map(|symbol| renamed(symbol).unwrap_or_else(|| symbol.clone()));
+                terms.insert(symbols.collect(), *coefficient);
             }
         }
         Polynomial(terms)
@@ -361,6 +380,14 @@ mod tests {
     }
 
     #[test]
+    fn fractions_of_a_symbol_are_found_among_other_terms() {
+        let sum = Formula::from("(a / 4 + p) * 9 + 2 * a + p / 4").read().map(|sum| sum.polynomial(&|_| None));
+        let fractions = |name| sum.clone().map(|sum| sum.fractions(name, "f").to_string());
+        assert_eq!(fractions("a"), Ok("9f/4".into()));
+        assert_eq!(fractions("b"), Ok("0".into()));
+    }
+
+    #[test]
     fn polynomials_have_one_form() {
         let form = |text: &'static str| {
             Formula::from(text).read().map(|e| e.polynomial(&|name| (name == "w").then_some(2)).to_string())
@@ -369,5 +396,6 @@ mod tests {
         assert_eq!(form("3 * f - 3 * f"), Ok("0".into()));
         assert_eq!(form("ceil_div(pixels, 1024) + 1"), Ok("ceil_div(pixels, 1024)+1".into()));
         assert_eq!(form("w / 2 * k"), Ok("k".into()));
+        assert_eq!(form("3 * (f / 1)"), Ok("3f".into()));
     }
 }

@@ -1,0 +1,26 @@
+// Finishes the stream of each pixel: what is still kept is composited behind what has left, nearest first. The last
+// fragment is its own neighbour. Pixels without any keep what the target held.
+
+@fragment
+fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = pixel_index(position.xy);
+    var cursor = storage_first(pixel);
+    if cursor == END {
+        if overflow_is_empty(pixel) {
+            discard;
+        }
+        return overflow_finish(pixel, vec4<f32>(0.0));
+    }
+    var streamed = storage_streamed(pixel);
+    var front = storage_read(pixel, cursor);
+    while cursor != END {
+        cursor = storage_next(pixel, cursor);
+        var back = front;
+        if cursor != END {
+            back = storage_read(pixel, cursor);
+        }
+        streamed = stream_composite(streamed, front, back);
+        front = back;
+    }
+    return overflow_finish(pixel, streamed);
+}
