@@ -42,6 +42,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "cull", "counters"],
         ),
         row(
+            "store_again",
+            "stores the scene's fragments once more in every round of a loop",
+            template!("pass/store_again"),
+            vec!["addressing", "storage", "sync", "counters"],
+        ),
+        row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),

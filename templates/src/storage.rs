@@ -4,6 +4,7 @@ mod list;
 mod minima;
 mod ranges;
 mod regions;
+mod repeated;
 mod worst_first;
 
 use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
@@ -23,6 +24,7 @@ pub(crate) fn rows() -> Vec<Row> {
         list::ordered_list(),
         ranges::depth_ranges(),
         regions::bounded_regions(),
+        repeated::repeated_array(),
     ]
 }
 

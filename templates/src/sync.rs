@@ -10,6 +10,7 @@ fn none() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
+        offers: vec![Fact::Race],
         requires: vec![Fact::SurvivesRaces],
         soundness: Soundness::Racy,
         ..Row::new("sync", "none", "not at all: the hazards of the storage are kept", "B06 §3.1")

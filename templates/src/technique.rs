@@ -182,5 +182,18 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("sort", "insertion"),
             ],
         },
+        Technique {
+            key: "kb_multi".to_owned(),
+            title: "KB-Multi",
+            paper: "Liu et al. 2009; K15 §2",
+            summary: "the k nearest distinct depths without any lock: drawn again until a pass changes nothing",
+            keep: KeepDefault::Best(8),
+            choices: vec![
+                ("storage", "repeated_array"),
+                ("sync", "none"),
+                ("ties", "unordered"),
+                ("sort", "insertion"),
+            ],
+        },
     ]
 }

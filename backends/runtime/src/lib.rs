@@ -35,6 +35,7 @@ mod shaders;
 mod sized;
 mod timing;
 mod vertices;
+mod walk;
 mod words;
 
 pub use blocking::block_on;

@@ -289,13 +289,18 @@ impl Renderer {
 
     /// Writes the uniform buffers of the slices, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
-        let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
+        let live = self.live();
         for (slice, rounds) in (0..).zip(&self.sized.slices) {
             for (number, round) in (0..).zip(rounds) {
                 self.queue.write_buffer(&round.frame, 0, &to_bytes(&live.frame_words(self.plan(), slice, number)?));
             }
         }
         Ok(())
+    }
+
+    /// What the buffers were sized with, for the k of the frames from now on.
+    pub(crate) fn live(&self) -> Symbols {
+        Symbols { k: self.k, ..self.sized.symbols.clone() }
     }
 
     fn write_uniforms(&self) {

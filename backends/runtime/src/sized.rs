@@ -5,7 +5,6 @@
 use fragbuf_frame::{COUNTERS_RESOURCE, Symbols, resource as index};
 
 use crate::Error;
-use crate::action::Run;
 use crate::blocks::{Blocks, block};
 use crate::layout::Slot;
 use crate::memory::Memory;
@@ -62,7 +61,7 @@ impl Sized {
             let group = |prepared| bind_group(device, prepared, &frame, blocks, &memory);
             Round { groups: made.passes.iter().map(group).collect(), frame }
         };
-        let rounds = made.runs().map(|run| run.round).max().unwrap_or(0) + 1;
+        let rounds = made.actions.rounds;
         let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
         let slices = scoped(device, "the bind groups", 0, slices).await?;
         let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
@@ -78,10 +77,8 @@ impl Sized {
         let (timing, tally) = match same {
             Some(old) => (old.timing.clone(), old.tally.clone()),
             None => {
-                let name = |run: &Run| made.passes.get(run.pass).map_or(String::new(), |made| made.pass.anchor.clone());
-                let names = || made.runs().map(name).collect();
                 let timing = match timed {
-                    Timed::Yes => Some(Timing::new(device, queue, names(), symbols.slices()).await?),
+                    Timed::Yes => Some(Timing::new(device, queue, made.run_names(), symbols.slices()).await?),
                     Timed::No => None,
                 };
                 (timing, tally(device, made, &memory, symbols.slices()).await?)

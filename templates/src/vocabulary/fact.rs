@@ -34,6 +34,7 @@ facts! {
     // Between a storage and a sync.
     Critical "that writers of one pixel take turns";
     OrderedCritical "that writers of one pixel take turns in the order of submission";
+    Race "that writers of one pixel race, and no one keeps them apart";
     OwnAtomics "a storage that keeps writers apart by its own atomic operations";
     SurvivesRaces "a storage whose behaviour stays defined when writers race";
     FixedFunction "a storage that leaves writers to depth test, stencil or blending";
