@@ -49,6 +49,7 @@ pub const CONTRACTS: &[Contract] = &[
     row("cull", "cull_fragment", "(pixel: u32, entry: Packed) -> bool", "whether the fragment is turned away"),
     row("overflow", "on_lost", "(lost: Packed, reason: u32)", "disposes of a fragment that finds no place"),
     row("addressing", "pixel_index", "(position: vec2<f32>) -> u32", "the pixel's number, below pixel_count()"),
+    row("addressing", "pixel_texel", "(pixel: u32) -> vec2<u32>", "the texel of a pixel's number in textures"),
     row("addressing", "pixel_count", "() -> u32", "pixels of the frame"),
     row("counters", "count_event", "(counter: u32)", "counts what is no loss"),
     row("counters", "count_loss", "(counter: u32)", "counts a loss"),

@@ -48,6 +48,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "sync", "counters"],
         ),
         row(
+            "store_targets",
+            "stores the scene's fragments in targets, by tests that are fixed function",
+            template!("pass/store_targets"),
+            vec!["counters"],
+        ),
+        row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),

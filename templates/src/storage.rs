@@ -1,5 +1,6 @@
 //! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
 
+mod fixed_function;
 mod list;
 mod minima;
 mod ranges;
@@ -25,6 +26,7 @@ pub(crate) fn rows() -> Vec<Row> {
         ranges::depth_ranges(),
         regions::bounded_regions(),
         repeated::repeated_array(),
+        fixed_function::depth_tested(),
     ]
 }
 

@@ -183,6 +183,19 @@ pub(crate) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "z_buffer".to_owned(),
+            title: "Z-buffer",
+            paper: "Catmull 1974; K15 §4.3",
+            summary: "the nearest, by the depth test, its words in targets: one draw, no atomic operation",
+            keep: KeepDefault::Best(1),
+            choices: vec![
+                ("storage", "depth_tested"),
+                ("sync", "fixed_function"),
+                ("ties", "unordered"),
+                ("sort", "none"),
+            ],
+        },
+        Technique {
             key: "kb_multi".to_owned(),
             title: "KB-Multi",
             paper: "Liu et al. 2009; K15 §2",

@@ -3,9 +3,10 @@
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{Decision, resource as index, unsupported};
-use fragbuf_templates::vocabulary::{Access, Element, Fact, Formula, Objects, Pass, Repeat, Step, Until};
+use fragbuf_templates::vocabulary::{Access, Fact, Formula, Objects, Pass, Repeat, Step, Until};
 
 use crate::Error;
+use crate::texture::{OUTPUT, at_most};
 
 /// One thing to record, or to wait for.
 #[derive(Clone, Debug)]
@@ -59,11 +60,6 @@ pub(crate) struct Actions {
 
 /// The actions of a plan.
 pub(crate) fn actions(plan: &Plan) -> Result<Actions, Error> {
-    for planned in &plan.resources {
-        if let Element::Texture(_) = planned.resource.element {
-            return Err(refused(format!("`{}`, a texture", planned.resource.name)));
-        }
-    }
     if plan.requires.contains(&Fact::Interlock) {
         return Err(refused("fragment shader interlock, which wgpu does not know".to_owned()));
     }
@@ -149,10 +145,7 @@ impl Unrolled<'_> {
 
     /// The rounds of a loop, for the greatest k that the code serves.
     fn most(&mut self, rounds: &Formula) -> Result<u32, Error> {
-        let bound = |symbol: &str| self.plan.bound.value(if symbol == "k" { "capacity" } else { symbol });
-        let rounds = rounds.evaluate(&bound);
-        let rounds = rounds.map_err(|error| Error::Formula { what: "the rounds of a loop".to_owned(), error })?;
-        let rounds = u32::try_from(rounds).map_err(|_| refused(format!("a loop of {rounds} rounds")))?;
+        let rounds = at_most(self.plan, rounds, None, "the rounds of a loop")?;
         self.actions.rounds = self.actions.rounds.max(rounds);
         Ok(rounds)
     }
@@ -170,31 +163,26 @@ fn count(steps: &[Step]) -> usize {
 
 fn check_pass(pass: &Pass) -> Result<(), Error> {
     let refuse = |what: &str| Err(refused(format!("pass `{}`: {what}", pass.anchor)));
-    let state = &pass.state;
-    if state.depth.is_some() || state.stencil.is_some() {
-        return refuse("a depth or stencil test");
+    let tests = (pass.state.depth.as_ref(), pass.state.stencil.as_ref());
+    if let (Some(depth), Some(stencil)) = tests
+        && depth.resource != stencil.resource
+    {
+        return refuse("depth and stencil in two textures");
     }
-    if state.samples.is_some() {
-        return refuse("several samples per pixel");
+    if pass.state.samples.is_some() && pass.state.targets.iter().any(|target| target.resource == OUTPUT) {
+        return refuse("several samples of the output");
     }
-    if let Some(target) = state.targets.iter().find(|target| target.resource != OUTPUT) {
-        return refuse(&format!("the target `{}`", target.resource));
-    }
-    if state.targets.len() > 1 {
-        return refuse("several targets");
+    if tests.0.is_some_and(|depth| depth.early) {
+        return refuse("a depth test that is forced ahead of the shader");
     }
     if pass.objects != Objects::All {
         return refuse("drawing only visible objects");
     }
-    let attached = |access| matches!(access, Access::Attachment | Access::Sampled | Access::Indirect);
-    match pass.uses.iter().find(|usage| attached(usage.access)) {
+    match pass.uses.iter().find(|usage| usage.access == Access::Indirect) {
         Some(usage) => refuse(&format!("`{}` as {:?}", usage.resource, usage.access)),
         None => Ok(()),
     }
 }
-
-/// The vocabulary's name for the caller's own target.
-const OUTPUT: &str = "output";
 
 fn refused(what: String) -> Error {
     unsupported(what).into()

@@ -13,6 +13,7 @@ use fragbuf_frame::{COUNTERS_RESOURCE, Decision};
 use fragbuf_templates::vocabulary::{Formula, Kind, Pass};
 
 use crate::action::{Action, Run};
+use crate::attachments::{Attachments, Clears, Written, clear_sampled};
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
@@ -24,8 +25,9 @@ use crate::{Error, Pending, Renderer};
 pub struct Frame {
     id: u64,
     at: Place,
-    /// Whether the output has been written, and must not be cleared again.
-    written: bool,
+    written: Written,
+    /// Textures that the next pass attached to them begins with clearing.
+    clears: Clears,
     /// The first query of every run so far.
     timed: BTreeSet<u32>,
 }
@@ -62,7 +64,7 @@ pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Pass) + 'a;
 
 impl Frame {
     pub(crate) fn new(id: u64) -> Self {
-        Frame { id, at: Place::default(), written: false, timed: BTreeSet::new() }
+        Frame { id, at: Place::default(), written: Written::No, clears: Clears::new(), timed: BTreeSet::new() }
     }
 
     /// Records everything up to the next decision of the host, or to the end.
@@ -81,6 +83,9 @@ impl Frame {
         let places = segment.question.as_ref().map(|question| places(renderer, question)).transpose()?;
         for step in &segment.steps {
             match step.action {
+                Action::Clear { resource, value } if renderer.sized.memory.texture(*resource).is_some() => {
+                    self.clears.insert(*resource, *value);
+                }
                 Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
                 Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
                 Action::Pass(run) => self.pass(renderer, encoder, (*run, step), output, draw),
@@ -137,25 +142,22 @@ impl Frame {
             beginning_of_pass_write_index: Some(begin),
             end_of_pass_write_index: Some(end),
         });
-        let attachment = if prepared.pass.state.targets.is_empty() {
-            // WebGPU refuses a pass without attachments.
-            let ops =
-                wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
-            color(&sized.dummy, ops)
-        } else {
-            let load = if self.written { wgpu::LoadOp::Load } else { output.load };
-            self.written = true;
-            color(output.view, wgpu::Operations { load, store: wgpu::StoreOp::Store })
-        };
+        clear_sampled(renderer, encoder, &prepared.pass, &mut self.clears);
+        let state = (&mut self.clears, &mut self.written);
+        let attachments = Attachments::of(renderer, &prepared.pass, output, state);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
-            color_attachments: &[Some(attachment)],
+            color_attachments: &attachments.colors(),
+            depth_stencil_attachment: attachments.depth_stencil(),
             timestamp_writes,
             ..wgpu::RenderPassDescriptor::default()
         });
-        if let Pipeline::Render(pipeline) = &prepared.pipeline {
+        if let Pipeline::Render(pipelines) = &prepared.pipeline
+            && let Some(pipeline) = pipelines.get((run.round + step.round) as usize).or(pipelines.first())
+        {
             pass.set_pipeline(pipeline);
         }
+        pass.set_stencil_reference(step.reference);
         pass.set_bind_group(renderer.made().group, group, &[]);
         // Beyond the slice there is no memory: a greater output is left as it is, a smaller one refused.
         let symbols = &sized.symbols;
@@ -259,11 +261,10 @@ fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usiz
 
 fn copy(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: usize, to: usize) {
     let memory = &renderer.sized.memory;
+    if let (Some(from), Some(to)) = (memory.texture(from), memory.texture(to)) {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
     if let (Some(from), Some(to)) = (memory.filled(from), memory.filled(to)) {
         encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size().min(to.size()));
     }
-}
-
-fn color(view: &wgpu::TextureView, ops: wgpu::Operations<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
-    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }

@@ -15,10 +15,12 @@
 //! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
 
 mod action;
+mod attachments;
 mod blocking;
 mod blocks;
 mod buckets;
 mod error;
+mod fixed_function;
 mod frame;
 pub mod headless;
 mod layout;
@@ -33,6 +35,7 @@ mod scope;
 mod settings;
 mod shaders;
 mod sized;
+mod texture;
 mod timing;
 mod vertices;
 mod walk;

@@ -56,7 +56,7 @@ impl Pipelines {
         let inputs = VertexInputs::of(&plan);
         let own = settings.vertices.clone();
         let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
-        let maker = Maker { device, shaders, settings, vertices: &vertices };
+        let maker = Maker { device, shaders, settings, vertices: &vertices, rounds: actions.rounds };
         let mut passes = Vec::new();
         for pass in plan.passes() {
             let slots = slots(&plan, pass);
@@ -66,7 +66,8 @@ impl Pipelines {
             let pipeline = maker.make(pass, &layout).await?;
             passes.push(Prepared { pass: pass.clone(), slots, layout, pipeline });
         }
-        let patterns = scoped(device, "the buffers to clear with", 0, || patterns(device, &actions.list)).await?;
+        let patterns =
+            scoped(device, "the buffers to clear with", 0, || patterns(device, &plan, &actions.list)).await?;
         Ok(Pipelines(Arc::new(Made { plan, group: shaders.group, actions, passes, patterns, inputs })))
     }
 

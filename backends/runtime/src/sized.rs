@@ -11,6 +11,7 @@ use crate::memory::Memory;
 use crate::pipeline::DUMMY_FORMAT;
 use crate::pipelines::{Made, Prepared};
 use crate::scope::scoped;
+use crate::texture::sampled_view;
 use crate::timing::Timing;
 
 /// Everything that depends on the size of the frame, replaced as one.
@@ -148,16 +149,25 @@ fn bind_group(
     blocks: &Blocks,
     memory: &Memory,
 ) -> wgpu::BindGroup {
+    let view = |slot: &Slot| match *slot {
+        Slot::Texture { index, .. } => memory.texture(index).map(sampled_view),
+        _ => None,
+    };
+    let views: Vec<Option<wgpu::TextureView>> = prepared.slots.iter().map(view).collect();
     let buffer = |slot: &Slot| match *slot {
-        Slot::Filler => &blocks.filler,
+        Slot::Filler | Slot::Texture { .. } => &blocks.filler,
         Slot::Frame => frame,
         Slot::Uniforms => &blocks.own,
         Slot::Camera => &blocks.camera,
         Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),
     };
-    let slots = (0..).zip(&prepared.slots);
+    let slots = (0..).zip(prepared.slots.iter().zip(&views));
     let entries: Vec<wgpu::BindGroupEntry<'_>> = slots
-        .map(|(binding, slot)| wgpu::BindGroupEntry { binding, resource: buffer(slot).as_entire_binding() })
+        .map(|(binding, (slot, view))| {
+            let buffer = || buffer(slot).as_entire_binding();
+            let resource = view.as_ref().map_or_else(buffer, wgpu::BindingResource::TextureView);
+            wgpu::BindGroupEntry { binding, resource }
+        })
         .collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(&prepared.pass.anchor),

@@ -7,6 +7,7 @@ use fragbuf_frame::Decision;
 use fragbuf_templates::vocabulary::Kind;
 
 use crate::action::{Action, Again};
+use crate::texture::at_most;
 use crate::{Error, Renderer};
 
 /// Where a frame stands.
@@ -35,6 +36,8 @@ pub(crate) struct Step<'a> {
     pub(crate) action: &'a Action,
     /// Workgroups of a compute pass; nothing for any other action.
     pub(crate) groups: [u32; 3],
+    /// The stencil's reference of a pass that has one.
+    pub(crate) reference: u32,
     pub(crate) ends: Ends,
 }
 
@@ -85,8 +88,8 @@ pub(crate) fn segment(renderer: &Renderer, mut place: Place) -> Result<Segment<'
             _ => {
                 place.action += 1;
                 let ends = if place.action == actions.len() { Ends::Slice } else { Ends::Nothing };
-                let groups = groups(renderer, action)?;
-                steps.push(Step { slice: place.slice, round: place.round, action, groups, ends });
+                let (groups, reference) = (groups(renderer, action)?, reference(renderer, action, place.round)?);
+                steps.push(Step { slice: place.slice, round: place.round, action, groups, reference, ends });
                 None
             }
         };
@@ -116,6 +119,13 @@ fn bound(renderer: &Renderer, again: &Again, round: u32) -> Result<Bound, Error>
     let most = renderer.live().evaluate(renderer.plan(), &again.at_most, "the rounds of a loop")?;
     let most = most.min(renderer.made().actions.rounds.into());
     Ok(if u64::from(round) + 1 < most { Bound::Below } else { Bound::Reached })
+}
+
+fn reference(renderer: &Renderer, action: &Action, round: u32) -> Result<u32, Error> {
+    let Action::Pass(run) = action else { return Ok(0) };
+    let prepared = renderer.made().passes.get(run.pass);
+    let Some(stencil) = prepared.and_then(|prepared| prepared.pass.state.stencil.as_ref()) else { return Ok(0) };
+    at_most(renderer.plan(), &stencil.reference, Some(run.round + round), "the stencil's reference of a pass")
 }
 
 fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {

@@ -115,6 +115,15 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                 assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "pixel {pixel} holds a key twice: {kept:?}");
                 kept
             }
+            "depth_tested" => {
+                let fields = plan.layout.beside.iter().map(|word| buffer(&format!("entries_{}", word.field))[pixel]);
+                let depth = buffer("depths")[pixel];
+                if depth == 1.0_f32.to_bits() {
+                    Vec::new()
+                } else {
+                    vec![std::iter::once(depth).chain(fields).collect()]
+                }
+            }
             "ordered_list" => {
                 let link = |word: u32| word.checked_sub(1);
                 let nodes =
