@@ -43,7 +43,7 @@ fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>)
 }
 
 /// Techniques in textures that a shader reads: merged later.
-const NOT_YET: [&str; 1] = ["z_buffer"];
+const NOT_YET: [&str; 2] = ["z_buffer", "kb_sr"];
 
 /// Every technique, where there is a k with four of it.
 fn techniques() -> Vec<(String, Variant)> {
