@@ -89,6 +89,7 @@ const GLSL_FACTS: &[Fact] = &[
     Fact::Interlock,
     Fact::OrderedInterlock,
     Fact::U64Atomics,
+    Fact::SampleMask,
     Fact::Linkable,
 ];
 
@@ -98,14 +99,14 @@ pub const TARGETS: &[Target] = &[
         name: "wgsl",
         summary: "the WGSL standard: browsers and every wgpu back end",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::SampleMask, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
         name: "wgsl-native",
         summary: "WGSL with naga's coherent buffers and 64-bit atomics: wgpu on native back ends",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::SampleMask, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -140,6 +141,7 @@ pub const TARGETS: &[Target] = &[
             Fact::Interlock,
             Fact::OrderedInterlock,
             Fact::U64Atomics,
+            Fact::SampleMask,
         ],
         emit: spirv::emit,
     },
@@ -147,7 +149,7 @@ pub const TARGETS: &[Target] = &[
         name: "hlsl",
         summary: "HLSL, shader model 6.0",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::SampleMask, Fact::Linkable],
         emit: hlsl::emit,
     },
     Target {

@@ -10,3 +10,5 @@ const EQUAL_KEYS = 6u;
 const EMITTED = 7u;
 const OUT_OF_ORDER = 8u;
 const PAGES_LEAKED = 9u;
+const UNSETTLED = 10u;
+const SAMPLES_EXHAUSTED = 11u;

@@ -1,11 +1,13 @@
 //! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
 
 mod checked;
+mod fixed_function;
 mod list;
 mod lists;
 mod minima;
 mod ranges;
 mod regions;
+mod repeated;
 mod stream;
 mod worst_first;
 
@@ -30,6 +32,9 @@ pub(crate) fn rows() -> Vec<Row> {
         lists::bucket_lists(),
         stream::stream_array(),
         checked::checked_array(),
+        repeated::repeated_array(),
+        fixed_function::depth_tested(),
+        fixed_function::stencil_routed(),
     ]
 }
 

@@ -3,7 +3,7 @@
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
     Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row,
-    Samples, Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
+    Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -13,15 +13,10 @@ pub(super) fn registry() -> Registry {
         .with_axis(allocation, "overflow")
         .with(Row::new("allocation", "as_said", "what the description says", ""))
         .with(predict_k())
-        .with(fixed_function())
-        .with(stencil_routed())
         .with(front_to_back())
         .with(dual())
-        .with(repeated_array())
-        .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
         .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
-        .with_technique(technique("kb_multi", KeepDefault::Best(8), vec![("storage", "repeated_array")]))
         .with_technique(technique(
             "predict_k",
             KeepDefault::Best(8),
@@ -35,72 +30,6 @@ fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static 
 
 fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {
     Resource::new(name, Element::Texture(format), summary).by("pixel", "pixels")
-}
-
-fn fixed_function() -> Row {
-    Row { requires: vec![Fact::FixedFunction], ..Row::new("sync", "fixed_function", "by tests and blending", "") }
-}
-
-/// Myers & Bavoil 2007: sample i of a pixel takes the i-th fragment.
-fn stencil_routed() -> Row {
-    let per_sample = |name, format, summary| {
-        Resource::new(name, Element::Texture(format), summary).by("sample", "k").by("pixel", "pixels")
-    };
-    let mut route = Pass::fullscreen("route", "route");
-    route.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Always,
-        fail: StencilOperation::Keep,
-        pass: StencilOperation::Replace,
-        reference: "iteration + 2".into(),
-    });
-    route.state.samples = Some(Samples { count: "k".into(), mask: "pow2(iteration)".into() });
-    let mut store =
-        Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
-    store.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Equal,
-        fail: StencilOperation::DecrementClamp,
-        pass: StencilOperation::DecrementClamp,
-        reference: "2".into(),
-    });
-    store.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k) - 1".into() });
-    let mut overflow = Pass::fullscreen("overflow", "count_overflow").uses("overflowed", Access::Atomic);
-    overflow.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Equal,
-        fail: StencilOperation::Keep,
-        pass: StencilOperation::Keep,
-        reference: "0".into(),
-    });
-    overflow.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k - 1)".into() });
-    Row {
-        resources: vec![
-            per_sample("depths", TextureFormat::R32Float, "depth of the sample's fragment"),
-            per_sample("colors", TextureFormat::Rgba8Unorm, "colour of the sample's fragment"),
-            per_sample("routing", TextureFormat::Depth24PlusStencil8, "fragments to go before this sample's, plus two"),
-            Resource::new("overflowed", Element::Word, "pixels whose last sample was passed").cleared(0),
-        ],
-        steps: vec![
-            Step::Repeat(Repeat {
-                body: vec![Step::Pass(route)],
-                until: Until::Times("k".into()),
-                at_most: "k".into(),
-            }),
-            Step::Pass(store),
-            Step::Pass(overflow),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("depths", Access::Sampled)
-                    .uses("colors", Access::Sampled)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        offers: vec![Fact::FixedFunction],
-        requires: vec![Fact::SampleMask, Fact::OneWordBesideDepth],
-        defaults: vec![("sync".into(), "fixed_function".into())],
-        ..Row::new("storage", "stencil_routed", "samples of a multisampled target", "Myers & Bavoil 2007")
-    }
 }
 
 /// Everitt 2001: each round draws what lies behind the last round's nearest.
@@ -171,49 +100,6 @@ fn dual() -> Row {
         requires: vec![Fact::MinMaxBlend],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
-    }
-}
-
-/// Liu et al. 2009: unsynchronised, repeated until a whole pass changes nothing.
-fn repeated_array() -> Row {
-    let mut store = Pass::geometry("store", "store_again")
-        .uses("keys", Access::Atomic)
-        .uses("entries", Access::Atomic)
-        .uses("changed", Access::Atomic);
-    store.state.depth =
-        Some(DepthState { resource: "nearest".to_owned(), compare: Compare::Less, write: true, early: false });
-    Row {
-        resources: vec![
-            Resource::new("keys", Element::Word, "keys in no order").by("slot", "k").by("pixel", "pixels"),
-            Resource::new("entries", Element::Beside, "payloads").by("slot", "k").by("pixel", "pixels"),
-            texture("nearest", TextureFormat::Depth32Float, "turns away what a pass has seen nearer"),
-            Resource::new("changed", Element::Word, "entries that this pass changed"),
-        ],
-        steps: vec![
-            Step::Pass(
-                Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
-                    .uses("keys", Access::Plain),
-            ),
-            Step::Repeat(Repeat {
-                body: vec![
-                    Step::Clear { resource: "changed".to_owned(), value: 0 },
-                    Step::Clear { resource: "nearest".to_owned(), value: 0x3f80_0000 },
-                    Step::Pass(store),
-                ],
-                until: Until::Zero("changed".to_owned()),
-                at_most: "k + 1".into(),
-            }),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        offers: vec![Fact::KeepsBest, Fact::SurvivesRaces, Fact::CanReplace],
-        defaults: vec![("sync".into(), "none".into())],
-        soundness: Soundness::Racy,
-        ..Row::new("storage", "repeated_array", "k entries, repaired by the next pass", "Liu et al. 2009")
     }
 }
 

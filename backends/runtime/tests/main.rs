@@ -13,6 +13,7 @@ mod kept;
 mod oracle;
 mod order;
 mod quads;
+mod samples;
 mod stage;
 
 mod capture;
@@ -26,5 +27,6 @@ mod rasterisation;
 mod sizing;
 mod sloped;
 mod sorts;
+mod textures;
 mod ties;
 mod translations;

@@ -1,0 +1,147 @@
+//! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
+
+use crate::vocabulary::{
+    Access, Blend, Compare, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples, StencilOperation,
+    StencilState, Step, Text, TextureFormat, Until,
+};
+
+/// The nearest fragment, by the depth test.
+pub(super) fn depth_tested() -> Row {
+    let depths =
+        Resource::new("depths", Element::Texture(TextureFormat::Depth32Float), "depth of the fragment; 1: none");
+    let entries = Resource::new(
+        "entries",
+        Element::BesideTextures(TextureFormat::R32Uint),
+        "what the fragment carries beside its depth",
+    );
+    let mut store = Pass::geometry("store", "store_targets")
+        .uses("depths", Access::Attachment)
+        .uses("entries", Access::Attachment)
+        .target("entries", Blend::Replace);
+    store.state.depth =
+        Some(DepthState { resource: "depths".to_owned(), compare: Compare::Less, write: true, early: false });
+    Row {
+        template: Some(template!("storage/depth_tested")),
+        resources: vec![
+            depths.by("pixel", "pixels").cleared(1.0_f32.to_bits()),
+            entries.by("pixel", "pixels").cleared(0),
+        ],
+        steps: vec![
+            Step::Pass(store),
+            Step::Pass(
+                Pass::fullscreen("resolve", "resolve")
+                    .uses("depths", Access::Sampled)
+                    .uses("entries", Access::Sampled)
+                    .target("output", Blend::Over),
+            ),
+        ],
+        requires: vec![
+            Fact::DepthKey,
+            Fact::LimitedToOne,
+            Fact::WordPerTarget,
+            Fact::LeftToTests,
+            Fact::OwnEntryPoints,
+        ],
+        hazards: vec![
+            hazard("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
+            hazard("far-plane", "a fragment at depth 1.0 exactly is not kept"),
+            hazard("uncounted", "what the depth test turns away is not counted"),
+        ],
+        // One fragment is in order.
+        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::Sorted],
+        defaults: vec![LEFT_TO_TESTS, ARRIVAL, UNSORTED],
+        ..Row::new(
+            "storage",
+            "depth_tested",
+            "the nearest fragment, by the depth test, its words in targets",
+            "Catmull 1974; K15 §4.3 (Z-buffer)",
+        )
+    }
+}
+
+/// The first k fragments, each in a sample of its own, by the stencil.
+pub(super) fn stencil_routed() -> Row {
+    let by_sample = |name: &str, element: Element, summary: &'static str| {
+        Resource::new(name, element, summary).by("sample", "k").by("pixel", "pixels").cleared(0)
+    };
+    let samples = |mask: &'static str| Some(Samples { count: "capacity".into(), mask: mask.into() });
+    let mut route = Pass::fullscreen("route", "route").uses("routing", Access::Attachment);
+    route.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Always,
+        fail: StencilOperation::Keep,
+        pass: StencilOperation::Replace,
+        reference: "256 - capacity + iteration".into(),
+    });
+    route.state.samples = samples("pow2(iteration)");
+    let mut store = Pass::geometry("store", "store_targets")
+        .uses("routing", Access::Attachment)
+        .uses("entries", Access::Attachment)
+        .target("entries", Blend::Replace);
+    store.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Equal,
+        fail: StencilOperation::DecrementClamp,
+        pass: StencilOperation::DecrementClamp,
+        reference: "256 - capacity".into(),
+    });
+    store.state.samples = samples("pow2(capacity) - 1");
+    let resolve = Pass::fullscreen("resolve", "resolve").uses("routing", Access::Sampled);
+    Row {
+        template: Some(template!("storage/stencil_routed")),
+        resources: vec![
+            by_sample("entries", Element::EntryTextures(TextureFormat::Rg16Uint), "the sample's fragment"),
+            by_sample(
+                "routing",
+                Element::Texture(TextureFormat::Depth24PlusStencil8),
+                "stencil: how many fragments come before the sample's own; shaders read the stencil",
+            ),
+        ],
+        steps: vec![
+            Step::Repeat(Repeat {
+                body: vec![Step::Pass(route)],
+                until: Until::Times("capacity".into()),
+                at_most: "capacity".into(),
+            }),
+            Step::Pass(store),
+            Step::Pass(resolve.uses("entries", Access::Sampled).target("output", Blend::Over)),
+        ],
+        calls: vec!["counters"],
+        offers: vec![Fact::FixedFunction],
+        requires: vec![
+            Fact::DepthKey,
+            Fact::SampleCount,
+            Fact::WordPerTarget,
+            Fact::LeftToTests,
+            Fact::SampleMask,
+            Fact::OwnEntryPoints,
+        ],
+        defaults: vec![LEFT_TO_TESTS, ARRIVAL],
+        hazards: vec![
+            hazard("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
+            hazard(
+                "borders",
+                "where a triangle covers some samples of a pixel, fragments are lost or stored twice, and not counted",
+            ),
+            hazard(
+                "many-late",
+                "beyond 255 - capacity fragments of a pixel that came too late, no more of them are counted",
+            ),
+        ],
+        ..Row::new(
+            "storage",
+            "stencil_routed",
+            "the first k fragments, each in a sample of a multisampled target, by the stencil",
+            "Myers & Bavoil 2007; K15 §2 (KB-SR)",
+        )
+    }
+}
+
+/// Values on other axes that suit it.
+const LEFT_TO_TESTS: (Text, Text) = (Text::Borrowed("sync"), Text::Borrowed("fixed_function"));
+const ARRIVAL: (Text, Text) = (Text::Borrowed("ties"), Text::Borrowed("unordered"));
+const UNSORTED: (Text, Text) = (Text::Borrowed("sort"), Text::Borrowed("none"));
+
+fn hazard(name: impl Into<Text>, what: impl Into<Text>) -> Hazard {
+    Hazard { name: name.into(), what: what.into(), unless: None }
+}
