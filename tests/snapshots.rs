@@ -127,6 +127,17 @@ fn a_users_test_of_what_is_no_text_is_told() {
     assert!(said("no/such.fragbuf", "wgsl").contains("no/such.fragbuf"));
 }
 
+/// Attachments, their formats and clear values, and the states of passes, in a manifest.
+#[test]
+fn manifest_of_textures() {
+    for case in ["z_buffer", "kb_sr"] {
+        let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
+        let manifest = fragbuf::manifest(&generated(&checked(&description, &set).unwrap()), 0);
+        let parts = ["resources", "steps", "refused"].map(|part| format!("{part}: {:#}", manifest[part]));
+        insta::assert_snapshot!(format!("{case}.manifest"), parts.join("\n"));
+    }
+}
+
 /// The manifest of one technique; the schema is a promise.
 #[test]
 fn manifest() {

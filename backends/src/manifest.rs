@@ -174,7 +174,7 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         Init::Keep => json!("keep"),
         Init::Host => json!("host"),
     };
-    json!({
+    let mut value = json!({
         "name": resource.name,
         "group": group,
         "binding": planned.binding,
@@ -186,7 +186,46 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         "init": init,
         "life": if resource.life == Life::Persistent { "persistent" } else { "frame" },
         "summary": resource.summary,
+    });
+    if let Element::Texture(format) = resource.element {
+        value["texture"] = texture(planned, format);
+    }
+    value
+}
+
+/// What a texture is made with: as large as the frame, and what it is cleared to in the words of its format. `word`: the
+/// field of an entry that it holds, where the entry has a texture for each.
+fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
+    let resource = &planned.resource;
+    let samples = resource.extents.iter().find(|extent| extent.name == SAMPLE);
+    let clear = match resource.init {
+        Init::Clear(word) => clear_value(format, word),
+        _ => Value::Null,
+    };
+    json!({
+        "format": texture_format(format),
+        "samples": samples.map_or("1", |extent| &extent.length.0),
+        "clear": clear,
+        "word": planned.part.as_ref().map(|part| &part.field),
     })
+}
+
+/// The vocabulary's name for the part of a texture's index that counts samples.
+const SAMPLE: &str = "sample";
+
+fn clear_value(format: TextureFormat, word: u32) -> Value {
+    match format {
+        TextureFormat::R32Uint => json!([word]),
+        TextureFormat::Rg16Uint => json!([word & 0xffff, word >> 16]),
+        TextureFormat::Rgba8Unorm => json!(word.to_le_bytes().map(|byte| f64::from(byte) / 255.0)),
+        TextureFormat::R32Float => json!([f32::from_bits(word)]),
+        TextureFormat::Rg32Float => vec![f32::from_bits(word); 2].into(),
+        TextureFormat::Rgba16Float => vec![f32::from_bits(word); 4].into(),
+        TextureFormat::Depth32Float => json!({ "depth": f32::from_bits(word) }),
+        TextureFormat::Depth24PlusStencil8 => {
+            json!({ "depth": f64::from(word >> 8) / 16_777_215.0, "stencil": word & 0xff })
+        }
+    }
 }
 
 fn texture_format(format: TextureFormat) -> &'static str {

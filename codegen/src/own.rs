@@ -85,7 +85,7 @@ fn steps(row: &mut Row, places: &RowPlaces, registry: &Registry, faults: &mut Di
 
 /// Whether a pass of the row draws the scene.
 fn draws(row: &Row) -> bool {
-    row.steps.iter().any(|step| matches!(step, Step::Pass(pass) if pass.kind == Kind::Geometry))
+    all_passes(&row.steps).iter().any(|pass| pass.kind == Kind::Geometry)
 }
 
 fn shape_of(skeleton: &str, registry: &Registry) -> Option<(Kind, State)> {
@@ -102,11 +102,30 @@ fn known_skeletons(registry: &Registry) -> Vec<String> {
     known
 }
 
+/// The passes that a file may have: not those with tests and targets of their own, whose textures no file declares.
 fn passes(registry: &Registry) -> impl Iterator<Item = &Pass> {
-    registry.rows().iter().flat_map(|row| &row.steps).filter_map(|step| match step {
-        Step::Pass(pass) => Some(pass),
-        _ => None,
-    })
+    let is_plain = |pass: &&Pass| {
+        let state = &pass.state;
+        let tests = state.depth.is_some() || state.stencil.is_some() || state.samples.is_some();
+        !tests && state.targets.iter().all(|target| target.resource == OUTPUT)
+    };
+    registry.rows().iter().flat_map(|row| all_passes(&row.steps)).filter(is_plain)
+}
+
+/// The vocabulary's name for the caller's own target.
+const OUTPUT: &str = "output";
+
+/// Passes in order, those inside loops included.
+fn all_passes(steps: &[Step]) -> Vec<&Pass> {
+    let mut passes = Vec::new();
+    for step in steps {
+        match step {
+            Step::Pass(pass) => passes.push(pass),
+            Step::Repeat(repeat) => passes.extend(all_passes(&repeat.body)),
+            _ => {}
+        }
+    }
+    passes
 }
 
 fn resources(row: &Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {

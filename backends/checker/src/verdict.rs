@@ -3,9 +3,9 @@
 //! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure that no row states ends it.
 
 use fragbuf_backends::Target;
-use fragbuf_model::{Diagnostics, Variant};
+use fragbuf_model::{Diagnostics, Selection, Variant};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Kind;
+use fragbuf_templates::vocabulary::{Fact, Kind};
 
 use crate::case::{Case, cases};
 use crate::fragments::Candidates;
@@ -104,6 +104,10 @@ pub fn check_variant(
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report, Error> {
     let mut report = Report::new(limits);
+    if Selection::first(variant).offers().contains(&Fact::FixedFunction) {
+        let why = "depth test, stencil and targets keep fragments apart, not accesses to memory: there is nothing to interleave";
+        return Err(Error::Unable(why.to_owned()));
+    }
     for tries in [Tries::AsStated, Tries::Least] {
         let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
         report.is_judged = !Promise::new(&subject, None).is_unknown();

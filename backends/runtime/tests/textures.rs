@@ -159,6 +159,25 @@ fn stencil_routing_takes_eight_words() {
     );
 }
 
+/// What cannot be is refused with the way out.
+#[test]
+fn what_fixed_function_cannot_keep_is_refused() {
+    let cases = [
+        ("buffer B from z_buffer { keep 8; }", "write `keep 1;`"),
+        ("buffer B from z_buffer { keep 1 least |f| f.color.x; }", "depth decides which fragment is worst"),
+        ("buffer B from z_buffer { sync: spin_lock; }", "`sync: fixed_function`"),
+        ("buffer B from kb_sr { keep 5; }", "write `keep 4;`"),
+        ("buffer B from kplus_array { sync: fixed_function; }", "leaves writers to depth test"),
+    ];
+    for (text, hint) in cases {
+        let faults = described_faults(text);
+        assert!(faults.contains(hint), "{text}: {faults}");
+    }
+    let variant = technique("kb_sr", &[]);
+    let refusal = variant.select(fragbuf_backends::target("msl").unwrap().offers).unwrap_err();
+    assert!(refusal.to_string().contains("sample mask") || refusal.to_string().contains("entry points"), "{refusal}");
+}
+
 fn described_faults(text: &str) -> String {
     let parsed = fragbuf_syntax::parse(text, "test.fragbuf");
     fragbuf_model::check(&parsed.draft.unwrap(), &fragbuf_templates::Registry::builtin()).unwrap_err().to_string()
