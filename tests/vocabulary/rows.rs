@@ -2,8 +2,8 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row,
-    Samples, Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
+    Access, Axis, Blend, Compare, Coverage, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource,
+    Row, Samples, Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -54,7 +54,7 @@ fn stencil_routed() -> Row {
         pass: StencilOperation::Replace,
         reference: "iteration + 2".into(),
     });
-    route.state.samples = Some(Samples { count: "k".into(), mask: "pow2(iteration)".into() });
+    route.state.samples = routed("pow2(iteration)");
     let mut store =
         Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
     store.state.stencil = Some(StencilState {
@@ -64,7 +64,7 @@ fn stencil_routed() -> Row {
         pass: StencilOperation::DecrementClamp,
         reference: "2".into(),
     });
-    store.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k) - 1".into() });
+    store.state.samples = routed("pow2(k) - 1");
     let mut overflow = Pass::fullscreen("overflow", "count_overflow").uses("overflowed", Access::Atomic);
     overflow.state.stencil = Some(StencilState {
         resource: "routing".to_owned(),
@@ -73,7 +73,7 @@ fn stencil_routed() -> Row {
         pass: StencilOperation::Keep,
         reference: "0".into(),
     });
-    overflow.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k - 1)".into() });
+    overflow.state.samples = routed("pow2(k - 1)");
     Row {
         resources: vec![
             per_sample("depths", TextureFormat::R32Float, "depth of the sample's fragment"),
@@ -101,6 +101,10 @@ fn stencil_routed() -> Row {
         defaults: vec![("sync".into(), "fixed_function".into())],
         ..Row::new("storage", "stencil_routed", "samples of a multisampled target", "Myers & Bavoil 2007")
     }
+}
+
+fn routed(mask: &'static str) -> Option<Samples> {
+    Some(Samples { count: "k".into(), mask: mask.into(), coverage: Coverage::WholePixel })
 }
 
 /// Everitt 2001: each round draws what lies behind the last round's nearest.
