@@ -11,6 +11,7 @@ use std::sync::atomic::Ordering;
 use fragbuf_templates::vocabulary::{Blend, Compare, StencilOperation, TextureFormat};
 
 use crate::attachment::{Attachments, Depth, Stencil};
+use crate::texel::DEPTH_24;
 
 impl Attachments<'_> {
     /// Tests a sample and writes what the tests write; whether it passes.
@@ -58,9 +59,6 @@ fn blended(blend: Blend, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
         Blend::Add => each(&|new_channel, old_channel| new_channel + old_channel),
     }
 }
-
-/// Steps of a 24-bit depth.
-const DEPTH_24: f64 = 16_777_215.0;
 
 impl Depth<'_> {
     fn passes(&self, index: usize, depth: f32) -> bool {

@@ -2,8 +2,13 @@
 //!
 //! In: channels as floats. Out: words, and back. Values are clamped and rounded to nearest as the graphics APIs say.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fragbuf_interpreter::{from_half, to_half};
 use fragbuf_templates::vocabulary::TextureFormat;
+
+/// Steps of a 24-bit depth.
+pub(crate) const DEPTH_24: f64 = 16_777_215.0;
 
 /// How a colour attachment keeps its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +33,15 @@ impl Texel {
         self == Texel::Format(TextureFormat::R32Uint)
     }
 
+    /// The words of the texel `index`; those beyond its size are 0.
+    pub(crate) fn load(self, held: &[AtomicU32], index: usize) -> [u32; 4] {
+        let words = self.words();
+        std::array::from_fn(|word| match held.get(index * words + word) {
+            Some(held) if word < words => held.load(Ordering::Relaxed),
+            _ => 0,
+        })
+    }
+
     /// The channels of a texel.
     pub(crate) fn decode(self, words: [u32; 4]) -> [f32; 4] {
         let [a, b, _, _] = words;
@@ -36,6 +50,7 @@ impl Texel {
             Texel::Format(TextureFormat::Rg32Float) => [f32::from_bits(a), f32::from_bits(b), 0.0, 1.0],
             Texel::Format(TextureFormat::Rgba8Unorm) => a.to_le_bytes().map(|byte| f32::from(byte) / 255.0),
             Texel::Format(TextureFormat::Rgba16Float) => [a, a >> 16, b, b >> 16].map(|half| from_half(half as u16)),
+            Texel::Format(TextureFormat::Depth24PlusStencil8) => [(f64::from(a >> 8) / DEPTH_24) as f32, 0.0, 0.0, 1.0],
             Texel::Format(_) => [f32::from_bits(a), 0.0, 0.0, 1.0],
         }
     }

@@ -6,6 +6,7 @@
 mod counters;
 mod error;
 mod host;
+mod looped;
 mod pass_time;
 mod room;
 mod symbols;
@@ -14,6 +15,7 @@ mod uniforms;
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, POOL_EXHAUSTED};
 pub use error::Error;
 pub use host::Decision;
+pub use looped::{LoopEnd, Looped};
 pub use pass_time::PassTime;
 pub use room::{Counting, Room, Sizing, bytes, reserve, symbols};
 pub use symbols::Symbols;

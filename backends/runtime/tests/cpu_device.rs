@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fragbuf_backends::target;
-use fragbuf_cpu::{Code, Coverage, Device, Mesh, Order};
+use fragbuf_cpu::{Code, Device, Mesh, Order};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Sizing, VertexInputs};
 use fragbuf_templates::Registry;
@@ -20,8 +20,7 @@ use crate::stage::{self, renderer, see, settings, shaders, technique};
 
 fn device(variant: &Variant, order: Order) -> Device {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings =
-        fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order, coverage: Coverage::Samples };
+    let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order };
     Device::new(Arc::new(code), settings).unwrap()
 }
 
@@ -29,7 +28,7 @@ fn paint(device: &mut Device, quads: &[Quad]) -> Vec<[f32; 4]> {
     let bytes = vertices(quads, &VertexInputs::of(device.plan()));
     let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
     let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();
-    let picture = device.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
+    let picture = device.render(&Mesh { vertices: &words, indices: &indices, objects: &[] }, &|_| {}).unwrap();
     assert!(picture.out_of_bounds.is_empty(), "{:?}", picture.out_of_bounds);
     picture.pixels
 }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use fragbuf::Registry;
-use fragbuf_cpu::{Code, Coverage, Device, Error, Mesh, Order, Settings};
+use fragbuf_cpu::{Code, Device, Error, Mesh, Order, Settings};
 use fragbuf_frame::{POOL_EXHAUSTED, Room, Sizing};
 
 use super::{Figures, Painted, Task};
@@ -29,12 +29,12 @@ pub(super) fn paint(
     })?;
     let code = Arc::new(code);
     let geometry = geometry(&stage.scene, &code.plan)?;
-    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
+    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices, objects: &geometry.objects };
     let uniforms = uniforms::values(wish.uniforms, variant)?;
     let (width, height) = view.size;
     loop {
         let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve(Room::Fragments(fragments)));
-        let settings = Settings { width, height, sizing, order, coverage: Coverage::Samples };
+        let settings = Settings { width, height, sizing, order };
         let mut device = Device::new(code.clone(), settings)?;
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
