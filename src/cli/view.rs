@@ -14,7 +14,7 @@ pub(crate) struct View {
     #[arg(long, value_name = "PATH|builtin:NAME")]
     pub(crate) scene: String,
     /// Pixels
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
     /// The PNG to write
     #[arg(long, value_name = "PNG")]

@@ -50,7 +50,7 @@ pub(crate) struct Call {
 impl Call {
     /// So many triangles, once.
     pub(crate) fn once(triangles: u32) -> Self {
-        Call { triangles: vec![0..triangles], base: 0, instances: 0..1 }
+        Call { triangles: std::iter::once(0..triangles).collect(), base: 0, instances: 0..1 }
     }
 }
 

@@ -62,6 +62,7 @@ pub(super) fn paint(
             times: view.json.then_some(picture.times),
             bytes: device.allocated_bytes(),
             slices: 1,
+            loops: picture.loops,
         };
         let backend = "interpreter".to_owned();
         let plan = code.plan.clone();

@@ -152,6 +152,7 @@ impl Painter {
             times,
             bytes: renderer.allocated_bytes(),
             slices: renderer.slices(),
+            loops: Vec::new(),
         }))
     }
 }

@@ -81,9 +81,9 @@ fn drawn_by(words: &[u32], pass: &Pass) -> Call {
             instances: from(*first_instance, *instances),
         },
         (_, [vertices, instances, first, first_instance, ..]) => Call {
-            triangles: vec![0..vertices.min(&WHOLE_FRAME) / 3],
             base: first.cast_signed(),
             instances: from(*first_instance, *instances),
+            ..Call::once(vertices.min(&WHOLE_FRAME) / 3)
         },
         _ => Call::once(0),
     }

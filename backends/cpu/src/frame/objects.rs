@@ -1,7 +1,8 @@
 //! Objects by their boxes: which of them are seen, as far as anybody has asked in this frame (D13 §3.3).
 //!
 //! In: the words of vertices and the samples that passed. Out: the parts of the index list that are still drawn. An object whose box
-//! failed once stays dropped until the frame ends: what is peeled away does not come back.
+//! failed once stays dropped until the frame ends: what is peeled away does not come back. A box is drawn as it is, as on a GPU: what
+//! lies beyond by less than its depths are rounded by may be dropped with it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -31,10 +32,6 @@ pub(super) struct Corners {
 /// The faces of a box, two triangles each; bit 0, 1 and 2 of a corner's number say whether it is the greater along x, y and z.
 pub(super) const FACES: [u32; 36] =
     [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
-
-/// How much a box is larger than what is in it, as a part of its size: rounding must not let it fail where its object would be
-/// seen.
-const MARGIN: f32 = 1.0 / 256.0;
 
 impl Frame<'_> {
     /// The objects that the query `anchor` has not dropped.
@@ -86,13 +83,11 @@ impl Frame<'_> {
             };
             (pick(f32::min, least), pick(f32::max, greatest))
         });
-        let longest = (0..3).map(|axis| greatest[axis] - least[axis]).fold(0.0, f32::max);
         let mut vertices = vec![0; 8 * stride];
         for (corner, vertex) in vertices.chunks_mut(stride.max(3)).enumerate() {
             for (axis, word) in vertex.iter_mut().take(3).enumerate() {
                 let is_greater = corner >> axis & 1 == 1;
-                let place = if is_greater { greatest[axis] + MARGIN * longest } else { least[axis] - MARGIN * longest };
-                *word = place.to_bits();
+                *word = if is_greater { greatest[axis] } else { least[axis] }.to_bits();
             }
         }
         Some(Corners { vertices })
