@@ -41,8 +41,6 @@ pub struct Mesh<'a> {
     pub vertices: &'a [u32],
     /// Three per triangle.
     pub indices: &'a [u32],
-    /// The objects, which can be seen or not: a part of `indices` each. None: all is one object that is always drawn.
-    pub objects: &'a [Range<u32>],
 }
 
 /// How far a frame is.
@@ -81,6 +79,7 @@ pub struct Device {
     pub(crate) memory: Memory,
     pub(crate) uniforms: Vec<u32>,
     pub(crate) camera: Vec<u32>,
+    pub(crate) objects: Vec<Range<u32>>,
 }
 
 /// The camera before any is set: positions are clip space.
@@ -97,7 +96,8 @@ impl Device {
         let mut memory = Memory::default();
         memory.resize(&code.plan, &symbols)?;
         let uniforms = zeros(&code.plan.variant.uniforms);
-        let mut device = Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new() };
+        let mut device =
+            Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new(), objects: Vec::new() };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -105,6 +105,11 @@ impl Device {
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&mut self, view_projection: &[f32; 16]) {
         self.camera = view_projection.iter().map(|number| number.to_bits()).collect();
+    }
+
+    /// The objects of the meshes to come, which can be seen or not: a part of the index list each. None: all is one object.
+    pub fn set_objects(&mut self, objects: &[Range<u32>]) {
+        self.objects = objects.to_vec();
     }
 
     /// One of the description's own uniforms.

@@ -42,6 +42,8 @@ pub(crate) struct Draw<'a> {
 pub(crate) struct Call {
     /// Parts of the indices, in triangles. What is left out changes no other triangle's number.
     pub(crate) triangles: Vec<Range<u32>>,
+    /// The triangle that has the number 0.
+    pub(crate) zero: u32,
     /// Added to every index.
     pub(crate) base: i32,
     pub(crate) instances: Range<u32>,
@@ -50,7 +52,7 @@ pub(crate) struct Call {
 impl Call {
     /// So many triangles, once.
     pub(crate) fn once(triangles: u32) -> Self {
-        Call { triangles: std::iter::once(0..triangles).collect(), base: 0, instances: 0..1 }
+        Call { triangles: std::iter::once(0..triangles).collect(), zero: 0, base: 0, instances: 0..1 }
     }
 }
 
@@ -144,7 +146,7 @@ fn triangles(
         let starts = corners.map(|corner| corner * varyings.stride);
         let positions = starts.map(|start| varyings.position_in(&words[start..]));
         let mut push = |vertices: [Vertex; 3]| {
-            triangles.extend(Triangle::new(vertices, starts[0] as u32, *number, draw.size));
+            triangles.extend(Triangle::new(vertices, starts[0] as u32, number.wrapping_sub(draw.call.zero), draw.size));
         };
         match clip(positions, draw.size) {
             Clipped::Nothing => {}

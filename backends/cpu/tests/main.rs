@@ -7,6 +7,7 @@ mod indirect;
 mod interleaved;
 mod objects;
 mod peeling;
+mod primitives;
 mod refusals;
 mod routing;
 mod stage;

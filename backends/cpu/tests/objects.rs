@@ -106,7 +106,7 @@ fn draw_counted() {
     for (nearest, is_drawn) in [(-0.5, true), (0.25, false)] {
         let mut triangles = quad([0, 4, 0, 4], 0.5, [1.0; 4]).to_vec();
         triangles[0].corners[0][2] = nearest;
-        draw_objects(&mut seen, &triangles, &[0..6]);
+        draw_objects(&mut seen, &triangles, &[0..3, 3..6]);
         assert_eq!(seen.words("drawn").is_some_and(|drawn| drawn[0] > 0), is_drawn, "nearest at {nearest}");
     }
 }

@@ -60,6 +60,15 @@ pub fn rows(at_most: &'static str, objects: Objects, before: Option<Pass>) -> Ro
     )
 }
 
+/// The same with a copy where resources are swapped.
+fn copied(mut rows: Row) -> Row {
+    if let Some(Step::Repeat(repeat)) = rows.steps.first_mut() {
+        repeat.body.pop();
+        repeat.body.push(Step::Copy { from: "next".to_owned(), to: "last".to_owned() });
+    }
+    rows
+}
+
 fn peeling(at_most: &'static str) -> Arc<Code> {
     code(rows(at_most, Objects::All, None), &[("peel", PEEL), ("blend", BLEND)], None).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -82,6 +91,16 @@ fn peeling_ends_when_nothing_is_left_and_is_the_picture() {
             }
         }
     }
+}
+
+#[test]
+fn a_copy_hands_over_as_a_swap_does() {
+    let triangles = stacked(12, 3);
+    let expected = draw(&mut device(&peeling("64"), Order::Submission), &triangles);
+    let rows = copied(rows("64", Objects::All, None));
+    let code = code(rows, &[("peel", PEEL), ("blend", BLEND)], None).unwrap_or_else(|error| panic!("{error}"));
+    let seen = draw(&mut device(&code, Order::Submission), &triangles);
+    assert!(seen.pixels == expected.pixels && seen.loops == expected.loops);
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn refused(rows: Row, texts: &[(&str, &'static str)]) -> String {
         Err(error) => return error.to_string(),
     };
     let mut device = device(&code, Order::Submission);
-    let drawn: Result<_, Error> = device.render(&Mesh { vertices: &[], indices: &[], objects: &[] }, &|_| {});
+    let drawn: Result<_, Error> = device.render(&Mesh { vertices: &[], indices: &[] }, &|_| {});
     drawn.map_or_else(|error| error.to_string(), |_| "nothing".to_owned())
 }
 

@@ -99,7 +99,8 @@ pub fn draw(device: &mut Device, triangles: &[Triangle]) -> Picture {
 
 pub fn draw_objects(device: &mut Device, triangles: &[Triangle], objects: &[Range<u32>]) -> Picture {
     let (vertices, indices) = mesh(triangles);
-    let mesh = Mesh { vertices: &vertices, indices: &indices, objects };
+    let mesh = Mesh { vertices: &vertices, indices: &indices };
+    device.set_objects(objects);
     let picture = device.render(&mesh, &|_| {}).unwrap_or_else(|error| panic!("{error}"));
     assert!(picture.out_of_bounds.is_empty(), "{:?}", picture.out_of_bounds);
     picture

@@ -28,7 +28,7 @@ fn paint(device: &mut Device, quads: &[Quad]) -> Vec<[f32; 4]> {
     let bytes = vertices(quads, &VertexInputs::of(device.plan()));
     let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
     let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();
-    let picture = device.render(&Mesh { vertices: &words, indices: &indices, objects: &[] }, &|_| {}).unwrap();
+    let picture = device.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
     assert!(picture.out_of_bounds.is_empty(), "{:?}", picture.out_of_bounds);
     picture.pixels
 }

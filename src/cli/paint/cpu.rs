@@ -29,7 +29,7 @@ pub(super) fn paint(
     })?;
     let code = Arc::new(code);
     let geometry = geometry(&stage.scene, &code.plan)?;
-    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices, objects: &geometry.objects };
+    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
     let uniforms = uniforms::values(wish.uniforms, variant)?;
     let (width, height) = view.size;
     loop {
@@ -39,6 +39,7 @@ pub(super) fn paint(
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
         }
+        device.set_objects(&geometry.objects);
         device.set_camera(&stage.camera.view_projection);
         *frames += 1;
         let frame = *frames;

@@ -172,6 +172,9 @@ mod tests {
         let loops = vec![looped(LoopEnd::Reached), looped(LoopEnd::Cut)];
         let drawn = Figures { pixels: Vec::new(), counters: None, times: None, bytes: 0, slices: 1, loops };
         let said: Vec<String> = drawn.undone().collect();
-        assert!(said.len() == 1 && said[0].contains("until `left` is zero was ended by its bound, after 7"), "{said:?}");
+        assert!(
+            said.len() == 1 && said[0].contains("until `left` is zero was ended by its bound, after 7"),
+            "{said:?}"
+        );
     }
 }

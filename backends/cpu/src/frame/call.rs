@@ -77,6 +77,8 @@ fn drawn_by(words: &[u32], pass: &Pass) -> Call {
         (Kind::Geometry, [indices, instances, first, base, first_instance, ..]) => Call {
             // Triangles begin where the list has triangles.
             triangles: vec![from(first / 3, indices / 3)],
+            // Every draw counts its own from 0.
+            zero: first / 3,
             base: base.cast_signed(),
             instances: from(*first_instance, *instances),
         },

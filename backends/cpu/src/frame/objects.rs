@@ -53,11 +53,8 @@ impl Frame<'_> {
     pub(super) fn mesh_objects(&self) -> Vec<Range<u32>> {
         let end = self.mesh.indices.len() as u32;
         let clipped = |object: &Range<u32>| object.start.min(end)..object.end.min(end);
-        if self.mesh.objects.is_empty() {
-            std::iter::once(0..end).collect()
-        } else {
-            self.mesh.objects.iter().map(clipped).collect()
-        }
+        let objects = &self.device.objects;
+        if objects.is_empty() { std::iter::once(0..end).collect() } else { objects.iter().map(clipped).collect() }
     }
 
     /// What has been found out before; everything is seen until it is not.
