@@ -86,6 +86,8 @@ pub fn named() -> Vec<Case> {
         ("shell", technique("kplus_array"), vec![("sort", "shell"), ("k", "32")]),
         ("hybrid", technique("ab_ll"), vec![("sort", "hybrid"), ("sort.insertion", "8")]),
         ("bitonic", technique("ab_sb"), vec![("sort", "bitonic"), ("sort.layers", "33")]),
+        ("weighted_tail", technique("kb_ab_ll"), vec![("overflow", "weighted_tail"), ("k", "4")]),
+        ("fail", technique("ab_array"), vec![("overflow", "fail")]),
         ("interlock_else_lock", technique("kplus_array"), vec![("sync", "interlock else spin_lock")]),
         (
             "locked_sorted_array",

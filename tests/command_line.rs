@@ -116,7 +116,7 @@ fn list_is_an_array_of_techniques() {
 
 #[test]
 fn show_prints_every_stage() {
-    for stage in ["plan", "manifest", "wgsl", "wgsl-native", "glsl", "glsl-vulkan", "hlsl", "msl"] {
+    for stage in ["plan", "manifest", "wgsl", "wgsl-native", "glsl", "glsl-vulkan", "glsl-es", "hlsl", "msl"] {
         let output = fragbuf(&["show", "kplus_array", "--set", "k=4", "--dump", stage]);
         assert_eq!(output.status.code(), Some(0), "{stage}");
         assert!(output.stdout.len() > 500 && output.stderr.is_empty(), "{stage}");

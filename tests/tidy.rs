@@ -77,6 +77,7 @@ fn no_code_compares_a_key() {
         ("none", "a word of messages"),
         ("all", "the command line's word for every target and every technique"),
         ("closure", "Registry::CLOSURE"),
+        ("fail", "a field of a stencil test in the manifest"),
         ("early", "a field of a depth test in the manifest"),
     ];
     let registry = Registry::builtin();

@@ -36,6 +36,7 @@ fn tool(file: &File) -> Option<(&'static str, Vec<&'static str>)> {
     let is_module = file.entry_points.iter().any(|(stage, _)| *stage == "module");
     match file.target {
         "glsl" if !is_module => Some(("glslangValidator", vec!["--target-env", "opengl"])),
+        "glsl-es" if !is_module => Some(("glslangValidator", vec![])),
         "glsl-vulkan" if !is_module => {
             Some(("glslangValidator", vec!["-V", "--target-env", "vulkan1.1", "-o", "out.spv"]))
         }

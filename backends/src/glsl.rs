@@ -22,6 +22,10 @@ pub(crate) fn emit_vulkan(emission: &Emission<'_>) -> Result<Vec<File>, String> 
     emit(emission, Dialect::Vulkan450)
 }
 
+pub(crate) fn emit_es(emission: &Emission<'_>) -> Result<Vec<File>, String> {
+    emit(emission, Dialect::Es310)
+}
+
 fn emit(emission: &Emission<'_>, dialect: Dialect) -> Result<Vec<File>, String> {
     let pass = emission.checked.pass();
     if !pass.exports.is_empty() {
@@ -77,7 +81,7 @@ fn is_vertex(emission: &Emission<'_>, name: &str) -> bool {
 pub(crate) fn slot(dialect: Dialect, group: u32, binding: u32) -> Slot {
     match (dialect, binding.checked_sub(FIRST_BINDING)) {
         (Dialect::Vulkan450, _) => Slot { set: group, binding },
-        (Dialect::OpenGl450, None) => Slot { set: 0, binding: group * FIRST_BINDING + binding },
-        (Dialect::OpenGl450, Some(buffer)) => Slot { set: 0, binding: group * 8 + buffer },
+        (Dialect::OpenGl450 | Dialect::Es310, None) => Slot { set: 0, binding: group * FIRST_BINDING + binding },
+        (Dialect::OpenGl450 | Dialect::Es310, Some(buffer)) => Slot { set: 0, binding: group * 8 + buffer },
     }
 }

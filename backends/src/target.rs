@@ -70,7 +70,7 @@ pub struct File {
     pub bytes: Vec<u8>,
 }
 
-/// What both dialects of GLSL offer.
+/// What both dialects of desktop GLSL offer.
 const GLSL_FACTS: &[Fact] =
     &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics, Fact::Linkable];
 
@@ -103,6 +103,13 @@ pub const TARGETS: &[Target] = &[
         profile: Profile::Native,
         offers: GLSL_FACTS,
         emit: glsl::emit_vulkan,
+    },
+    Target {
+        name: "glsl-es",
+        summary: "GLSL 3.10 ES for OpenGL ES 3.1, where fragment shaders may write buffers",
+        profile: Profile::Native,
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable],
+        emit: glsl::emit_es,
     },
     Target {
         name: "spirv",

@@ -15,7 +15,7 @@
 fn storage_insert(pixel: u32, entry: Packed) {
     let slot = taken_atomic_add(pixel, 1u);
     if slot >= frame.k {
-        on_lost(entry, DISPLACED);
+        on_lost(pixel, entry, DISPLACED);
         return;
     }
     slots_store(slot, pixel, entry);

@@ -10,7 +10,10 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     sort_finish();
     if layer_count() == 0u {
-        discard;
+        if overflow_is_empty(pixel) {
+            discard;
+        }
+        return overflow_finish(pixel, vec4<f32>(0.0));
     }
-    return resolve_layers();
+    return overflow_finish(pixel, resolve_layers());
 }

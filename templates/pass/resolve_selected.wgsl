@@ -11,7 +11,7 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = pixel_index(position.xy);
     var cursor = storage_first(pixel);
     while cursor != END {
-        select_fragment(storage_read(pixel, cursor));
+        select_fragment(pixel, storage_read(pixel, cursor));
         cursor = storage_next(pixel, cursor);
     }
     for (var slot = 0u; slot < selected_count; slot++) {
@@ -19,12 +19,15 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     sort_finish();
     if layer_count() == 0u {
-        discard;
+        if overflow_is_empty(pixel) {
+            discard;
+        }
+        return overflow_finish(pixel, vec4<f32>(0.0));
     }
-    return resolve_layers();
+    return overflow_finish(pixel, resolve_layers());
 }
 
-fn select_fragment(entry: Packed) {
+fn select_fragment(pixel: u32, entry: Packed) {
     if selected_count < frame.k {
         selected[selected_count] = entry;
         selected_count += 1u;
@@ -34,10 +37,10 @@ fn select_fragment(entry: Packed) {
         return;
     }
     if !better(entry, selected[worst_slot]) {
-        on_lost(entry, DISPLACED);
+        on_lost(pixel, entry, DISPLACED);
         return;
     }
-    on_lost(selected[worst_slot], DISPLACED);
+    on_lost(pixel, selected[worst_slot], DISPLACED);
     selected[worst_slot] = entry;
     find_worst();
 }

@@ -14,7 +14,7 @@ fn store_fragment(position: vec2<f32>, fragment: Fragment) {
     let pixel = pixel_index(position);
     let entry = fragment_pack(fragment);
     if cull_fragment(pixel, entry) {
-        count_event(CULLED);
+        on_culled(pixel, entry);
         return;
     }
     sync_store(pixel, entry);

@@ -15,7 +15,7 @@ fn store_fragment(position: vec2<f32>, fragment: Fragment) {
     let pixel = pixel_index(position);
     let entry = fragment_pack(fragment);
     if cull_fragment(pixel, entry) {
-        count_event(CULLED);
+        on_culled(pixel, entry);
         return;
     }
     // A statement of its own, ahead of the lock: lanes of one wave that have a place must not wait for those that spin.

@@ -11,7 +11,7 @@ fn store(varyings: Varyings) {
     if wanted {
         count_event(GENERATED);
         if cull_fragment(pixel, entry) {
-            count_event(CULLED);
+            on_culled(pixel, entry);
             wanted = false;
         }
     }

@@ -3,7 +3,7 @@
 use crate::vocabulary::{Row, Template};
 
 pub(crate) fn rows() -> Vec<Row> {
-    let geometry = vec!["addressing", "storage", "sync", "cull", "counters"];
+    let geometry = vec!["addressing", "storage", "sync", "cull", "overflow", "counters"];
     vec![
         row("geometry", "the vertex stage of every geometry pass", template!("pass/geometry"), vec![]),
         row("fullscreen", "the vertex stage of every fullscreen pass", template!("pass/fullscreen"), vec![]),
@@ -33,19 +33,19 @@ pub(crate) fn rows() -> Vec<Row> {
             "store_reserving_ordered",
             "stores the scene's fragments, outside an interlock those that have a place of their own",
             template!("pass/store_reserving_ordered"),
-            vec!["addressing", "storage", "cull", "counters"],
+            vec!["addressing", "storage", "cull", "overflow", "counters"],
         ),
         row(
             "store_ordered",
             "stores the scene's fragments inside an interlock",
             template!("pass/store_ordered"),
-            vec!["addressing", "storage", "cull", "counters"],
+            vec!["addressing", "storage", "cull", "overflow", "counters"],
         ),
         row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),
-            vec!["addressing", "storage", "sort", "resolve"],
+            vec!["addressing", "storage", "overflow", "sort", "resolve"],
         ),
         row(
             "resolve_selected",

@@ -41,7 +41,14 @@ fn sorted_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed, Fact::SurvivesRaces],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+            Fact::SurvivesRaces,
+            Fact::LosesWhole,
+        ],
         // Entries are in the order of their keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
@@ -99,7 +106,7 @@ fn fixed_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(

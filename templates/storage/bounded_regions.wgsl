@@ -51,7 +51,7 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
     let slot = counts_atomic_sub(pixel, 1u) - 1u;
     // A fragment that the first pass did not see finds no slot, and never writes into a neighbour.
     if slot >= size || begin + slot >= frame.kept {
-        on_lost(entry, POOL_EXHAUSTED);
+        on_lost(pixel, entry, POOL_EXHAUSTED);
         return true;
     }
     entries_store(slot, pixel, entry);
@@ -61,7 +61,7 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
 
 fn storage_insert(pixel: u32, entry: Packed) {
     if offsets_load(pixel + 1u) > frame.kept {
-        on_lost(entry, POOL_EXHAUSTED);
+        on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
     if frame.k > ARRAY_MOST {

@@ -18,11 +18,11 @@ fn storage_insert(pixel: u32, entry: Packed) {
     let slot = depth_ranges_slot(entry);
     let resident = depth_ranges_read(pixel, slot);
     if !better(entry, resident) {
-        on_lost(entry, DISPLACED);
+        on_lost(pixel, entry, DISPLACED);
         return;
     }
     if resident.key != EMPTY {
-        on_lost(resident, DISPLACED);
+        on_lost(pixel, resident, DISPLACED);
     }
     entries_store(slot, pixel, entry);
     keys_store(slot, pixel, entry.key);

@@ -19,7 +19,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
     let place = counts_atomic_sub(pixel, 1u) - 1u;
     // Counting below 0 wraps around to places far beyond any region.
     if place >= size || begin + place >= frame.fragments {
-        on_lost(entry, POOL_EXHAUSTED);
+        on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
     entries_store(begin + place, entry);

@@ -6,7 +6,7 @@
 fn storage_insert(pixel: u32, entry: Packed) {
     let slot = counts_atomic_add(pixel, 1u);
     if slot >= frame.n {
-        on_lost(entry, POOL_EXHAUSTED);
+        on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
     entries_store(slot, pixel, entry);

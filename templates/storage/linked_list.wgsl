@@ -8,7 +8,7 @@
 fn storage_insert(pixel: u32, entry: Packed) {
     let node = pool_atomic_add(1u);
     if node >= frame.fragments {
-        on_lost(entry, POOL_EXHAUSTED);
+        on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
     nodes_store(node, entry);

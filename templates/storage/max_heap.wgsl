@@ -33,10 +33,10 @@ fn storage_insert(pixel: u32, entry: Packed) {
     } else {
         let worst = max_heap_read(pixel, 0u);
         if !better(entry, worst) {
-            on_lost(entry, DISPLACED);
+            on_lost(pixel, entry, DISPLACED);
             return;
         }
-        on_lost(worst, DISPLACED);
+        on_lost(pixel, worst, DISPLACED);
     }
     max_heap_sift(pixel, 0u, entry);
 }

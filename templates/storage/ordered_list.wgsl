@@ -36,7 +36,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
             }
             ahead++;
             if ahead == frame.k {
-                on_lost(entry, DISPLACED);
+                on_lost(pixel, entry, DISPLACED);
                 return;
             }
             previous = next;
@@ -45,7 +45,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         if node == NO_NODE {
             node = pool_atomic_add(1u) + 1u;
             if node > frame.fragments {
-                on_lost(entry, POOL_EXHAUSTED);
+                on_lost(pixel, entry, POOL_EXHAUSTED);
                 return;
             }
             nodes_store(node - 1u, entry);
@@ -56,7 +56,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, SPIN_EXHAUSTED);
 }
 
 fn storage_first(pixel: u32) -> u32 {
@@ -73,7 +73,7 @@ fn storage_next(pixel: u32, cursor: u32) -> u32 {
     }
     // Better fragments came after these were linked.
     for (var beyond = next; beyond != NO_NODE; beyond = links_load(beyond - 1u)) {
-        on_lost(nodes_load(beyond - 1u), DISPLACED);
+        on_lost(pixel, nodes_load(beyond - 1u), DISPLACED);
     }
     return END;
 }

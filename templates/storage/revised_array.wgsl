@@ -42,7 +42,7 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
         return true;
     }
     if !revised_array_wait(pixel) {
-        on_lost(entry, SPIN_EXHAUSTED);
+        on_lost(pixel, entry, SPIN_EXHAUSTED);
         return true;
     }
     memory_fence();
@@ -53,10 +53,10 @@ fn storage_insert(pixel: u32, entry: Packed) {
     let worst = revised_array_read(pixel, 0u);
     if worst.key != EMPTY {
         if !better(entry, worst) {
-            on_lost(entry, DISPLACED);
+            on_lost(pixel, entry, DISPLACED);
             return;
         }
-        on_lost(worst, DISPLACED);
+        on_lost(pixel, worst, DISPLACED);
     }
     revised_array_replace_worst(pixel, entry);
 }

@@ -29,7 +29,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(carried, DISPLACED);
+    on_lost(pixel, carried, DISPLACED);
 }
 
 fn storage_first(pixel: u32) -> u32 {

@@ -27,7 +27,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(wide_cascade_unpack(carried), DISPLACED);
+    on_lost(pixel, wide_cascade_unpack(carried), DISPLACED);
 }
 
 fn storage_first(pixel: u32) -> u32 {

@@ -21,5 +21,5 @@ fn sync_store(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, SPIN_EXHAUSTED);
 }

@@ -36,10 +36,10 @@ fn storage_insert(pixel: u32, entry: Packed) {
     let worst = revised_array_read(pixel, 0u);
     if worst.key != EMPTY {
         if !better(entry, worst) {
-            on_lost(entry, DISPLACED);
+            on_lost(pixel, entry, DISPLACED);
             return;
         }
-        on_lost(worst, DISPLACED);
+        on_lost(pixel, worst, DISPLACED);
     }
     revised_array_replace_worst(pixel, entry);
 }

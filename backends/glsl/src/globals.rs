@@ -4,8 +4,8 @@
 //! instance name, so that its uses read `heads[i]`.
 
 use naga::{
-    AddressSpace, ArraySize, Constant, Expression, GlobalVariable, Handle, ImageClass, MemoryDecorations, Span,
-    StorageAccess, Type, TypeInner,
+    AddressSpace, ArraySize, Constant, Expression, GlobalVariable, Handle, ImageClass, ImageDimension,
+    MemoryDecorations, Span, StorageAccess, Type, TypeInner,
 };
 
 use crate::expression::{Level, Text};
@@ -245,7 +245,13 @@ impl Printer<'_> {
                     _ => "",
                 };
                 let slot = self.slot(handle);
-                return vec![format!("layout({format}, {slot}) {access}uniform {image} {name};")];
+                let precision = if self.es() { "highp " } else { "" };
+                return vec![format!("layout({format}, {slot}) {access}uniform {precision}{image} {name};")];
+            }
+            TypeInner::Image { dim, arrayed, .. }
+                if self.es() && (dim == ImageDimension::D1 || (dim == ImageDimension::Cube && arrayed)) =>
+            {
+                return vec![self.error("a texture of one dimension, or of several cubes", span)];
             }
             TypeInner::Image { class: ImageClass::External, .. } => {
                 return vec![self.error("an external texture", span)];
@@ -259,7 +265,9 @@ impl Printer<'_> {
             _ => return vec![self.error("a resource of this type", span)],
         };
         let slot = self.slot(handle);
-        vec![format!("layout({slot}) uniform {ty} {name};")]
+        // Most kinds of samplers have no precision of their own in ES.
+        let precision = if self.es() { "highp " } else { "" };
+        vec![format!("layout({slot}) uniform {precision}{ty} {name};")]
     }
 }
 

@@ -156,7 +156,10 @@ impl Printer<'_> {
             }
             Binding::BuiltIn(BuiltIn::FragDepth) => plain("gl_FragDepth"),
             Binding::BuiltIn(BuiltIn::PointSize) => plain("gl_PointSize"),
-            Binding::BuiltIn(BuiltIn::SampleMask) => Output { as_int: true, ..plain("gl_SampleMask[0]") },
+            Binding::BuiltIn(BuiltIn::SampleMask) => {
+                self.need_es_extension("GL_OES_sample_variables");
+                Output { as_int: true, ..plain("gl_SampleMask[0]") }
+            }
             Binding::BuiltIn(builtin) => {
                 plain(&self.error(format!("the built-in output {builtin:?}"), Span::UNDEFINED))
             }
@@ -178,6 +181,10 @@ impl Printer<'_> {
     fn interpolation(&mut self, interpolation: Option<Interpolation>, sampling: Option<Sampling>) -> String {
         let interpolation = match interpolation {
             Some(Interpolation::Flat) => return "flat ".to_owned(),
+            Some(Interpolation::Linear) if self.es() => {
+                self.error("linear interpolation", Span::UNDEFINED);
+                ""
+            }
             Some(Interpolation::Linear) => "noperspective ",
             Some(Interpolation::PerVertex) => {
                 self.error("per-vertex interpolation", Span::UNDEFINED);
@@ -187,10 +194,20 @@ impl Printer<'_> {
         };
         let sampling = match sampling {
             Some(Sampling::Centroid) => "centroid ",
-            Some(Sampling::Sample) => "sample ",
+            Some(Sampling::Sample) => {
+                self.need_es_extension("GL_OES_shader_multisample_interpolation");
+                "sample "
+            }
             _ => "",
         };
         format!("{interpolation}{sampling}")
+    }
+
+    /// What OpenGL has of itself, ES by an extension.
+    fn need_es_extension(&mut self, extension: &'static str) {
+        if self.es() {
+            self.needs.extensions.insert(extension);
+        }
     }
 
     fn builtin_input(&mut self, builtin: BuiltIn, ty: Handle<Type>) -> Text {
@@ -199,14 +216,25 @@ impl Printer<'_> {
         let integer = match builtin {
             BuiltIn::VertexIndex => Some(if vulkan { "gl_VertexIndex" } else { "gl_VertexID" }),
             BuiltIn::InstanceIndex if vulkan => Some("gl_InstanceIndex"),
+            // ES 3.1 knows no first instance: it is 0.
+            BuiltIn::InstanceIndex if self.es() => Some("gl_InstanceID"),
             BuiltIn::InstanceIndex => {
                 // WGSL counts from the first instance of the draw, OpenGL from zero.
                 self.needs.extensions.insert("GL_ARB_shader_draw_parameters");
                 Some("gl_BaseInstanceARB + gl_InstanceID")
             }
-            BuiltIn::SampleIndex => Some("gl_SampleID"),
-            BuiltIn::SampleMask => Some("gl_SampleMaskIn[0]"),
-            BuiltIn::PrimitiveIndex => Some("gl_PrimitiveID"),
+            BuiltIn::SampleIndex => {
+                self.need_es_extension("GL_OES_sample_variables");
+                Some("gl_SampleID")
+            }
+            BuiltIn::SampleMask => {
+                self.need_es_extension("GL_OES_sample_variables");
+                Some("gl_SampleMaskIn[0]")
+            }
+            BuiltIn::PrimitiveIndex => {
+                self.need_es_extension("GL_EXT_geometry_shader");
+                Some("gl_PrimitiveID")
+            }
             _ => None,
         };
         if let Some(integer) = integer {

@@ -38,13 +38,15 @@ mod unit;
 use naga::Span;
 use naga::valid::ModuleInfo;
 
-/// Which GLSL to print; both are `#version 450`.
+/// Which GLSL to print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Dialect {
-    /// OpenGL 4.5, as `glslangValidator --target-env opengl` takes it: flat bindings, combined samplers.
+    /// `#version 450` for OpenGL 4.5, as `glslangValidator --target-env opengl` takes it: flat bindings, combined samplers.
     OpenGl450,
-    /// Vulkan 1.1, as `glslangValidator -V --target-env vulkan1.1` takes it: sets and bindings, separate samplers.
+    /// `#version 450` for Vulkan 1.1, as `glslangValidator -V --target-env vulkan1.1` takes it: sets and bindings, separate samplers.
     Vulkan450,
+    /// `#version 310 es` for OpenGL ES 3.1: as OpenGL, without 64-bit integers, interlock and `fma`.
+    Es310,
 }
 
 /// What a WGSL function stands for, because WGSL has no word for it.

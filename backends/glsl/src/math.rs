@@ -90,6 +90,8 @@ impl FunctionPrinter<'_, '_> {
             return Text::primary(self.error(format!("the built-in function {fun:?} of u64 values"), expression));
         }
         match fun {
+            // ES 3.1 has no fma; WGSL lets it be rounded twice.
+            MathFunction::Fma if self.printer.es() => self.multiply_add(&operands),
             MathFunction::Abs if kind == Some(ScalarKind::Uint) => self.text(arg),
             MathFunction::Clamp => self.clamp(&operands),
             MathFunction::Mix => self.call("mix", &operands),
@@ -208,6 +210,14 @@ impl FunctionPrinter<'_, '_> {
         self.help(helper, operands)
     }
 
+    fn multiply_add(&mut self, operands: &[Handle<Expression>]) -> Text {
+        let factors: Vec<String> = operands.iter().map(|operand| format!("({})", self.expression(*operand))).collect();
+        match factors.as_slice() {
+            [a, b, c] => Text::primary(format!("({a} * {b} + {c})")),
+            _ => self.call("fma", operands),
+        }
+    }
+
     pub fn derivative(&mut self, axis: DerivativeAxis, control: DerivativeControl, value: Handle<Expression>) -> Text {
         let axis = match axis {
             DerivativeAxis::X => "dFdx",
@@ -215,6 +225,11 @@ impl FunctionPrinter<'_, '_> {
             DerivativeAxis::Width => "fwidth",
         };
         let control = match control {
+            // ES leaves the choice to the driver.
+            DerivativeControl::Coarse if self.printer.es() => "",
+            DerivativeControl::Fine if self.printer.es() => {
+                return Text::primary(self.error("a fine derivative", value));
+            }
             DerivativeControl::Coarse => "Coarse",
             DerivativeControl::Fine => "Fine",
             DerivativeControl::None => "",

@@ -71,6 +71,10 @@ impl<'a> Printer<'a> {
         self.options.dialect == Dialect::Vulkan450
     }
 
+    pub fn es(&self) -> bool {
+        self.options.dialect == Dialect::Es310
+    }
+
     /// What the function stands for, if it is a marker.
     pub fn marker(&self, function: Handle<Function>) -> Option<Marker> {
         let name = self.module.functions[function].name.as_deref()?;

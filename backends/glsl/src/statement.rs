@@ -296,6 +296,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
             self.printer
                 .error("the border of a critical section outside the top level of the entry point", Span::UNDEFINED);
         }
+        if self.printer.es() {
+            return self.printer.error("an interlock", Span::UNDEFINED);
+        }
         self.printer.needs.extensions.insert("GL_ARB_fragment_shader_interlock");
         let layout = match marker {
             Marker::CriticalEnd => return "endInvocationInterlockARB()".to_owned(),

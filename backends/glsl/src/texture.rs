@@ -252,6 +252,9 @@ impl FunctionPrinter<'_, '_> {
                 let swizzle = if image.arrayed { ".xy" } else { "" };
                 format!("{ty}({size}{swizzle})")
             }
+            ImageQuery::NumLevels | ImageQuery::NumSamples if self.printer.es() => {
+                self.error("a texture's number of levels or samples", expression)
+            }
             ImageQuery::NumLevels => format!("uint(textureQueryLevels({texture}))"),
             ImageQuery::NumLayers => format!("uint({size}.z)"),
             ImageQuery::NumSamples => format!("uint(textureSamples({texture}))"),

@@ -138,7 +138,9 @@ impl Printer<'_> {
 
     /// Notes the extension that a scalar's type needs.
     pub fn need_width(&mut self, scalar: Scalar) {
-        if scalar == Scalar::U64 {
+        if scalar == Scalar::U64 && self.es() {
+            self.error("64-bit integers", Span::UNDEFINED);
+        } else if scalar == Scalar::U64 {
             let vulkan = "GL_EXT_shader_explicit_arithmetic_types_int64";
             self.needs.extensions.insert(if self.vulkan() { vulkan } else { "GL_ARB_gpu_shader_int64" });
         }

@@ -165,6 +165,8 @@ fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
     }
     match entry.early_depth_test {
         Some(EarlyDepthTest::Force) => lines.push("layout(early_fragment_tests) in;".to_owned()),
+        // A promise to the driver, which ES has no words for: without it the depth is tested late, as is always right.
+        Some(EarlyDepthTest::Allow { .. }) if printer.es() => {}
         Some(EarlyDepthTest::Allow { conservative }) => {
             let word = match conservative {
                 naga::ConservativeDepth::GreaterEqual => "greater",
@@ -194,10 +196,14 @@ fn assemble(
     let mut sections: Vec<Vec<String>> = Vec::new();
     let mut head = Vec::new();
     if versioned {
-        head.push("#version 450".to_owned());
+        head.push(if printer.es() { "#version 310 es" } else { "#version 450" }.to_owned());
     }
     head.extend(printer.needs.extensions.iter().map(|extension| format!("#extension {extension} : require")));
     sections.push(head);
+    if versioned && printer.es() {
+        // Fragment shaders of ES have no precision of their own for floats, and a low one for integers.
+        sections.push(["precision highp float;", "precision highp int;"].map(str::to_owned).to_vec());
+    }
     sections.push(printer.options.header.lines().map(|line| format!("// {line}").trim_end().to_owned()).collect());
     sections.push(stage);
     sections.extend(structures);

@@ -4,11 +4,11 @@
 mod support;
 
 use fragbuf_glsl::{Dialect, Unit};
-use support::{BOTH, accept, print};
+use support::{ALL, accept, print};
 
 #[track_caller]
 fn refused(source: &str, expected: &[&str]) {
-    for dialect in BOTH {
+    for dialect in ALL {
         let errors = print(source, Unit::EntryPoint("main"), dialect).unwrap_err();
         for what in expected {
             assert!(errors.iter().any(|error| error.what.contains(what)), "no `{what}` in {errors:?}");
@@ -98,7 +98,7 @@ fn reserved_names_are_accepted_as_wgsl_names() {
     let source = format!(
         "@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n@compute @workgroup_size(1) fn entry() {{\n{lets}}}\n"
     );
-    for dialect in BOTH {
+    for dialect in ALL {
         let text = print(&source, Unit::EntryPoint("entry"), dialect).unwrap_or_else(|errors| panic!("{errors:?}"));
         accept(&text, "reserved_locals", "comp", dialect).unwrap_or_else(|message| panic!("{message}"));
     }
@@ -109,7 +109,7 @@ fn reserved_names_are_accepted_as_wgsl_names() {
         usable[0],
         sum.join(" + ")
     );
-    for dialect in BOTH {
+    for dialect in ALL {
         let text = print(&source, Unit::EntryPoint("entry"), dialect).unwrap_or_else(|errors| panic!("{errors:?}"));
         accept(&text, "reserved_fields", "comp", dialect).unwrap_or_else(|message| panic!("{message}"));
     }

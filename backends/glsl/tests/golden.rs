@@ -4,7 +4,7 @@
 mod support;
 
 use fragbuf_glsl::{Dialect, Unit};
-use support::{BOTH, accept, function, print, print_with};
+use support::{ALL, accept, function, print, print_with};
 
 const DATA: &str = "
 @group(0) @binding(0) var<storage, read_write> a: array<u32>;
@@ -16,13 +16,17 @@ fn bump(i: u32) -> u32 { a[i] += 1u; return a[i]; }
 fn read(i: u32) -> u32 { return a[i]; }
 ";
 
-/// Prints a function of a library in the OpenGL dialect, after both dialects have been accepted.
+/// Prints a function of a library in the OpenGL dialect, after every dialect has been accepted.
 #[track_caller]
 fn expect(name: &str, wgsl: &str, expected: &str) {
     let source = format!("{DATA}{wgsl}");
-    for dialect in BOTH {
+    for dialect in ALL {
         let text = print(&source, Unit::Library, dialect).unwrap_or_else(|errors| panic!("{errors:?}"));
-        let whole = format!("#version 450\n{text}\nvoid main() {{}}\n");
+        let version = match dialect {
+            Dialect::Es310 => "#version 310 es\nprecision highp float;",
+            _ => "#version 450",
+        };
+        let whole = format!("{version}\n{text}\nvoid main() {{}}\n");
         accept(&whole, &format!("golden_{name}"), "frag", dialect).unwrap_or_else(|message| panic!("{message}"));
     }
     let text = print(&source, Unit::Library, Dialect::OpenGl450).unwrap();

@@ -3,7 +3,7 @@
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{Decision, resource as index, unsupported};
-use fragbuf_templates::vocabulary::{Access, Element, Fact, Objects, Pass, Repeat, Step, Until};
+use fragbuf_templates::vocabulary::{Access, Element, Objects, Pass, Repeat, Step, Until};
 
 use crate::Error;
 
@@ -37,9 +37,6 @@ pub(crate) fn actions(plan: &Plan) -> Result<Vec<Action>, Error> {
         if let Element::Texture(_) = planned.resource.element {
             return Err(refused(format!("`{}`, a texture", planned.resource.name)));
         }
-    }
-    if plan.requires.contains(&Fact::Interlock) {
-        return Err(refused("fragment shader interlock, which wgpu does not know".to_owned()));
     }
     let mut unrolled = Unrolled { plan, passes: 0, runs: 0, actions: Vec::new() };
     unrolled.steps(&plan.steps, 0)?;

@@ -45,7 +45,7 @@ pub use frame::{Cut, Draw, Frame, Output, Recorded};
 pub use pipelines::Pipelines;
 pub use readback::Pending;
 pub use renderer::Renderer;
-pub use settings::{Checks, Settings, VertexBuffer};
+pub use settings::{Checks, Interlock, Settings, VertexBuffer};
 pub use shaders::{Code, Module, Shaders};
 pub use vertices::{VertexInput, VertexInputs};
 

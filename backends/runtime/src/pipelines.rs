@@ -46,7 +46,8 @@ pub(crate) struct Prepared {
 }
 
 impl Pipelines {
-    /// Makes the pipelines of `shaders`. Of the settings only target, checks, vertices and primitive matter. Fails where the
+    /// Makes the pipelines of `shaders`. Of the settings only target, checks, interlock, vertices and
+    /// primitive matter. Fails where the
     /// plan has a step that the runtime does not run, and where the device lacks a feature.
     pub async fn new(device: &wgpu::Device, shaders: &Shaders, settings: &Settings) -> Result<Self, Error> {
         let plan = shaders.plan.clone();
@@ -55,6 +56,7 @@ impl Pipelines {
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
         }
+        shaders.check_interlock(settings.interlock)?;
         let inputs = VertexInputs::of(&plan);
         let own = settings.vertices.clone();
         let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);

@@ -18,6 +18,8 @@ pub struct Settings {
     pub slice: Option<u32>,
     /// Whether shaders check bounds and bound loops at run time.
     pub checks: Checks,
+    /// Whether the device has interlock: what [`crate::headless::open_device`] said, or [`Interlock::Absent`].
+    pub interlock: Interlock,
     /// The vertex buffers of geometry passes; `None`: one, interleaved, as [`crate::VertexInputs`] says.
     pub vertices: Option<Vec<VertexBuffer>>,
     /// How geometry is put together, culled and filled.
@@ -37,6 +39,15 @@ pub enum Checks {
     Off,
 }
 
+/// Whether a device has fragment shader interlock (`VK_EXT_fragment_shader_interlock`). wgpu cannot be asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interlock {
+    /// The device was made without it.
+    Absent,
+    /// The device was made with it, and its `fragmentShaderPixelInterlock` is on.
+    Enabled,
+}
+
 /// One vertex buffer of the caller's own layout.
 #[derive(Clone, Debug)]
 pub struct VertexBuffer {
@@ -50,7 +61,7 @@ pub struct VertexBuffer {
 
 impl Settings {
     /// A frame of `width` × `height` pixels resolved into a view of format `target`: automatic sizing and checks, no
-    /// timestamps, interleaved vertices, triangle lists, nothing culled.
+    /// interlock, no timestamps, interleaved vertices, triangle lists, nothing culled.
     pub fn new(target: wgpu::TextureFormat, width: u32, height: u32) -> Self {
         Settings {
             target,
@@ -59,6 +70,7 @@ impl Settings {
             sizing: Sizing::Auto,
             slice: None,
             checks: Checks::Auto,
+            interlock: Interlock::Absent,
             vertices: None,
             primitive: wgpu::PrimitiveState::default(),
             timestamps: false,

@@ -7,9 +7,9 @@ use fragbuf_backends::{Generation, target};
 use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
 use fragbuf_templates::vocabulary::{Access, Fact};
 
-use crate::Error;
 use crate::action::actions;
 use crate::words::from_bytes;
+use crate::{Error, Interlock};
 
 /// The code of one plan.
 #[derive(Clone, Debug)]
@@ -108,6 +108,20 @@ impl Shaders {
     /// Whether the runtime runs such plans on some device: `Err` names the step or the resource that it does not know.
     pub fn check(&self) -> Result<(), Error> {
         actions(&self.plan).map(|_| ())
+    }
+
+    /// Whether a device with or without interlock runs these shaders. wgpu has no feature for it.
+    pub fn check_interlock(&self, device: Interlock) -> Result<(), Error> {
+        if device == Interlock::Absent && self.plan.requires.contains(&Fact::Interlock) {
+            return Err(Error::Unsupported {
+                what: "fragment shader interlock, on a device made without it,".to_owned(),
+                hint: "make the device by `headless::open_device` where the driver has \
+                       `VK_EXT_fragment_shader_interlock` and say so in `Settings::interlock`, or write \
+                       `sync: interlock else spin_lock`"
+                    .to_owned(),
+            });
+        }
+        Ok(())
     }
 
     /// Whether functions of the description's author are in the code, from the description or from files that it names:

@@ -1,7 +1,7 @@
 //! What goes wrong is a value that says what, how much and what to do; the renderer stays as it was.
 
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
-use fragbuf_runtime::{Code, Error, Output, Recorded, Renderer, Room, Settings, Sizing, Value, block_on};
+use fragbuf_runtime::{Code, Error, Interlock, Output, Recorded, Renderer, Room, Settings, Sizing, Value, block_on};
 use fragbuf_templates::vocabulary::{Host, Step};
 
 use crate::quads::{Quad, SIZE};
@@ -49,6 +49,16 @@ fn sizing_that_nobody_can_know_says_to_reserve() {
     let settings = Settings { sizing: Sizing::Exact, ..settings() };
     let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
     assert!(error.contains("`fragments`") && error.contains("Sizing::Reserve"), "{error}");
+}
+
+#[test]
+fn interlock_is_refused_on_a_device_that_was_made_without_it() {
+    let stage = device();
+    let shaders = shaders(&technique("kplus_array", &[("sync", "interlock")]), "spirv");
+    assert_eq!(shaders.check_interlock(Interlock::Enabled), Ok(()));
+    let settings = Settings { interlock: Interlock::Absent, ..settings() };
+    let error = message(renderer(&stage, &shaders, &settings));
+    assert!(error.contains("interlock") && error.contains("else spin_lock"), "{error}");
 }
 
 #[test]

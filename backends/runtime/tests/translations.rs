@@ -117,7 +117,7 @@ fn minima_links_ranges_and_slots_without_a_lock() {
         check(&technique(key, &[("k", "3"), ("counters", "all")]), |_| {});
     }
     check_in(&technique("kb_mdt64", &[("k", "3"), ("counters", "all")]), "wgsl-native", |_| {});
-    // wgpu knows no interlock.
+    // The software driver has no interlock.
     check(&technique("depth_partition", &[("k", "3"), ("counters", "all"), ("sync", "spin_lock")]), |_| {});
 }
 

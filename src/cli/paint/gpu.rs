@@ -54,7 +54,10 @@ impl Painter {
                 continue;
             }
             match Headless::open(choice, shaders.features()) {
-                Ok(headless) => return Ok(Painter { headless, shaders, target }),
+                Ok(headless) => match shaders.check_interlock(headless.interlock) {
+                    Ok(()) => return Ok(Painter { headless, shaders, target }),
+                    Err(error) => refusal = error.into(),
+                },
                 Err(error @ Error::MissingFeatures(_)) => refusal = error.into(),
                 Err(error) => return Err(error.into()),
             }
@@ -69,7 +72,11 @@ impl Painter {
         let Headless { device, queue, .. } = &self.headless;
         progress.stage(format!("{}: making pipelines", wish.description));
         let mesh = Mesh::upload(device, queue, &geometry(&stage.scene, &self.shaders.plan)?)?;
-        let settings = Settings { timestamps: view.json, ..Settings::new(BLENDED, width, height) };
+        let settings = Settings {
+            timestamps: view.json,
+            interlock: self.headless.interlock,
+            ..Settings::new(BLENDED, width, height)
+        };
         let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
         let uniforms = uniforms::values(wish.uniforms, variant)?;
         let (mut slice, mut rows) = (None, height);

@@ -25,7 +25,7 @@ pub(super) fn exact_regions() -> Row {
         resources,
         steps,
         calls: vec!["overflow", "counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Counted, Fact::Indexed],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Counted, Fact::Indexed, Fact::LosesWhole],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
@@ -73,7 +73,14 @@ pub(super) fn bounded_regions() -> Row {
         resources,
         steps,
         calls: vec!["overflow", "counters"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Counted, Fact::Indexed],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Counted,
+            Fact::Indexed,
+            Fact::LosesWhole,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter {

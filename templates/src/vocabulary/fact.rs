@@ -44,6 +44,7 @@ facts! {
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
     CanReplace "that a kept fragment can be replaced";
     Counted "the number of fragments of each pixel, known before they are stored";
+    LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
     Indexed "kept fragments with an index";
     Passes "a build step for every kept fragment";
     // What the kept fragments are, once gathered.

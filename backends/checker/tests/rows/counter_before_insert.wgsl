@@ -21,10 +21,10 @@ fn storage_insert(pixel: u32, entry: Packed) {
     } else {
         let worst = max_array_read(pixel, 0u);
         if !better(entry, worst) {
-            on_lost(entry, DISPLACED);
+            on_lost(pixel, entry, DISPLACED);
             return;
         }
-        on_lost(worst, DISPLACED);
+        on_lost(pixel, worst, DISPLACED);
     }
     max_array_replace_worst(pixel, entry);
 }

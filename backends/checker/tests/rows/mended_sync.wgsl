@@ -26,7 +26,7 @@ fn sync_store(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, SPIN_EXHAUSTED);
 }
 
 fn all_written(pixel: u32) -> bool {

@@ -16,7 +16,7 @@ pub const MARKERS: &[(&str, Marker)] = &[
     ("critical_end", Marker::CriticalEnd),
 ];
 
-pub const BOTH: [Dialect; 2] = [Dialect::OpenGl450, Dialect::Vulkan450];
+pub const ALL: [Dialect; 3] = [Dialect::OpenGl450, Dialect::Vulkan450, Dialect::Es310];
 
 pub fn parse(source: &str) -> (naga::Module, ModuleInfo) {
     let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities: Capabilities::all() };
@@ -71,11 +71,12 @@ pub fn suffix(stage: ShaderStage) -> &'static str {
 pub fn accept(text: &str, name: &str, stage: &str, dialect: Dialect) -> Result<(), String> {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("glsl");
     std::fs::create_dir_all(&directory).unwrap();
-    let label = if dialect == Dialect::OpenGl450 { "opengl" } else { "vulkan" };
+    let label = format!("{dialect:?}").to_lowercase();
     let file = directory.join(format!("{name}.{label}.{stage}"));
     std::fs::write(&file, text).unwrap();
     match dialect {
         Dialect::OpenGl450 => run(Command::new("glslangValidator").args(["--target-env", "opengl"]).arg(&file)),
+        Dialect::Es310 => run(Command::new("glslangValidator").arg(&file)),
         Dialect::Vulkan450 => {
             let binary: PathBuf = file.with_extension(format!("{stage}.spv"));
             run(Command::new("glslangValidator")

@@ -1,15 +1,17 @@
 //! A device and a target without a window: for tests, the command line, and pictures on a server.
 
 mod adapter;
+mod interlock;
 mod offscreen;
 
 pub use adapter::{Choice, adapters};
+pub use interlock::open_device;
 pub use offscreen::{BLENDED, Offscreen};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::Error;
+use crate::{Error, Interlock};
 
 /// A device of our own.
 pub struct Headless {
@@ -19,6 +21,8 @@ pub struct Headless {
     pub queue: wgpu::Queue,
     /// What it is.
     pub info: wgpu::AdapterInfo,
+    /// Whether it has fragment shader interlock.
+    pub interlock: Interlock,
     lost: Arc<AtomicBool>,
 }
 
@@ -31,28 +35,25 @@ const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::PASSTHROUGH_SHADERS);
 
 impl Headless {
-    /// Opens the chosen adapter with all its limits, the features of `required`, and those of timing, coherent buffers and
-    /// passed-through code where there are any. Blocks.
+    /// Opens the chosen adapter with all its limits, the features of `required`, and those of timing, coherent buffers,
+    /// passed-through code and interlock where there are any. Blocks.
     pub fn open(choice: &Choice, required: wgpu::Features) -> Result<Self, Error> {
         let adapter = adapter::choose(choice)?;
         let missing = required - adapter.features();
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
         }
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+        let descriptor = wgpu::DeviceDescriptor {
             label: Some("fragbuf headless"),
             required_features: required | (adapter.features() & WELCOME),
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
-        });
-        let what = || format!("the device `{}`", adapter.get_info().name);
-        let (device, queue) = adapter::ready(request)
-            .ok_or_else(|| Error::Internal { what: what(), message: "it takes for ever".to_owned() })?
-            .map_err(|error| Error::Internal { what: what(), message: error.to_string() })?;
+        };
+        let (device, queue, interlock) = open_device(&adapter, &descriptor)?;
         let lost = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
-        Ok(Headless { device, queue, info: adapter.get_info(), lost })
+        Ok(Headless { device, queue, info: adapter.get_info(), interlock, lost })
     }
 
     /// Whether the device has been lost.
