@@ -67,6 +67,8 @@ pub fn named() -> Vec<Case> {
         ("kb_ll", technique("kb_ll"), vec![]),
         ("depth_partition", technique("depth_partition"), vec![("storage.near", "100000")]),
         ("kplus_ab_sb", technique("kplus_ab_sb"), vec![("k", "32")]),
+        ("kb_multi", technique("kb_multi"), vec![]),
+        ("z_buffer", technique("z_buffer"), vec![]),
         ("reserving_interlock", technique("kplus_array_revised"), vec![("sync", "interlock")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),

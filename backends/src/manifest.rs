@@ -166,6 +166,8 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         Element::Word64 => "word64".to_owned(),
         Element::Entry => "entry".to_owned(),
         Element::Beside => "beside".to_owned(),
+        Element::BesideTextures(format) => format!("beside-textures:{}", texture_format(format)),
+        Element::EntryTextures(format) => format!("entry-textures:{}", texture_format(format)),
     };
     let init = match resource.init {
         Init::Clear(value) => json!({ "clear": value }),
@@ -190,6 +192,7 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
 fn texture_format(format: TextureFormat) -> &'static str {
     match format {
         TextureFormat::R32Uint => "r32uint",
+        TextureFormat::Rg16Uint => "rg16uint",
         TextureFormat::R32Float => "r32float",
         TextureFormat::Rg32Float => "rg32float",
         TextureFormat::Rgba8Unorm => "rgba8unorm",

@@ -62,6 +62,7 @@ pub const CONTRACTS: &[Contract] = &[
         "the pixel's premultiplied colour, once that of its kept fragments is known",
     ),
     row("addressing", "pixel_index", "(position: vec2<f32>) -> u32", "the pixel's number, below pixel_count()"),
+    row("addressing", "pixel_texel", "(pixel: u32) -> vec2<u32>", "the texel of a pixel's number in textures"),
     row("addressing", "pixel_count", "() -> u32", "pixels of the frame"),
     row("counters", "count_event", "(counter: u32)", "counts what is no loss"),
     row("counters", "count_loss", "(counter: u32)", "counts a loss"),

@@ -5,6 +5,7 @@
 mod dump;
 mod edit;
 mod roles;
+mod textures;
 
 pub(crate) use roles::{axis_of, instance_row};
 
@@ -60,6 +61,17 @@ pub struct Planned {
     pub binding: u32,
     /// Its size in words, as one formula.
     pub words: Formula,
+    /// For a texture that holds one word of a fragment: which.
+    pub part: Option<Part>,
+}
+
+/// One word of what a row calls one resource, and a plan keeps in a texture for each word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The row's resource.
+    pub of: String,
+    /// The word's field in `Packed`.
+    pub field: String,
 }
 
 /// Values of the symbols that are bound when code is generated.
@@ -88,7 +100,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         ("beside_words", u64::from(layout.beside_words())),
     ]);
     let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
-    let built = build(selection, limit, registry, &bound).map_err(|problem| {
+    let built = build(selection, limit, registry, (&bound, &layout)).map_err(|problem| {
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     })?;
@@ -126,7 +138,12 @@ struct Built {
     words_per_pixel: String,
 }
 
-fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound) -> Result<Built, String> {
+fn build(
+    selection: &Selection,
+    limit: Limit,
+    registry: &Registry,
+    (bound, layout): (&Bound, &Layout),
+) -> Result<Built, String> {
     let mut resources: Vec<Resource> =
         selection.rows.iter().flat_map(|selected| selected.row.resources.iter().cloned()).collect();
     let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
@@ -136,17 +153,21 @@ fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound
         }
     }
     roles::complete(&mut steps, &mut resources, selection, registry)?;
-    let clears = resources.iter().filter(|resource| resource.life == Life::Frame).filter_map(|resource| {
-        let Init::Clear(value) = resource.init else { return None };
-        Some(Step::Clear { resource: resource.name.clone(), value })
-    });
+    let resources = textures::spread(resources, &mut steps, layout);
+    let clears =
+        resources.iter().map(|(resource, _)| resource).filter(|resource| resource.life == Life::Frame).filter_map(
+            |resource| {
+                let Init::Clear(value) = resource.init else { return None };
+                Some(Step::Clear { resource: resource.name.clone(), value })
+            },
+        );
     let steps: Vec<Step> = clears.chain(steps).collect();
     let mut planned = Vec::with_capacity(resources.len());
     let mut total = Polynomial::default();
-    for (binding, resource) in (FIRST_BINDING..).zip(resources) {
+    for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
         let (words, polynomial) = size(&resource, bound).map_err(|error| error.to_string())?;
         total = total.plus(&polynomial, 1);
-        planned.push(Planned { resource, binding, words });
+        planned.push(Planned { resource, binding, words, part });
     }
     Ok(Built {
         constants: constants(selection, bound).map_err(|error| error.to_string())?,
@@ -167,6 +188,8 @@ fn size(resource: &Resource, bound: &Bound) -> Result<(Formula, Polynomial), For
         Element::Beside => factors.push("beside_words".into()),
         Element::Texture(format) if format.words() == 1 => {}
         Element::Texture(format) => factors.push(format.words().to_string().into()),
+        Element::BesideTextures(_) => factors.push("beside_words".into()),
+        Element::EntryTextures(_) => factors.push("entry_words".into()),
     }
     let mut product = Polynomial::number(1);
     for factor in &factors {

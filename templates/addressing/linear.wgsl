@@ -5,6 +5,11 @@ fn pixel_index(position: vec2<f32>) -> u32 {
     return (at.y - frame.first_row) * frame.width + at.x;
 }
 
+/// The texel of a pixel in textures as large as the frame.
+fn pixel_texel(pixel: u32) -> vec2<u32> {
+    return vec2<u32>(pixel % frame.width, pixel / frame.width + frame.first_row);
+}
+
 fn pixel_count() -> u32 {
     return frame.width * frame.height;
 }

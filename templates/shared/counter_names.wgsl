@@ -7,3 +7,4 @@ const POOL_EXHAUSTED = 3u;
 const SPIN_EXHAUSTED = 4u;
 const LAYERS_EXCEEDED = 5u;
 const EQUAL_KEYS = 6u;
+const UNSETTLED = 7u;

@@ -4,7 +4,7 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 7] = [
+pub const COUNTERS: [(&str, bool, &str); 8] = [
     ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
     ("culled", false, "fragments turned away by the cull"),
     ("displaced", true, "fragments rejected or replaced because better ones were there"),
@@ -12,6 +12,11 @@ pub const COUNTERS: [(&str, bool, &str); 7] = [
     ("spin_exhausted", true, "fragments given up because the lock, a slot or a link was not free in time"),
     ("layers_exceeded", true, "kept fragments beyond what the resolve pass can hold; the farthest are left out"),
     ("equal_keys", true, "fragments dropped because one with an equal key was kept"),
+    (
+        "unsettled",
+        true,
+        "fragments that still changed something in the last round of a loop: entries may be lost or double",
+    ),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

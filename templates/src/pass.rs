@@ -42,6 +42,18 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "cull", "overflow", "counters"],
         ),
         row(
+            "store_again",
+            "stores the scene's fragments once more in every round of a loop",
+            template!("pass/store_again"),
+            vec!["addressing", "storage", "sync", "counters"],
+        ),
+        row(
+            "store_targets",
+            "stores the scene's fragments in targets, by tests that are fixed function",
+            template!("pass/store_targets"),
+            vec!["counters"],
+        ),
+        row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),

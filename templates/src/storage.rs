@@ -1,9 +1,11 @@
 //! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
 
+mod fixed_function;
 mod list;
 mod minima;
 mod ranges;
 mod regions;
+mod repeated;
 mod worst_first;
 
 use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
@@ -23,6 +25,8 @@ pub(crate) fn rows() -> Vec<Row> {
         list::ordered_list(),
         ranges::depth_ranges(),
         regions::bounded_regions(),
+        repeated::repeated_array(),
+        fixed_function::depth_tested(),
     ]
 }
 

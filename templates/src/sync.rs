@@ -3,13 +3,14 @@
 use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
-    vec![none(), slot_counter(), spin_lock(), interlock()]
+    vec![none(), slot_counter(), spin_lock(), interlock(), fixed_function()]
 }
 
 fn none() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
+        offers: vec![Fact::Race],
         requires: vec![Fact::SurvivesRaces],
         soundness: Soundness::Racy,
         ..Row::new("sync", "none", "not at all: the hazards of the storage are kept", "B06 §3.1")
@@ -27,6 +28,19 @@ fn slot_counter() -> Row {
             "slot_counter",
             "by the storage's own counters: every fragment gets a place of its own",
             "K15 §2",
+        )
+    }
+}
+
+fn fixed_function() -> Row {
+    Row {
+        offers: vec![Fact::LeftToTests],
+        requires: vec![Fact::FixedFunction],
+        ..Row::new(
+            "sync",
+            "fixed_function",
+            "by depth test, stencil or blending, in the order of submission",
+            "Catmull 1974; Myers & Bavoil 2007",
         )
     }
 }

@@ -182,5 +182,31 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("sort", "insertion"),
             ],
         },
+        Technique {
+            key: "z_buffer".to_owned(),
+            title: "Z-buffer",
+            paper: "Catmull 1974; K15 §4.3",
+            summary: "the nearest, by the depth test, its words in targets: one draw, no atomic operation",
+            keep: KeepDefault::Best(1),
+            choices: vec![
+                ("storage", "depth_tested"),
+                ("sync", "fixed_function"),
+                ("ties", "unordered"),
+                ("sort", "none"),
+            ],
+        },
+        Technique {
+            key: "kb_multi".to_owned(),
+            title: "KB-Multi",
+            paper: "Liu et al. 2009; K15 §2",
+            summary: "the k nearest distinct depths without any lock: drawn again until a pass changes nothing",
+            keep: KeepDefault::Best(8),
+            choices: vec![
+                ("storage", "repeated_array"),
+                ("sync", "none"),
+                ("ties", "unordered"),
+                ("sort", "insertion"),
+            ],
+        },
     ]
 }

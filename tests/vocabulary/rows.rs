@@ -17,11 +17,9 @@ pub(super) fn registry() -> Registry {
         .with(stencil_routed())
         .with(front_to_back())
         .with(dual())
-        .with(repeated_array())
         .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
         .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
-        .with_technique(technique("kb_multi", KeepDefault::Best(8), vec![("storage", "repeated_array")]))
         .with_technique(technique(
             "predict_k",
             KeepDefault::Best(8),
@@ -175,49 +173,6 @@ fn dual() -> Row {
         requires: vec![Fact::MinMaxBlend],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
-    }
-}
-
-/// Liu et al. 2009: unsynchronised, repeated until a whole pass changes nothing.
-fn repeated_array() -> Row {
-    let mut store = Pass::geometry("store", "store_again")
-        .uses("keys", Access::Atomic)
-        .uses("entries", Access::Atomic)
-        .uses("changed", Access::Atomic);
-    store.state.depth =
-        Some(DepthState { resource: "nearest".to_owned(), compare: Compare::Less, write: true, early: false });
-    Row {
-        resources: vec![
-            Resource::new("keys", Element::Word, "keys in no order").by("slot", "k").by("pixel", "pixels"),
-            Resource::new("entries", Element::Beside, "payloads").by("slot", "k").by("pixel", "pixels"),
-            texture("nearest", TextureFormat::Depth32Float, "turns away what a pass has seen nearer"),
-            Resource::new("changed", Element::Word, "entries that this pass changed"),
-        ],
-        steps: vec![
-            Step::Pass(
-                Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
-                    .uses("keys", Access::Plain),
-            ),
-            Step::Repeat(Repeat {
-                body: vec![
-                    Step::Clear { resource: "changed".to_owned(), value: 0 },
-                    Step::Clear { resource: "nearest".to_owned(), value: 0x3f80_0000 },
-                    Step::Pass(store),
-                ],
-                until: Until::Zero("changed".to_owned()),
-                at_most: "k + 1".into(),
-            }),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        offers: vec![Fact::KeepsBest, Fact::SurvivesRaces, Fact::CanReplace],
-        defaults: vec![("sync".into(), "none".into())],
-        soundness: Soundness::Racy,
-        ..Row::new("storage", "repeated_array", "k entries, repaired by the next pass", "Liu et al. 2009")
     }
 }
 

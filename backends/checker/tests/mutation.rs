@@ -37,8 +37,18 @@ const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_arr
 /// Storages whose changes are not tried yet. Of 273 changes to the first four, 35 go unnoticed and unexplained: most want cases
 /// with too little room, which are not tried for storages that keep the k best, because how many find none depends on the
 /// order; one deletes a fence of the revised array.
-const NOT_YET: [&str; 6] =
-    ["revised_array", "ordered_list", "bounded_regions", "wide_cascade", "distinct_cascade", "depth_ranges"];
+const NOT_YET: [&str; 8] = [
+    "revised_array",
+    "ordered_list",
+    "bounded_regions",
+    "wide_cascade",
+    "distinct_cascade",
+    "depth_ranges",
+    // Loops that end by a counter are merged later.
+    "repeated_array",
+    // Fixed function is merged later.
+    "depth_tested",
+];
 
 const MUTATED: [(&str, &str, &[Check]); 9] = [
     ("storage", "max_heap", HEAP),

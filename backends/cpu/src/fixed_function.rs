@@ -40,7 +40,7 @@ impl Attachments<'_> {
     pub(crate) fn blend(&self, target: usize, index: usize, color: [u32; 4]) {
         let Some(target) = self.targets.get(target) else { return };
         if target.texel.is_raw() {
-            return target.store(index, color);
+            return target.store(index, target.texel.encode_whole(color));
         }
         let new = color.map(f32::from_bits);
         let old = if target.blend == Blend::Replace { [0.0; 4] } else { target.texel.decode(target.load(index)) };

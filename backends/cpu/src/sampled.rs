@@ -40,7 +40,7 @@ impl<'a> Sampled<'a> {
         }
         let is_whole = texture.kind != ScalarKind::Float;
         let fits = match format {
-            TextureFormat::R32Uint => texture.kind == ScalarKind::Uint && !texture.is_depth,
+            TextureFormat::R32Uint | TextureFormat::Rg16Uint => texture.kind == ScalarKind::Uint && !texture.is_depth,
             TextureFormat::Depth24PlusStencil8 => texture.kind != ScalarKind::Sint,
             TextureFormat::Depth32Float => !is_whole,
             _ => !is_whole && !texture.is_depth,
@@ -61,11 +61,7 @@ impl<'a> Sampled<'a> {
         let index = sample as usize * pixels + y as usize * width as usize + x as usize;
         let texel = Texel::Format(self.format);
         let words = texel.load(self.words, index);
-        Some(match self.format {
-            TextureFormat::R32Uint => [words[0], 0, 0, 1],
-            TextureFormat::Depth24PlusStencil8 if self.is_whole => [words[0] & 0xff, 0, 0, 1],
-            _ => texel.decode(words).map(f32::to_bits),
-        })
+        Some(if self.is_whole { texel.decode_whole(words) } else { texel.decode(words).map(f32::to_bits) })
     }
 
     /// Columns, rows, samples.

@@ -30,7 +30,7 @@ impl Texel {
 
     /// Whether it holds bits rather than numbers, so that nothing can be blended.
     pub(crate) fn is_raw(self) -> bool {
-        self == Texel::Format(TextureFormat::R32Uint)
+        matches!(self, Texel::Format(TextureFormat::R32Uint | TextureFormat::Rg16Uint))
     }
 
     /// The words of the texel `index`; those beyond its size are 0.
@@ -40,6 +40,24 @@ impl Texel {
             Some(held) if word < words => held.load(Ordering::Relaxed),
             _ => 0,
         })
+    }
+
+    /// The words of a texel of whole numbers.
+    pub(crate) fn encode_whole(self, channels: [u32; 4]) -> [u32; 4] {
+        let [low, high, ..] = channels;
+        match self {
+            Texel::Format(TextureFormat::Rg16Uint) => [low & 0xffff | high << 16, 0, 0, 0],
+            _ => channels,
+        }
+    }
+
+    /// The channels of a texel of whole numbers, of which nothing is a number with a point: words of a colour, or a stencil.
+    pub(crate) fn decode_whole(self, words: [u32; 4]) -> [u32; 4] {
+        match self {
+            Texel::Format(TextureFormat::Rg16Uint) => [words[0] & 0xffff, words[0] >> 16, 0, 1],
+            Texel::Format(TextureFormat::Depth24PlusStencil8) => [words[0] & 0xff, 0, 0, 1],
+            _ => [words[0], 0, 0, 1],
+        }
     }
 
     /// The channels of a texel.

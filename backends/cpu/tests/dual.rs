@@ -17,8 +17,6 @@ fn bounds(varyings: Varyings) -> @location(0) vec2<f32> {
 ";
 
 const PEEL_BOTH: &str = "
-@group(0) @binding(3) var bounds_before: texture_2d<f32>;
-
 struct Peeled {
     @location(0) bounds: vec2<f32>,
     @location(1) front: vec4<f32>,
@@ -28,7 +26,7 @@ struct Peeled {
 @fragment
 fn peel_both(varyings: Varyings) -> Peeled {
     let depth = varyings.position.z;
-    let before = textureLoad(bounds_before, vec2<u32>(varyings.position.xy), 0);
+    let before = last_bounds_load(pixel_index(varyings.position.xy));
     var peeled = Peeled(vec2<f32>(-3.402823466e+38), vec4<f32>(), vec4<f32>());
     let color = varyings_fragment(varyings).color;
     let premultiplied = vec4<f32>(color.rgb * color.a, color.a);
@@ -45,14 +43,11 @@ fn peel_both(varyings: Varyings) -> Peeled {
 ";
 
 const COMPOSITE: &str = "
-@group(0) @binding(5) var front_layers: texture_2d<f32>;
-@group(0) @binding(6) var back_layers: texture_2d<f32>;
-
 @fragment
 fn composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(position.xy);
-    let front = textureLoad(front_layers, pixel, 0);
-    return front + (1.0 - front.a) * textureLoad(back_layers, pixel, 0);
+    let pixel = pixel_index(position.xy);
+    let nearer = front_load(pixel);
+    return nearer + (1.0 - nearer.a) * back_load(pixel);
 }
 ";
 

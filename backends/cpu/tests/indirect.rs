@@ -38,7 +38,7 @@ fn count_groups(@builtin(workgroup_id) id: vec3<u32>) {
 ";
 
 /// The words that stand in `drawn` and `red` after a pass with these arguments.
-fn run(pass: Pass, text: (&str, &'static str), arguments: [u32; 5], triangles: &[Triangle]) -> [u32; 2] {
+fn run(pass: Pass, text: (&str, &str), arguments: [u32; 5], triangles: &[Triangle]) -> [u32; 2] {
     let word = |name: &str| Resource::new(name, Element::Word, "").cleared(0);
     let argue = Pass::compute("argue", "argue", "5", "1").uses("arguments", Access::Plain);
     let pass = pass.uses("arguments", Access::Indirect).uses("drawn", Access::Atomic).uses("red", Access::Atomic);
@@ -50,7 +50,7 @@ fn run(pass: Pass, text: (&str, &'static str), arguments: [u32; 5], triangles: &
     let given = format!(
         "{TEXT}\nfn given(index: u32) -> u32 {{\n    var words = array<u32, 5>({a}u, {b}u, {c}u, {d}u, {e}u);\n    return words[index];\n}}\n"
     );
-    let code = code(rows, &[("argue", given.leak()), text], None).unwrap_or_else(|error| panic!("{error}"));
+    let code = code(rows, &[("argue", &given), text], None).unwrap_or_else(|error| panic!("{error}"));
     let mut device: Device = device(&code, Order::Submission);
     draw(&mut device, triangles);
     ["drawn", "red"].map(|name| device.words(name).unwrap()[0])

@@ -10,11 +10,9 @@ use std::sync::Arc;
 use crate::stage::{FAR, built_in, code, device, different, draw, scattered, stacked, storage, texture};
 
 pub const PEEL: &str = "
-@group(0) @binding(3) var peeled: texture_depth_2d;
-
 @fragment
 fn peel(varyings: Varyings) -> @location(0) vec4<f32> {
-    if varyings.position.z <= textureLoad(peeled, vec2<u32>(varyings.position.xy), 0) {
+    if varyings.position.z <= last_load(pixel_index(varyings.position.xy)) {
         discard;
     }
     let color = varyings_fragment(varyings).color;
@@ -24,11 +22,9 @@ fn peel(varyings: Varyings) -> @location(0) vec4<f32> {
 ";
 
 pub const BLEND: &str = "
-@group(0) @binding(5) var peeled_layer: texture_2d<f32>;
-
 @fragment
 fn blend(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return textureLoad(peeled_layer, vec2<u32>(position.xy), 0);
+    return peeled_load(pixel_index(position.xy));
 }
 ";
 
@@ -40,11 +36,11 @@ pub fn depth(resource: &str, compare: Compare, write: bool) -> Option<DepthState
 pub fn rows(at_most: &'static str, objects: Objects, before: Option<Pass>) -> Row {
     let mut peel = Pass::geometry("peel", "peel").uses("last", Access::Sampled).uses("drawn", Access::Atomic);
     peel.state.depth = depth("next", Compare::Less, true);
-    let peel = Pass { objects, ..peel.target("layer", Blend::Replace) };
-    let blend = Pass::fullscreen("blend", "blend").uses("layer", Access::Sampled).target("output", Blend::Under);
+    let peel = Pass { objects, ..peel.target("peeled", Blend::Replace) };
+    let blend = Pass::fullscreen("blend", "blend").uses("peeled", Access::Sampled).target("output", Blend::Under);
     let mut body = vec![
         Step::Clear { resource: "next".to_owned(), value: FAR },
-        Step::Clear { resource: "layer".to_owned(), value: 0 },
+        Step::Clear { resource: "peeled".to_owned(), value: 0 },
     ];
     body.extend(before.map(Step::Pass));
     body.extend([Step::Pass(peel), Step::Pass(blend), Step::Swap("last".to_owned(), "next".to_owned())]);
@@ -53,7 +49,7 @@ pub fn rows(at_most: &'static str, objects: Objects, before: Option<Pass>) -> Ro
         vec![
             texture("last", TextureFormat::Depth32Float).cleared(0),
             texture("next", TextureFormat::Depth32Float),
-            texture("layer", TextureFormat::Rgba16Float),
+            texture("peeled", TextureFormat::Rgba16Float),
             Resource::new("drawn", fragbuf_templates::vocabulary::Element::Word, "").cleared(0),
         ],
         vec![Step::Repeat(Repeat { body, until, at_most: at_most.into() })],

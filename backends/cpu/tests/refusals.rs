@@ -5,10 +5,19 @@ use fragbuf_templates::vocabulary::{
     Access, Blend, Element, Objects, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
 };
 
-use crate::peeling::BLEND;
 use crate::stage::{code, device, picture, storage, texture};
 
-fn refused(rows: Row, texts: &[(&str, &'static str)]) -> String {
+/// A texture of floats, as a text declares it that does not ask the plan.
+const BLEND: &str = "
+@group(0) @binding(peeled) var floats: texture_2d<f32>;
+
+@fragment
+fn blend(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(floats, vec2<u32>(position.xy), 0);
+}
+";
+
+fn refused(rows: Row, texts: &[(&str, &str)]) -> String {
     let code = match code(rows, texts, None) {
         Ok(code) => code,
         Err(error) => return error.to_string(),
@@ -22,29 +31,30 @@ fn refused(rows: Row, texts: &[(&str, &'static str)]) -> String {
 fn read(format: TextureFormat, pass: Pass) -> Row {
     let layer = |name: &str, format| texture(name, format);
     let any = TextureFormat::R32Float;
-    storage(vec![layer("a", any), layer("b", any), layer("layer", format)], vec![Step::Pass(pass)])
+    storage(vec![layer("a", any), layer("b", any), layer("peeled", format)], vec![Step::Pass(pass)])
 }
 
 #[test]
 fn a_texture_is_not_read_while_it_is_drawn_to() {
-    let pass = Pass::fullscreen("blend", "blend").uses("layer", Access::Sampled).target("layer", Blend::Over);
+    let pass = Pass::fullscreen("blend", "blend").uses("peeled", Access::Sampled).target("peeled", Blend::Over);
     let seen = refused(read(TextureFormat::Rgba8Unorm, pass), &[("blend", BLEND)]);
-    assert!(seen.contains("pass `blend`: `layer`, which it reads and draws to at once"), "{seen}");
+    assert!(seen.contains("pass `blend`: `peeled`, which it reads and draws to at once"), "{seen}");
 }
 
 #[test]
 fn a_texture_is_what_the_plan_says() {
-    let pass = || picture("blend").uses("layer", Access::Sampled);
+    let pass = || picture("blend").uses("peeled", Access::Sampled);
     let seen = refused(read(TextureFormat::R32Uint, pass()), &[("blend", BLEND)]);
-    assert!(seen.contains("the texture `peeled_layer`: it is declared otherwise than R32Uint"), "{seen}");
-    let several =
-        Resource::new("layer", Element::Texture(TextureFormat::Rgba8Unorm), "").by("sample", "4").by("pixel", "pixels");
+    assert!(seen.contains("the texture `floats`: it is declared otherwise than R32Uint"), "{seen}");
+    let several = Resource::new("peeled", Element::Texture(TextureFormat::Rgba8Unorm), "")
+        .by("sample", "4")
+        .by("pixel", "pixels");
     let mut rows = read(TextureFormat::Rgba8Unorm, pass());
     rows.resources[2] = several;
     let seen = refused(rows, &[("blend", BLEND)]);
     assert!(seen.contains("another number of samples than the plan's 4"), "{seen}");
     let mut rows = read(TextureFormat::Rgba8Unorm, pass());
-    rows.resources[2] = Resource::new("layer", Element::Word, "").by("pixel", "pixels");
+    rows.resources[2] = Resource::new("peeled", Element::Word, "").by("pixel", "pixels");
     let seen = refused(rows, &[("blend", BLEND)]);
     assert!(seen.contains("the plan has a buffer there"), "{seen}");
 }

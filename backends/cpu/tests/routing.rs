@@ -29,23 +29,20 @@ fn nothing() {}
 ";
 
 const RESOLVE_SAMPLES: &str = "
-@group(0) @binding(3) var stored_depths: texture_multisampled_2d<f32>;
-@group(0) @binding(4) var stored_colors: texture_multisampled_2d<f32>;
-
 @fragment
 fn resolve_samples(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(position.xy);
+    let pixel = pixel_index(position.xy);
     var sum = vec4<f32>();
     var last = -1.0;
     // The next behind the last, as often as there are samples.
-    for (var round = 0u; round < textureNumSamples(stored_depths); round++) {
+    for (var round = 0u; round < textureNumSamples(depths); round++) {
         var nearest = 1.0;
         var color = vec4<f32>();
         for (var sample = 0u; sample < frame.k; sample++) {
-            let depth = textureLoad(stored_depths, pixel, sample).r;
+            let depth = depths_load(sample, pixel);
             if depth > last && depth < nearest {
                 nearest = depth;
-                color = textureLoad(stored_colors, pixel, sample);
+                color = colors_load(sample, pixel);
             }
         }
         sum += (1.0 - sum.a) * vec4<f32>(color.rgb * color.a, color.a);

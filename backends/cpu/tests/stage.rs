@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use fragbuf_codegen::plan;
 use fragbuf_cpu::{Code, Device, Error, Mesh, Order, Picture, Settings};
 use fragbuf_frame::Sizing;
-use fragbuf_model::{Draft, Origin, check};
+use fragbuf_model::{Draft, Origin, Selection, Variant, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
     Access, Blend, Element, Fact, KeepDefault, Pass, Resource, Row, Step, Technique, Template, TextureFormat,
@@ -25,32 +26,46 @@ pub fn sampled(name: &str, format: TextureFormat) -> Resource {
     Resource::new(name, Element::Texture(format), "").by("sample", "k").by("pixel", "pixels")
 }
 
-/// A storage of resources and steps, with the WGSL of its skeletons; `keep`: how many fragments stay.
-pub fn code(storage: Row, skeletons: &[(&str, &'static str)], keep: Option<u32>) -> Result<Arc<Code>, Error> {
-    let keep = keep.map_or(KeepDefault::All, KeepDefault::Best);
+/// A storage of resources and steps, with the WGSL of its skeletons, in which `binding(name)` is the binding of that resource;
+/// `keep`: how many fragments stay.
+pub fn code(storage: Row, skeletons: &[(&str, &str)], keep: Option<u32>) -> Result<Arc<Code>, Error> {
+    let texts: Vec<(&str, String)> = skeletons.iter().map(|(key, text)| (*key, (*text).to_owned())).collect();
+    let (variant, first) = checked(&storage, &texts, keep);
+    let plan = plan(&variant, &Selection::first(&variant), &first).unwrap_or_else(|faults| panic!("{faults}"));
+    let bound = |text: &str| {
+        plan.resources.iter().fold(text.to_owned(), |text, planned| {
+            let name = format!("binding({})", planned.resource.name);
+            text.replace(&name, &format!("binding({})", planned.binding))
+        })
+    };
+    let texts: Vec<(&str, String)> = texts.iter().map(|(key, text)| (*key, bound(text))).collect();
+    let (variant, registry) = checked(&storage, &texts, keep);
+    Code::of(&variant, &registry).map(Arc::new)
+}
+
+fn checked(storage: &Row, skeletons: &[(&str, String)], keep: Option<u32>) -> (Variant, Registry) {
     let technique = Technique {
         key: "tried".to_owned(),
         title: "",
         paper: "",
         summary: "",
-        keep,
+        keep: keep.map_or(KeepDefault::All, KeepDefault::Best),
         choices: vec![("storage", "tried"), ("sync", "as_it_comes")],
     };
     let mut registry = Registry::builtin()
         .with(Row::new("sync", "as_it_comes", "", ""))
-        .with(Row { offers: vec![Fact::KeepsAll, Fact::KeepsBest, Fact::Sorted], ..storage })
+        .with(Row { offers: vec![Fact::KeepsAll, Fact::KeepsBest, Fact::Sorted], ..storage.clone() })
         .with_technique(technique);
     for (key, text) in skeletons {
         let path = format!("pass/{key}.wgsl");
         registry = registry.with(Row {
-            template: Some(Template::new(path, *text)),
+            template: Some(Template::new(path, text.clone())),
             calls: vec!["addressing"],
             ..Row::new("pass", key, "", "")
         });
     }
     let draft = Draft::from_technique("tried", &Origin::new("tried", 1, 1));
-    let variant = check(&draft, &registry).unwrap_or_else(|faults| panic!("{faults}"));
-    Code::of(&variant, &registry).map(Arc::new)
+    (check(&draft, &registry).unwrap_or_else(|faults| panic!("{faults}")), registry)
 }
 
 pub fn storage(resources: Vec<Resource>, steps: Vec<Step>) -> Row {

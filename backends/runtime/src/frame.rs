@@ -7,23 +7,29 @@
 //!
 //! A frame is handed on from call to call, so that a segment cannot be recorded twice or out of order.
 
+use std::collections::BTreeSet;
+
 use fragbuf_frame::{COUNTERS_RESOURCE, Decision};
-use fragbuf_templates::vocabulary::{Kind, Pass};
+use fragbuf_templates::vocabulary::{Formula, Kind, Pass};
 
 use crate::action::{Action, Run};
+use crate::attachments::{Attachments, Clears, Written, clear_sampled};
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
+use crate::walk::{Ends, Place, Question, Step, segment};
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
 #[derive(Debug)]
 pub struct Frame {
     id: u64,
-    /// The next action.
-    at: usize,
-    /// Whether the output has been written, and must not be cleared again.
-    written: bool,
+    at: Place,
+    written: Written,
+    /// Textures that the next pass attached to them begins with clearing.
+    clears: Clears,
+    /// The first query of every run so far.
+    timed: BTreeSet<u32>,
 }
 
 /// What [`Frame::record`] came to.
@@ -38,7 +44,7 @@ pub enum Recorded {
 /// A frame that waits for the host.
 pub struct Cut {
     frame: Frame,
-    decision: Decision,
+    question: Question,
     reads: Vec<Pending<Vec<u32>>>,
 }
 
@@ -58,7 +64,7 @@ pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Pass) + 'a;
 
 impl Frame {
     pub(crate) fn new(id: u64) -> Self {
-        Frame { id, at: 0, written: false }
+        Frame { id, at: Place::default(), written: Written::No, clears: Clears::new(), timed: BTreeSet::new() }
     }
 
     /// Records everything up to the next decision of the host, or to the end.
@@ -72,55 +78,51 @@ impl Frame {
         if self.id != renderer.frame_id {
             return Err(Error::StaleFrame);
         }
-        let all = steps(renderer);
-        let rest = all.get(self.at..).unwrap_or_default();
-        let end = rest.iter().position(|step| renderer.exact && matches!(step.action, Action::Host(_)));
-        let segment = rest.get(..end.unwrap_or(rest.len())).unwrap_or_default();
         // Whatever can fail does so before anything is recorded.
-        let groups = segment.iter().map(|step| groups(renderer, step.action)).collect::<Result<Vec<_>, _>>()?;
-        let decision = match end.and_then(|end| rest.get(end)) {
-            Some(Step { action: Action::Host(decision), .. }) => Some((decision, places(renderer, decision)?)),
-            _ => None,
-        };
-        for (step, groups) in segment.iter().zip(groups) {
+        let segment = segment(renderer, self.at)?;
+        let places = segment.question.as_ref().map(|question| places(renderer, question)).transpose()?;
+        for step in &segment.steps {
             match step.action {
+                Action::Clear { resource, value } if renderer.sized.memory.texture(*resource).is_some() => {
+                    self.clears.insert(*resource, *value);
+                }
                 Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
                 Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
-                Action::Pass(run) => self.pass(renderer, encoder, (*run, step.slice), groups, output, draw),
-                Action::Host(_) => {}
+                Action::Pass(run) => self.pass(renderer, encoder, (*run, step), output, draw),
+                Action::Host(_) | Action::Again(_) => {}
             }
             if let Ends::Slice = step.ends {
                 tally(renderer, encoder, step.slice);
             }
         }
-        let Some((decision, places)) = decision else {
+        self.at = segment.end;
+        let (Some(question), Some(places)) = (segment.question, places) else {
             if let Some(timing) = &renderer.sized.timing {
-                timing.resolve(encoder);
+                timing.resolve(encoder, &self.timed);
             }
             return Ok(Recorded::Finished);
         };
-        self.at += segment.len() + 1;
         let device = &renderer.device;
         let reads =
             places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
-        Ok(Recorded::Cut(Cut { reads: reads.collect(), decision: decision.clone(), frame: self }))
+        Ok(Recorded::Cut(Cut { reads: reads.collect(), question, frame: self }))
     }
 
     fn pass(
         &mut self,
         renderer: &Renderer,
         encoder: &mut wgpu::CommandEncoder,
-        (run, slice): (Run, u32),
-        groups: [u32; 3],
+        (run, step): (Run, &Step<'_>),
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
-        let sized = &renderer.sized;
-        let rounds = sized.slices.get(slice as usize);
-        let group =
-            rounds.and_then(|rounds| rounds.get(run.round as usize)).and_then(|round| round.groups.get(run.pass));
+        let (sized, slice) = (&renderer.sized, step.slice);
+        let round = sized.slices.get(slice as usize).and_then(|rounds| rounds.get((run.round + step.round) as usize));
+        let group = round.and_then(|round| round.groups.get(run.pass));
         let (Some(prepared), Some(group)) = (renderer.made().passes.get(run.pass), group) else { return };
-        let times = sized.timing.as_ref().map(|timing| timing.of(run.number, slice));
+        let number = run.number + step.round as usize * run.stride;
+        let times = sized.timing.as_ref().map(|timing| timing.of(number, slice));
+        self.timed.extend(times.map(|(_, begin, _)| begin));
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
             let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
@@ -131,7 +133,7 @@ impl Frame {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
             pass.set_pipeline(pipeline);
             pass.set_bind_group(renderer.made().group, group, &[]);
-            let [x, y, z] = groups;
+            let [x, y, z] = step.groups;
             pass.dispatch_workgroups(x, y, z);
             return;
         }
@@ -140,25 +142,22 @@ impl Frame {
             beginning_of_pass_write_index: Some(begin),
             end_of_pass_write_index: Some(end),
         });
-        let attachment = if prepared.pass.state.targets.is_empty() {
-            // WebGPU refuses a pass without attachments.
-            let ops =
-                wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
-            color(&sized.dummy, ops)
-        } else {
-            let load = if self.written { wgpu::LoadOp::Load } else { output.load };
-            self.written = true;
-            color(output.view, wgpu::Operations { load, store: wgpu::StoreOp::Store })
-        };
+        clear_sampled(renderer, encoder, &prepared.pass, &mut self.clears);
+        let state = (&mut self.clears, &mut self.written);
+        let attachments = Attachments::of(renderer, &prepared.pass, output, state);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
-            color_attachments: &[Some(attachment)],
+            color_attachments: &attachments.colors(),
+            depth_stencil_attachment: attachments.depth_stencil(),
             timestamp_writes,
             ..wgpu::RenderPassDescriptor::default()
         });
-        if let Pipeline::Render(pipeline) = &prepared.pipeline {
+        if let Pipeline::Render(pipelines) = &prepared.pipeline
+            && let Some(pipeline) = pipelines.get((run.round + step.round) as usize).or(pipelines.first())
+        {
             pass.set_pipeline(pipeline);
         }
+        pass.set_stencil_reference(step.reference);
         pass.set_bind_group(renderer.made().group, group, &[]);
         // Beyond the slice there is no memory: a greater output is left as it is, a smaller one refused.
         let symbols = &sized.symbols;
@@ -186,8 +185,15 @@ impl Cut {
         if self.frame.id != renderer.frame_id {
             return Err(Error::StaleFrame);
         }
+        let decision = match self.question {
+            Question::Decision(decision) => decision,
+            Question::Round(again, bound) => {
+                let word = words.first().copied().unwrap_or(0);
+                return Ok(Frame { at: self.frame.at.answered(&again, bound, word), ..self.frame });
+            }
+        };
         let mut symbols = renderer.sized.symbols.clone();
-        self.decision.apply(&words, &mut symbols);
+        decision.apply(&words, &mut symbols);
         // Room for a little more than is needed is kept; room for more than twice as much is given back.
         for (name, needed) in &mut symbols.counted {
             let room = renderer.sized.symbols.counted(name).unwrap_or(0);
@@ -219,31 +225,6 @@ impl Renderer {
     }
 }
 
-/// One action in one slice.
-struct Step<'a> {
-    slice: u32,
-    action: &'a Action,
-    ends: Ends,
-}
-
-/// What is over after a step.
-enum Ends {
-    Nothing,
-    Slice,
-}
-
-/// All that a frame does: the plan's actions for each slice.
-fn steps(renderer: &Renderer) -> Vec<Step<'_>> {
-    let actions = &renderer.made().actions;
-    let slice = |slice: u32| {
-        (1..).zip(actions).map(move |(count, action)| {
-            let ends = if count == actions.len() { Ends::Slice } else { Ends::Nothing };
-            Step { slice, action, ends }
-        })
-    };
-    (0..renderer.slices()).flat_map(slice).collect()
-}
-
 /// Keeps what a slice has counted before the next one counts anew.
 fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
     if let (Some(tally), Some(counters)) = (&renderer.sized.tally, renderer.buffer(COUNTERS_RESOURCE)) {
@@ -251,31 +232,15 @@ fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
     }
 }
 
-/// Workgroups of a compute pass; nothing for any other action.
-fn groups(renderer: &Renderer, action: &Action) -> Result<[u32; 3], Error> {
-    let Action::Pass(run) = action else { return Ok([0; 3]) };
-    let Some(prepared) = renderer.made().passes.get(run.pass) else { return Ok([0; 3]) };
-    let Kind::Compute { groups } = &prepared.pass.kind else { return Ok([0; 3]) };
-    let what = format!("pass `{}`", prepared.pass.anchor);
-    let limit = renderer.device.limits().max_compute_workgroups_per_dimension;
-    let mut counts = [0; 3];
-    for (count, formula) in counts.iter_mut().zip(groups) {
-        let needed = renderer.sized.symbols.evaluate(renderer.plan(), formula, &what)?;
-        *count = u32::try_from(needed).ok().filter(|count| *count <= limit).ok_or_else(|| Error::TooLarge {
-            what: format!("{what}, in workgroups,"),
-            needed,
-            limit: limit.into(),
-            limit_name: "max_compute_workgroups_per_dimension",
-            hint: "take a smaller frame",
-        })?;
-    }
-    Ok(counts)
-}
-
 /// Buffer and byte of each word that the host reads.
-fn places<'a>(renderer: &'a Renderer, decision: &Decision) -> Result<Vec<(&'a wgpu::Buffer, u64)>, Error> {
-    let places = decision.reads.iter().filter_map(|(resource, place)| {
-        let buffer = renderer.sized.memory.filled(*resource)?;
+fn places<'a>(renderer: &'a Renderer, question: &Question) -> Result<Vec<(&'a wgpu::Buffer, u64)>, Error> {
+    let filled = |resource: usize| renderer.sized.memory.filled(resource);
+    let reads: &[(usize, Formula)] = match question {
+        Question::Decision(Decision { reads, .. }) => reads,
+        Question::Round(again, _) => return Ok(filled(again.zero).into_iter().map(|buffer| (buffer, 0)).collect()),
+    };
+    let places = reads.iter().filter_map(|(resource, place)| {
+        let buffer = filled(*resource)?;
         let name = || renderer.plan().resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
         let word = renderer.sized.symbols.evaluate(renderer.plan(), place, &format!("the index into `{}`", name()));
         Some(word.map(|word| (buffer, 4 * word)).map_err(Error::from))
@@ -296,11 +261,10 @@ fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usiz
 
 fn copy(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: usize, to: usize) {
     let memory = &renderer.sized.memory;
+    if let (Some(from), Some(to)) = (memory.texture(from), memory.texture(to)) {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
     if let (Some(from), Some(to)) = (memory.filled(from), memory.filled(to)) {
         encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size().min(to.size()));
     }
-}
-
-fn color(view: &wgpu::TextureView, ops: wgpu::Operations<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
-    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }

@@ -5,9 +5,10 @@
 //! the plan's numbers, and only in a dense layout are both the same.
 
 use fragbuf_codegen::{FIRST_BINDING, Plan};
-use fragbuf_templates::vocabulary::{Access, Kind, Pass};
+use fragbuf_templates::vocabulary::{Access, Element, Extent, Kind, Pass};
 
 use crate::Error;
+use crate::texture::{SAMPLE, sample_type};
 
 /// Bindings of the description's uniforms and of the camera; the frame's is 0.
 const UNIFORMS: usize = 1;
@@ -26,6 +27,19 @@ pub(crate) enum Slot {
         index: usize,
         read_only: bool,
     },
+    /// The texture of the resource of this number.
+    Texture {
+        index: usize,
+        sample_type: wgpu::TextureSampleType,
+        samples: Samples,
+    },
+}
+
+/// Whether a texture has several samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Samples {
+    One,
+    Several,
 }
 
 /// The slots of a pass, by binding.
@@ -40,6 +54,16 @@ pub(crate) fn slots(plan: &Plan, pass: &Pass) -> Vec<Slot> {
     for (index, planned) in plan.resources.iter().enumerate() {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
         let binding = planned.binding as usize;
+        if let (Some(usage), Element::Texture(format)) = (usage, planned.resource.element) {
+            if usage.access == Access::Sampled {
+                slots.resize(slots.len().max(binding + 1), Slot::Filler);
+                let is_sample = |extent: &Extent| extent.name == SAMPLE;
+                let several = planned.resource.extents.iter().any(is_sample);
+                let samples = if several { Samples::Several } else { Samples::One };
+                slots[binding] = Slot::Texture { index, sample_type: sample_type(format), samples };
+            }
+            continue;
+        }
         // An element without words is declared nowhere: all of it is the key.
         if let Some(usage) = usage.filter(|_| planned.binding >= FIRST_BINDING && has_words(plan, index)) {
             slots.resize(slots.len().max(binding + 1), Slot::Filler);
@@ -69,6 +93,15 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device, pass: &Pass, slots: &[Slo
 
 fn entry(binding: u32, slot: Slot, main: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     let (visibility, ty) = match slot {
+        Slot::Texture { sample_type, samples, .. } => {
+            let multisampled = samples == Samples::Several;
+            let ty = wgpu::BindingType::Texture {
+                sample_type,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled,
+            };
+            return wgpu::BindGroupLayoutEntry { binding, visibility: main, ty, count: None };
+        }
         Slot::Filler => (wgpu::ShaderStages::NONE, wgpu::BufferBindingType::Uniform),
         Slot::Frame | Slot::Uniforms => (main, wgpu::BufferBindingType::Uniform),
         Slot::Camera => (wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform),

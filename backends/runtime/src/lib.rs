@@ -15,10 +15,12 @@
 //! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
 
 mod action;
+mod attachments;
 mod blocking;
 mod blocks;
 mod buckets;
 mod error;
+mod fixed_function;
 mod frame;
 pub mod headless;
 mod layout;
@@ -33,8 +35,10 @@ mod scope;
 mod settings;
 mod shaders;
 mod sized;
+mod texture;
 mod timing;
 mod vertices;
+mod walk;
 mod words;
 
 pub use blocking::block_on;

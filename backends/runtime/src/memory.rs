@@ -1,28 +1,37 @@
-//! The buffers of a frame: one per resource, as many bytes as the plan's formula says, all of them or none.
+//! The memory of a frame: a buffer or a texture per resource, all of them or none. Buffers have as many bytes as the plan's
+//! formula says; textures are as large as the frame, whatever its slices.
 
-use fragbuf_codegen::Plan;
+use fragbuf_codegen::{Plan, Planned};
 use fragbuf_frame::{Symbols, bytes};
+use fragbuf_templates::vocabulary::Element;
 
 use crate::Error;
 use crate::scope::scoped;
+use crate::texture::{create_texture, texture_bytes};
 
-/// The buffers of a plan's resources at one size.
+/// The buffers and textures of a plan's resources at one size.
 pub(crate) struct Memory {
     /// One per resource.
     held: Vec<Held>,
 }
 
 struct Held {
-    buffer: wgpu::Buffer,
+    memory: Kind,
     /// 0: the buffer only stands in for an empty resource, because nothing empty can be bound.
     size: u64,
+}
+
+#[derive(Clone)]
+enum Kind {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::Texture),
 }
 
 /// Bytes of a buffer that stands in for an empty resource.
 const PLACEHOLDER: u64 = 16;
 
 impl Memory {
-    /// Buffers for `symbols`. Those that have the right size already are taken over from `old`.
+    /// Memory for `symbols`. What has the right size already is taken over from `old`.
     pub(crate) async fn allocate(
         device: &wgpu::Device,
         plan: &Plan,
@@ -32,34 +41,74 @@ impl Memory {
         let sizes = checked_sizes(plan, symbols, &device.limits())?;
         let mut held = Vec::with_capacity(sizes.len());
         for (index, (size, planned)) in sizes.into_iter().zip(&plan.resources).enumerate() {
-            let kept = old.and_then(|old| old.held.get(index)).filter(|held| held.size == size);
-            let buffer = match kept {
-                Some(kept) => kept.buffer.clone(),
-                None => {
-                    let name = &planned.resource.name;
-                    let make = || create(device, name, if size == 0 { PLACEHOLDER } else { size });
-                    scoped(device, &format!("`{name}`"), size, make).await?
-                }
-            };
-            held.push(Held { buffer, size });
+            let old = old.and_then(|old| old.held.get(index));
+            held.push(hold(device, plan, planned, (symbols, size), old).await?);
         }
         Ok(Memory { held })
     }
 
-    /// What to bind for a resource.
+    /// What to bind for a resource that is no texture.
     pub(crate) fn buffer(&self, index: usize) -> Option<&wgpu::Buffer> {
-        self.held.get(index).map(|held| &held.buffer)
+        match &self.held.get(index)?.memory {
+            Kind::Buffer(buffer) => Some(buffer),
+            Kind::Texture(_) => None,
+        }
     }
 
     /// The buffer of a resource that is not empty.
     pub(crate) fn filled(&self, index: usize) -> Option<&wgpu::Buffer> {
-        self.held.get(index).filter(|held| held.size > 0).map(|held| &held.buffer)
+        self.held.get(index).filter(|held| held.size > 0)?;
+        self.buffer(index)
     }
 
-    /// Bytes of all buffers as they are, those apart that stand in for empty resources.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.held.iter().filter(|held| held.size > 0).map(|held| held.buffer.size()).sum()
+    /// The texture of a resource that is one.
+    pub(crate) fn texture(&self, index: usize) -> Option<&wgpu::Texture> {
+        match &self.held.get(index)?.memory {
+            Kind::Texture(texture) => Some(texture),
+            Kind::Buffer(_) => None,
+        }
     }
+
+    /// Bytes of all buffers as they are, those apart that stand in for empty resources, and of all textures as the plan
+    /// counts them.
+    pub(crate) fn bytes(&self) -> u64 {
+        let bytes = |held: &Held| match &held.memory {
+            Kind::Buffer(buffer) => buffer.size(),
+            Kind::Texture(_) => held.size,
+        };
+        self.held.iter().filter(|held| held.size > 0).map(bytes).sum()
+    }
+}
+
+async fn hold(
+    device: &wgpu::Device,
+    plan: &Plan,
+    planned: &Planned,
+    (symbols, size): (&Symbols, u64),
+    old: Option<&Held>,
+) -> Result<Held, Error> {
+    let what = format!("`{}`", planned.resource.name);
+    if let Element::Texture(format) = planned.resource.element {
+        let size = texture_bytes(plan, planned, symbols)?;
+        let frame = (symbols.width, symbols.height);
+        let same = |texture: &wgpu::Texture| (texture.width(), texture.height()) == frame;
+        let memory = match old.map(|old| &old.memory) {
+            Some(Kind::Texture(texture)) if same(texture) => Kind::Texture(texture.clone()),
+            _ => {
+                let make = || create_texture(device, plan, planned, format, frame);
+                Kind::Texture(scoped(device, &what, size, make).await??)
+            }
+        };
+        return Ok(Held { memory, size });
+    }
+    let memory = match old.filter(|held| held.size == size).map(|held| &held.memory) {
+        Some(kept @ Kind::Buffer(_)) => kept.clone(),
+        _ => {
+            let make = || create(device, &planned.resource.name, if size == 0 { PLACEHOLDER } else { size });
+            Kind::Buffer(scoped(device, &what, size, make).await?)
+        }
+    };
+    Ok(Held { memory, size })
 }
 
 fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
@@ -67,9 +116,14 @@ fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
 }
 
-/// Bytes of every resource, each within the limits.
+/// Bytes of every resource, each within the limits. Textures have limits of their own.
 pub(crate) fn checked_sizes(plan: &Plan, symbols: &Symbols, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
-    bytes(plan, symbols)?.into_iter().map(|(name, bytes)| check(limits, name, bytes).map(|()| bytes)).collect()
+    let sizes = bytes(plan, symbols)?.into_iter().zip(&plan.resources);
+    let checked = sizes.map(|((name, bytes), planned)| match planned.resource.element {
+        Element::Texture(_) => Ok(bytes),
+        _ => check(limits, name, bytes).map(|()| bytes),
+    });
+    checked.collect()
 }
 
 fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {

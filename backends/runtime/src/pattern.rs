@@ -1,17 +1,22 @@
 //! Clears to something else than zero, by copies from a buffer full of the word: WebGPU has no other.
 
+use fragbuf_codegen::Plan;
+use fragbuf_templates::vocabulary::Element;
+
 use crate::action::Action;
 use crate::words;
 
 /// Bytes that one copy of a pattern clears.
 pub(crate) const PATTERN: u64 = 1 << 16;
 
-/// A buffer full of each word that some step clears to, zero apart.
-pub(crate) fn patterns(device: &wgpu::Device, actions: &[Action]) -> Vec<(u32, wgpu::Buffer)> {
+/// A buffer full of each word that some step clears a buffer to, zero apart.
+pub(crate) fn patterns(device: &wgpu::Device, plan: &Plan, actions: &[Action]) -> Vec<(u32, wgpu::Buffer)> {
     let mut patterns: Vec<(u32, wgpu::Buffer)> = Vec::new();
     for action in actions {
-        let Action::Clear { value, .. } = *action else { continue };
-        if value == 0 || patterns.iter().any(|(known, _)| *known == value) {
+        let Action::Clear { resource, value } = *action else { continue };
+        let planned = plan.resources.get(resource);
+        let is_texture = planned.is_some_and(|planned| matches!(planned.resource.element, Element::Texture(_)));
+        if value == 0 || is_texture || patterns.iter().any(|(known, _)| *known == value) {
             continue;
         }
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {

@@ -1,14 +1,16 @@
 //! Pipelines: one per pass, from the plan's state and the shaders' entry points.
 
 use fragbuf_codegen::{EntryPoint, Stage};
-use fragbuf_templates::vocabulary::{Blend, Kind, Pass};
+use fragbuf_templates::vocabulary::{Kind, Pass};
 
+use crate::fixed_function::{FixedFunction, fixed_functions};
 use crate::scope::scoped;
 use crate::{Checks, Code, Error, Module, Settings, Shaders, VertexBuffer};
 
 /// The pipeline of one pass.
 pub(crate) enum Pipeline {
-    Render(wgpu::RenderPipeline),
+    /// One, or one for each round of a loop where the sample mask changes with it.
+    Render(Vec<wgpu::RenderPipeline>),
     Compute(wgpu::ComputePipeline),
     /// The caller's draw function sets its own.
     Caller,
@@ -23,6 +25,8 @@ pub(crate) struct Maker<'a> {
     pub(crate) shaders: &'a Shaders,
     pub(crate) settings: &'a Settings,
     pub(crate) vertices: &'a [VertexBuffer],
+    /// The most rounds of any loop.
+    pub(crate) rounds: u32,
 }
 
 /// A compiled module and its entry point.
@@ -54,8 +58,12 @@ impl Maker<'_> {
         }
         let vertex = self.entry(pass, Stage::Vertex).await?;
         let fragment = self.entry(pass, Stage::Fragment).await?;
-        let pipeline = scoped(self.device, &what, 0, || self.render(pass, &layout, &vertex, &fragment)).await?;
-        Ok(Pipeline::Render(pipeline))
+        let mut pipelines = Vec::new();
+        for fixed in fixed_functions(&self.shaders.plan, pass, self.settings.target, self.rounds)? {
+            let make = || self.render(pass, &layout, (&vertex, &fragment), &fixed);
+            pipelines.push(scoped(self.device, &what, 0, make).await?);
+        }
+        Ok(Pipeline::Render(pipelines))
     }
 
     async fn entry(&self, pass: &Pass, stage: Stage) -> Result<Entry, Error> {
@@ -119,8 +127,8 @@ impl Maker<'_> {
         &self,
         pass: &Pass,
         layout: &wgpu::PipelineLayout,
-        vertex: &Entry,
-        fragment: &Entry,
+        (vertex, fragment): (&Entry, &Entry),
+        fixed: &FixedFunction,
     ) -> wgpu::RenderPipeline {
         let geometry = pass.kind == Kind::Geometry;
         let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> = self
@@ -136,14 +144,6 @@ impl Maker<'_> {
             })
             .collect();
         let primitive = if geometry { self.settings.primitive } else { wgpu::PrimitiveState::default() };
-        let target = match pass.state.targets.first() {
-            Some(target) => wgpu::ColorTargetState {
-                format: self.settings.target,
-                blend: blend_state(target.blend),
-                write_mask: wgpu::ColorWrites::ALL,
-            },
-            None => no_target(),
-        };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&pass.anchor),
             layout: Some(layout),
@@ -154,13 +154,13 @@ impl Maker<'_> {
                 buffers: &buffers,
             },
             primitive,
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
+            depth_stencil: fixed.depth_stencil.clone(),
+            multisample: fixed.multisample,
             fragment: Some(wgpu::FragmentState {
                 module: &fragment.module,
                 entry_point: Some(&fragment.name),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(target)],
+                targets: &fixed.targets,
             }),
             multiview_mask: None,
             cache: None,
@@ -179,19 +179,4 @@ fn stage_name(stage: Stage) -> &'static str {
         Stage::Fragment => "fragment",
         Stage::Compute => "compute",
     }
-}
-
-fn blend_state(blend: Blend) -> Option<wgpu::BlendState> {
-    use wgpu::BlendFactor::{One, OneMinusDstAlpha, OneMinusSrcAlpha};
-    use wgpu::BlendOperation::{Add, Max, Min};
-    let (src_factor, dst_factor, operation) = match blend {
-        Blend::Replace => return None,
-        Blend::Over => (One, OneMinusSrcAlpha, Add),
-        Blend::Under => (OneMinusDstAlpha, One, Add),
-        Blend::Max => (One, One, Max),
-        Blend::Min => (One, One, Min),
-        Blend::Add => (One, One, Add),
-    };
-    let component = wgpu::BlendComponent { src_factor, dst_factor, operation };
-    Some(wgpu::BlendState { color: component, alpha: component })
 }

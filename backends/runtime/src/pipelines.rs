@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fragbuf_codegen::Plan;
 use fragbuf_templates::vocabulary::Pass;
 
-use crate::action::{Action, Run, actions};
+use crate::action::{Actions, actions};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::pattern::patterns;
 use crate::pipeline::{Maker, Pipeline};
@@ -20,7 +20,7 @@ pub struct Pipelines(pub(crate) Arc<Made>);
 pub(crate) struct Made {
     pub(crate) plan: Plan,
     pub(crate) group: u32,
-    pub(crate) actions: Vec<Action>,
+    pub(crate) actions: Actions,
     pub(crate) passes: Vec<Prepared>,
     /// Words of 64 KiB each, for clears to something else than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
@@ -28,12 +28,10 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// Every run of a pass, in order.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = &Run> {
-        self.actions.iter().filter_map(|action| match action {
-            Action::Pass(run) => Some(run),
-            _ => None,
-        })
+    /// The pass of every run, by its number.
+    pub(crate) fn run_names(&self) -> Vec<String> {
+        let name = |pass: &usize| self.passes.get(*pass).map_or(String::new(), |made| made.pass.anchor.clone());
+        self.actions.runs.iter().map(name).collect()
     }
 }
 
@@ -60,7 +58,7 @@ impl Pipelines {
         let inputs = VertexInputs::of(&plan);
         let own = settings.vertices.clone();
         let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
-        let maker = Maker { device, shaders, settings, vertices: &vertices };
+        let maker = Maker { device, shaders, settings, vertices: &vertices, rounds: actions.rounds };
         let mut passes = Vec::new();
         for pass in plan.passes() {
             let slots = slots(&plan, pass);
@@ -70,7 +68,8 @@ impl Pipelines {
             let pipeline = maker.make(pass, &layout).await?;
             passes.push(Prepared { pass: pass.clone(), slots, layout, pipeline });
         }
-        let patterns = scoped(device, "the buffers to clear with", 0, || patterns(device, &actions)).await?;
+        let patterns =
+            scoped(device, "the buffers to clear with", 0, || patterns(device, &plan, &actions.list)).await?;
         Ok(Pipelines(Arc::new(Made { plan, group: shaders.group, actions, passes, patterns, inputs })))
     }
 

@@ -12,6 +12,7 @@ use crate::pipelines::Made;
 use crate::room::rows;
 use crate::scope::{is_lost, scoped};
 use crate::sized::{Fixed, Sized, Timed};
+use crate::texture::read_texture;
 use crate::words::to_bytes;
 use crate::{Counters, Error, Frame, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs};
 
@@ -244,10 +245,21 @@ impl Renderer {
         self.sized.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
     }
 
-    /// Records the readback of a resource, all its words: those of the last slice. `None`: the plan does not have it, or it is empty.
+    /// Records the readback of a resource, all its words: of a buffer those of the last slice; of a texture row after row,
+    /// where only the last slice has left anything.
+    /// `None`: the plan does not have it, it is empty, or it is a texture that cannot be copied, because it has several
+    /// samples or a stencil.
     pub fn words(&self, resource: &str, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<u32>>> {
+        if let Some(texture) = self.texture(resource) {
+            return read_texture(&self.device, encoder, texture);
+        }
         let buffer = self.buffer(resource)?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), |words| words))
+    }
+
+    /// The texture of a resource. `None`: the plan does not have it, or it is a buffer.
+    pub fn texture(&self, resource: &str) -> Option<&wgpu::Texture> {
+        self.sized.memory.texture(index(self.plan(), resource).ok()?)
     }
 
     /// The buffer of a resource. `None`: the plan does not have it, or it is empty.
@@ -289,13 +301,18 @@ impl Renderer {
 
     /// Writes the uniform buffers of the slices, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
-        let live = Symbols { k: self.k, ..self.sized.symbols.clone() };
+        let live = self.live();
         for (slice, rounds) in (0..).zip(&self.sized.slices) {
             for (number, round) in (0..).zip(rounds) {
                 self.queue.write_buffer(&round.frame, 0, &to_bytes(&live.frame_words(self.plan(), slice, number)?));
             }
         }
         Ok(())
+    }
+
+    /// What the buffers were sized with, for the k of the frames from now on.
+    pub(crate) fn live(&self) -> Symbols {
+        Symbols { k: self.k, ..self.sized.symbols.clone() }
     }
 
     fn write_uniforms(&self) {

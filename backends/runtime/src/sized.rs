@@ -5,13 +5,13 @@
 use fragbuf_frame::{COUNTERS_RESOURCE, Symbols, resource as index};
 
 use crate::Error;
-use crate::action::Run;
 use crate::blocks::{Blocks, block};
 use crate::layout::Slot;
 use crate::memory::Memory;
 use crate::pipeline::DUMMY_FORMAT;
 use crate::pipelines::{Made, Prepared};
 use crate::scope::scoped;
+use crate::texture::sampled_view;
 use crate::timing::Timing;
 
 /// Everything that depends on the size of the frame, replaced as one.
@@ -62,7 +62,7 @@ impl Sized {
             let group = |prepared| bind_group(device, prepared, &frame, blocks, &memory);
             Round { groups: made.passes.iter().map(group).collect(), frame }
         };
-        let rounds = made.runs().map(|run| run.round).max().unwrap_or(0) + 1;
+        let rounds = made.actions.rounds;
         let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
         let slices = scoped(device, "the bind groups", 0, slices).await?;
         let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
@@ -78,10 +78,8 @@ impl Sized {
         let (timing, tally) = match same {
             Some(old) => (old.timing.clone(), old.tally.clone()),
             None => {
-                let name = |run: &Run| made.passes.get(run.pass).map_or(String::new(), |made| made.pass.anchor.clone());
-                let names = || made.runs().map(name).collect();
                 let timing = match timed {
-                    Timed::Yes => Some(Timing::new(device, queue, names(), symbols.slices()).await?),
+                    Timed::Yes => Some(Timing::new(device, queue, made.run_names(), symbols.slices()).await?),
                     Timed::No => None,
                 };
                 (timing, tally(device, made, &memory, symbols.slices()).await?)
@@ -151,16 +149,25 @@ fn bind_group(
     blocks: &Blocks,
     memory: &Memory,
 ) -> wgpu::BindGroup {
+    let view = |slot: &Slot| match *slot {
+        Slot::Texture { index, .. } => memory.texture(index).map(sampled_view),
+        _ => None,
+    };
+    let views: Vec<Option<wgpu::TextureView>> = prepared.slots.iter().map(view).collect();
     let buffer = |slot: &Slot| match *slot {
-        Slot::Filler => &blocks.filler,
+        Slot::Filler | Slot::Texture { .. } => &blocks.filler,
         Slot::Frame => frame,
         Slot::Uniforms => &blocks.own,
         Slot::Camera => &blocks.camera,
         Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),
     };
-    let slots = (0..).zip(&prepared.slots);
+    let slots = (0..).zip(prepared.slots.iter().zip(&views));
     let entries: Vec<wgpu::BindGroupEntry<'_>> = slots
-        .map(|(binding, slot)| wgpu::BindGroupEntry { binding, resource: buffer(slot).as_entire_binding() })
+        .map(|(binding, (slot, view))| {
+            let buffer = || buffer(slot).as_entire_binding();
+            let resource = view.as_ref().map_or_else(buffer, wgpu::BindingResource::TextureView);
+            wgpu::BindGroupEntry { binding, resource }
+        })
         .collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(&prepared.pass.anchor),

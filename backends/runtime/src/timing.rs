@@ -1,5 +1,7 @@
 //! GPU time of each pass, by timestamps at its begin and end.
 
+use std::collections::BTreeSet;
+
 use fragbuf_frame::PassTime;
 
 use crate::scope::scoped;
@@ -60,8 +62,19 @@ impl Timing {
         (&self.queries, first, first + 1)
     }
 
-    /// Recorded after the last pass of a frame: every query has been written by then.
-    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+    /// Recorded after the last pass of a frame. `written`: the first query of every run that there was; the rounds that
+    /// never came take the time of nothing, for a query that nobody writes never arrives.
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder, written: &BTreeSet<u32>) {
+        for begin in (0..2 * self.passes.len() as u32 * self.slices).step_by(2).filter(|query| !written.contains(query))
+        {
+            let timestamp_writes = Some(wgpu::ComputePassTimestampWrites {
+                query_set: &self.queries,
+                beginning_of_pass_write_index: Some(begin),
+                end_of_pass_write_index: Some(begin + 1),
+            });
+            let label = Some("fragbuf no pass");
+            drop(encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes }));
+        }
         encoder.resolve_query_set(&self.queries, 0..2 * self.passes.len() as u32 * self.slices, &self.resolved, 0);
     }
 

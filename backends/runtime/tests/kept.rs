@@ -108,6 +108,22 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                 assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "ranges of pixel {pixel} are not in order: {kept:?}");
                 kept
             }
+            "repeated_array" => {
+                let slots = (0..k).map(|index| slot(index, pixel));
+                let mut kept: Vec<Words> = slots.filter(|words| words[0] != EMPTY).collect();
+                kept.sort();
+                assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "pixel {pixel} holds a key twice: {kept:?}");
+                kept
+            }
+            "depth_tested" => {
+                let fields = plan.layout.beside.iter().map(|word| buffer(&format!("entries_{}", word.field))[pixel]);
+                let depth = buffer("depths")[pixel];
+                if depth == 1.0_f32.to_bits() {
+                    Vec::new()
+                } else {
+                    vec![std::iter::once(depth).chain(fields).collect()]
+                }
+            }
             "ordered_list" => {
                 let link = |word: u32| word.checked_sub(1);
                 let nodes =

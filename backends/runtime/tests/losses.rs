@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use fragbuf_model::Variant;
+use fragbuf_runtime::headless::Offscreen;
+use fragbuf_runtime::{Output, Renderer, Room, Settings, Sizing, block_on};
 
 use crate::capture::{compare, scattered};
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::orders;
-use crate::quads::{Quad, SIZE};
+use crate::quads::{Quad, SIZE, vertices};
 use crate::stage::{self, Seen, renderer, see, settings, shaders, technique};
 
 /// Scenes with many equal depths, at most eight layers over a pixel.
@@ -40,8 +42,8 @@ fn each_frame(variant: &Variant, inspect: impl Fn(&Seen, &[Quad])) {
 /// One fragment for each of the k least keys, and it is one of those with that key; every other is counted.
 #[test]
 fn of_equal_depths_one_is_kept() {
-    for k in [1, 3, 8] {
-        let variant = technique("kb_mdt32", &[("k", &k.to_string()), ("counters", "all")]);
+    for (key, k) in [1, 3, 8].into_iter().flat_map(|k| [("kb_mdt32", k), ("kb_multi", k)]) {
+        let variant = technique(key, &[("k", &k.to_string()), ("counters", "all")]);
         each_frame(&variant, |seen, quads| {
             let (mut kept_in_all, mut equal) = (0, 0);
             for (kept, (x, y)) in seen.kept.iter().zip(oracle::pixels()) {
@@ -65,6 +67,68 @@ fn of_equal_depths_one_is_kept() {
             assert!(k < 8 || count("equal_keys") == equal, "{:?}", seen.counters);
         });
     }
+}
+
+/// Where depths differ nothing is lost but what is farther, whether the host ends the loop or the bound does.
+#[test]
+fn rounds_that_the_host_ends_and_rounds_to_the_bound_keep_the_same() {
+    let stage = stage::device();
+    for (k, sizing) in [(1, Sizing::Exact), (4, Sizing::Auto), (4, Sizing::Reserve(Room::Fragments(0)))] {
+        let variant = technique("kb_multi", &[("k", &k.to_string())]);
+        let settings = Settings { sizing, ..settings() };
+        let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings).unwrap();
+        let color = |index: u32| [index as u8 * 30, 200, 9, 90];
+        let quad = |index: u32| Quad::whole((index + 1) as f32 / 16.0, color(index)).at(0, 0, SIZE, SIZE - index);
+        let quads: Vec<Quad> = (0..8).map(quad).collect();
+        for quads in orders(&quads) {
+            let seen = see(&stage, &mut renderer, &quads);
+            compare("rounds", &seen, &PLAIN, &quads, (renderer.k(), renderer.k()));
+            assert_eq!(seen.counters.get("unsettled"), 0);
+        }
+    }
+}
+
+/// A loop is cut after every round that the host must hear of, and goes on where it was; k decides how many there may be.
+#[test]
+fn a_loop_is_cut_once_a_round() {
+    let stage = stage::device();
+    let variant = technique("kb_multi", &[("k", "4")]);
+    let shaders = shaders(&variant, "wgsl");
+    let draws = |renderer: &mut Renderer| {
+        let offscreen = Offscreen::new(&stage.device, stage::FORMAT, SIZE, SIZE).unwrap();
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        let quads: Vec<Quad> = scattered(8, 3).into_iter().map(|quad| quad.at(0, 0, SIZE, SIZE)).collect();
+        let bytes = vertices(&quads, renderer.vertex_inputs());
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
+        let size = bytes.len() as u64;
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = stage.device.create_buffer(&descriptor);
+        stage.queue.write_buffer(&buffer, 0, &bytes);
+        let mut count = 0;
+        renderer
+            .render(&output, &mut |pass, _| {
+                pass.set_vertex_buffer(0, buffer.slice(..));
+                pass.draw(0..48, 0..1);
+                count += 1;
+            })
+            .unwrap();
+        count
+    };
+    let timed = Settings { timestamps: true, ..settings() };
+    let mut exact = renderer(&stage, &shaders, &timed).unwrap();
+    // One fragment of a pixel after the other: the second round changes nothing.
+    assert_eq!(draws(&mut exact), 2);
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let times = exact.pass_times(&mut encoder).unwrap();
+    stage.queue.submit([encoder.finish()]);
+    assert_eq!(times.wait(&stage.device).unwrap().iter().filter(|time| time.pass == "store").count(), 5);
+    let reserve = Settings { sizing: Sizing::Reserve(Room::Fragments(0)), ..settings() };
+    let mut reserved = renderer(&stage, &shaders, &reserve).unwrap();
+    assert_eq!(draws(&mut reserved), 5);
+    block_on(&stage.device, reserved.set_k(2)).unwrap().unwrap();
+    assert_eq!(draws(&mut reserved), 3);
+    let sliced = Settings { slice: Some(5), ..settings() };
+    assert_eq!(draws(&mut renderer(&stage, &shaders, &sliced).unwrap()), 2 * SIZE.div_ceil(5));
 }
 
 /// The depths of `quad` in millionths, from `near` to `far`, cut into `k` ranges.

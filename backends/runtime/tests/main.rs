@@ -26,4 +26,5 @@ mod rasterisation;
 mod sizing;
 mod sloped;
 mod sorts;
+mod textures;
 mod translations;

@@ -8,6 +8,7 @@ use fragbuf_codegen::{EntryPoint, Form, Linking, Stage, link, plan};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Checks, Code, Module, Renderer, Settings, Shaders};
 use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Fact;
 
 use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
 use crate::stage::{device, renderer, see, settings, shaders, technique};
@@ -34,7 +35,7 @@ fn glsl_shaders(variant: &Variant) -> Shaders {
 /// A program that never was a file.
 fn linked(variant: &Variant, name: &str) -> Shaders {
     let (target, registry) = (target(name).unwrap(), Registry::builtin());
-    let selection = variant.select(target.offers).unwrap();
+    let selection = variant.select(&[target.offers, &[Fact::OwnEntryPoints]].concat()).unwrap();
     let plan = plan(variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"));
     let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
     let program = link(&plan, &linking, &registry).unwrap_or_else(|faults| panic!("{faults}"));
@@ -119,6 +120,11 @@ fn minima_links_ranges_and_slots_without_a_lock() {
     check_in(&technique("kb_mdt64", &[("k", "3"), ("counters", "all")]), "wgsl-native", |_| {});
     // The software driver has no interlock.
     check(&technique("depth_partition", &[("k", "3"), ("counters", "all"), ("sync", "spin_lock")]), |_| {});
+}
+
+#[test]
+fn targets_and_textures() {
+    check(&technique("z_buffer", &[("counters", "all"), ("fragment.color", "rgba16")]), |_| {});
 }
 
 #[test]

@@ -272,7 +272,7 @@ fn parenthesised(index: &str) -> String {
     if index.contains(' ') { format!("({index})") } else { index.to_owned() }
 }
 
-fn capitalised(summary: &str) -> String {
+pub(super) fn capitalised(summary: &str) -> String {
     let mut letters = summary.chars();
     letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect()
 }

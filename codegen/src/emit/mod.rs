@@ -1,9 +1,10 @@
 //! What is generated: declarations, the packing of a fragment into words, the two orders over packed fragments, and the
-//! accessors of buffers. Any other statement belongs in a template.
+//! accessors of buffers and textures. Any other statement belongs in a template.
 
 mod buffers;
 mod fragment;
 mod surface;
+mod textures;
 
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
@@ -19,6 +20,7 @@ pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[St
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }
     sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, atomics)));
+    sources.push(Source::generated("textures", textures::text(plan, pass, linking)));
     for function in plan.variant.helpers.iter().chain(closures(plan)) {
         sources.push(Source::user(function));
     }

@@ -28,6 +28,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
         offered.extend(criterion.is_none().then_some(Fact::DepthKey));
         offered.extend(keep.is_some().then_some(Fact::Limited));
+        offered.extend((keep == Some(1)).then_some(Fact::LimitedToOne));
         offered.push(if keep.is_some() { Fact::KeepsBest } else { Fact::KeepsAll });
         facts::check(draft, &choices, &offered, registry, &mut diagnostics);
     }

@@ -34,9 +34,11 @@ facts! {
     // Between a storage and a sync.
     Critical "that writers of one pixel take turns";
     OrderedCritical "that writers of one pixel take turns in the order of submission";
+    Race "that writers of one pixel race, and no one keeps them apart";
     OwnAtomics "a storage that keeps writers apart by its own atomic operations";
     SurvivesRaces "a storage whose behaviour stays defined when writers race";
     FixedFunction "a storage that leaves writers to depth test, stencil or blending";
+    LeftToTests "that writers of one pixel are left to depth test, stencil or blending";
     // What a storage can be asked.
     KeepsAll "a storage that keeps every fragment";
     KeepsBest "a storage that keeps the k best";
@@ -51,9 +53,11 @@ facts! {
     Sorted "fragments in the order of depth";
     // What a description offers.
     Limited "a limit on what is kept: `keep 8`";
+    LimitedToOne "a limit of one: `keep 1`";
     DepthKey "that depth decides which fragment is worst: no criterion";
     Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
+    WordPerTarget "at most eight words beside depth in the payload: there are eight targets";
     // What a target offers.
     FragmentAtomics "atomic operations in fragment shaders";
     Fences "memory fences in fragment shaders";

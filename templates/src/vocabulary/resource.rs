@@ -39,8 +39,13 @@ pub enum Element {
     Entry,
     /// The words of a fragment beside its key. No words at all where the key is the whole payload.
     Beside,
-    /// A texel of a frame-sized texture with this many samples.
+    /// A texel of a frame-sized texture. An extent `sample` says how many samples a pixel has; without it there is one.
     Texture(TextureFormat),
+    /// The words of a fragment beside its key, each in a texture of its own of this format. The plan has one resource for
+    /// each; what a pass does with the name it does with all of them.
+    BesideTextures(TextureFormat),
+    /// The same for all words of a fragment, the key first.
+    EntryTextures(TextureFormat),
 }
 
 /// Texture formats that passes attach or sample.
@@ -48,6 +53,8 @@ pub enum Element {
 pub enum TextureFormat {
     /// One unsigned word.
     R32Uint,
+    /// One unsigned word as two halves, the lower first: unlike whole words, it may have several samples.
+    Rg16Uint,
     /// One float.
     R32Float,
     /// Two floats.

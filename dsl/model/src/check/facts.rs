@@ -127,7 +127,11 @@ impl Situation<'_> {
         if fact == Fact::Color {
             return "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`".to_owned();
         }
-        if let Some(ways) = self.ways_out(pick) {
+        let ways = self.ways_out(pick);
+        if fact == Fact::LimitedToOne {
+            return format!("write `keep 1;`{}", ways.map_or(String::new(), |ways| format!(", or choose {ways}")));
+        }
+        if let Some(ways) = ways {
             return format!("choose {ways}");
         }
         let offering: Vec<String> = self.registry.offering(fact).map(name).collect();

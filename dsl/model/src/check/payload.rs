@@ -4,6 +4,9 @@ use fragbuf_templates::vocabulary::Fact;
 
 use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, codes};
 
+/// Targets of one word that every WebGPU device has: eight, of 32 bytes a pixel together.
+const TARGETS: u32 = 8;
+
 /// The description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
     if draft.attributes.is_empty() {
@@ -38,6 +41,9 @@ pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
     if words <= 2 {
         facts.push(Fact::OneWordBesideDepth);
+    }
+    if words <= 1 + TARGETS {
+        facts.push(Fact::WordPerTarget);
     }
     facts
 }

@@ -1,0 +1,140 @@
+//! Textures of a plan on wgpu: formats, sizes, samples, and what a word of the plan is in a load operation.
+
+use fragbuf_codegen::{Plan, Planned};
+use fragbuf_frame::{Symbols, unsupported};
+use fragbuf_templates::vocabulary::{Formula, Resource, TextureFormat};
+
+use crate::{Error, Pending};
+
+/// The vocabulary's name for the caller's own target.
+pub(crate) const OUTPUT: &str = "output";
+
+/// The vocabulary's name for the part of a texture's index that counts samples.
+pub(crate) const SAMPLE: &str = "sample";
+
+pub(crate) fn texture_format(format: TextureFormat) -> wgpu::TextureFormat {
+    match format {
+        TextureFormat::R32Uint => wgpu::TextureFormat::R32Uint,
+        TextureFormat::Rg16Uint => wgpu::TextureFormat::Rg16Uint,
+        TextureFormat::R32Float => wgpu::TextureFormat::R32Float,
+        TextureFormat::Rg32Float => wgpu::TextureFormat::Rg32Float,
+        TextureFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        TextureFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        TextureFormat::Depth32Float => wgpu::TextureFormat::Depth32Float,
+        TextureFormat::Depth24PlusStencil8 => wgpu::TextureFormat::Depth24PlusStencil8,
+    }
+}
+
+/// What a shader reads; of depth with stencil it is the stencil.
+pub(crate) fn sample_type(format: TextureFormat) -> wgpu::TextureSampleType {
+    match format {
+        TextureFormat::R32Uint | TextureFormat::Rg16Uint | TextureFormat::Depth24PlusStencil8 => {
+            wgpu::TextureSampleType::Uint
+        }
+        TextureFormat::Depth32Float => wgpu::TextureSampleType::Depth,
+        _ => wgpu::TextureSampleType::Float { filterable: false },
+    }
+}
+
+/// What a shader reads of a texture.
+pub(crate) fn sampled_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    let aspect = match texture.format() {
+        wgpu::TextureFormat::Depth24PlusStencil8 => wgpu::TextureAspect::StencilOnly,
+        _ => wgpu::TextureAspect::All,
+    };
+    texture.create_view(&wgpu::TextureViewDescriptor { aspect, ..wgpu::TextureViewDescriptor::default() })
+}
+
+/// A formula of what is fixed when pipelines are made: k is the greatest that they serve.
+pub(crate) fn at_most(plan: &Plan, formula: &Formula, round: Option<u32>, what: &str) -> Result<u32, Error> {
+    let value = formula.evaluate(&|symbol| match symbol {
+        "k" => plan.bound.value("capacity"),
+        "iteration" => round.map(u64::from),
+        _ => plan.bound.value(symbol),
+    });
+    let value = value.map_err(|error| Error::Formula { what: what.to_owned(), error })?;
+    u32::try_from(value).map_err(|_| unsupported(format!("{what}: {value} are too many")).into())
+}
+
+/// Samples of a pixel of a texture.
+fn samples(plan: &Plan, resource: &Resource) -> Result<u32, Error> {
+    let extent = resource.extents.iter().find(|extent| extent.name == SAMPLE);
+    extent.map_or(Ok(1), |extent| at_most(plan, &extent.length, None, &format!("the samples of `{}`", resource.name)))
+}
+
+/// Bytes of a texture of the whole frame.
+pub(crate) fn texture_bytes(plan: &Plan, planned: &Planned, symbols: &Symbols) -> Result<u64, Error> {
+    let whole = Symbols { rows: symbols.height, ..symbols.clone() };
+    let words = whole.evaluate(plan, &planned.words, &format!("`{}`", planned.resource.name))?;
+    Ok(words.saturating_mul(4))
+}
+
+/// A texture as large as the frame.
+pub(crate) fn create_texture(
+    device: &wgpu::Device,
+    plan: &Plan,
+    planned: &Planned,
+    format: TextureFormat,
+    (width, height): (u32, u32),
+) -> Result<wgpu::Texture, Error> {
+    let sample_count = samples(plan, &planned.resource)?;
+    let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    // Several samples cannot be copied to a buffer.
+    if sample_count == 1 {
+        usage |= wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    }
+    Ok(device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(&planned.resource.name),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format: texture_format(format),
+        usage,
+        view_formats: &[],
+    }))
+}
+
+/// A word that a plan clears a colour texture to.
+pub(crate) fn color_of(format: wgpu::TextureFormat, word: u32) -> wgpu::Color {
+    let [r, g, b, a] = match format {
+        wgpu::TextureFormat::R32Uint => [f64::from(word), 0.0, 0.0, 0.0],
+        wgpu::TextureFormat::Rg16Uint => [f64::from(word & 0xffff), f64::from(word >> 16), 0.0, 0.0],
+        wgpu::TextureFormat::Rgba8Unorm => word.to_le_bytes().map(|byte| f64::from(byte) / 255.0),
+        // Every channel of a float format is the same number.
+        _ => [f64::from(f32::from_bits(word)); 4],
+    };
+    wgpu::Color { r, g, b, a }
+}
+
+/// A word that a plan clears depth to.
+pub(crate) fn depth_of(format: wgpu::TextureFormat, word: u32) -> f32 {
+    match format {
+        wgpu::TextureFormat::Depth32Float => f32::from_bits(word),
+        _ => (word >> 8) as f32 / 16_777_215.0,
+    }
+}
+
+/// Records the readback of a texture's texels, row after row. `None`: they cannot be copied.
+pub(crate) fn read_texture(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    texture: &wgpu::Texture,
+) -> Option<Pending<Vec<u32>>> {
+    let texel = texture.format().block_copy_size(None).filter(|_| texture.sample_count() == 1)?;
+    let row = (texture.width() * texel) as usize;
+    let padded = (texture.width() * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("fragbuf readback"),
+        size: u64::from(padded) * u64::from(texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };
+    let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
+    let rows = move |words: Vec<u32>| {
+        words.chunks(padded as usize / 4).flat_map(|words| words.iter().copied().take(row / 4)).collect()
+    };
+    Some(Pending::record(device, encoder, &buffer, 0, buffer.size(), rows))
+}

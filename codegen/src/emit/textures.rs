@@ -1,0 +1,153 @@
+//! Textures that a pass reads, and the targets that it writes a fragment's words to. Templates never name a texel.
+
+use std::fmt::Write;
+
+use fragbuf_templates::vocabulary::{Access, Element, Pass, TextureFormat};
+
+use super::buffers::capitalised;
+use super::fragment::construct;
+use crate::{Linking, Plan, Planned};
+
+pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking) -> String {
+    let mut text = String::new();
+    let is_sampled = |planned: &&Planned| {
+        pass.uses.iter().any(|u| u.resource == planned.resource.name && u.access == Access::Sampled)
+    };
+    let textures: Vec<Texture<'_>> = plan.resources.iter().filter(is_sampled).filter_map(Texture::of).collect();
+    for texture in &textures {
+        texture.declare(linking, &mut text);
+        if texture.planned.part.is_none() {
+            texture.load(&mut text);
+        }
+    }
+    let mut wholes: Vec<&str> = textures.iter().filter_map(|t| Some(t.planned.part.as_ref()?.of.as_str())).collect();
+    wholes.dedup();
+    for whole in wholes {
+        entry(whole, &textures, &mut text);
+    }
+    keys_alone(plan, &mut text);
+    targets(plan, pass, &mut text);
+    text
+}
+
+/// `X_load` where a fragment has no words beside its key, and so no texture.
+fn keys_alone(plan: &Plan, text: &mut String) {
+    for resource in plan.selection.rows.iter().flat_map(|selected| &selected.row.resources) {
+        if plan.layout.beside.is_empty() && matches!(resource.element, Element::BesideTextures(_)) {
+            let name = &resource.name;
+            let index: String = resource.extents.iter().map(|extent| format!("{}: u32, ", extent.name)).collect();
+            let _ = writeln!(text, "fn {name}_load({index}key: u32) -> Packed {{\n    return Packed(key);\n}}\n");
+        }
+    }
+}
+
+/// A texture as a pass reads it.
+struct Texture<'a> {
+    planned: &'a Planned,
+    format: TextureFormat,
+}
+
+impl<'a> Texture<'a> {
+    fn of(planned: &'a Planned) -> Option<Self> {
+        match planned.resource.element {
+            Element::Texture(format) => Some(Texture { planned, format }),
+            _ => None,
+        }
+    }
+
+    fn name(&self) -> &str {
+        &self.planned.resource.name
+    }
+
+    fn is_multisampled(&self) -> bool {
+        self.planned.resource.extents.iter().any(|extent| extent.name == SAMPLE)
+    }
+
+    fn declare(&self, linking: &Linking, text: &mut String) {
+        let shape = if self.is_multisampled() { "multisampled_2d" } else { "2d" };
+        let kind = match self.format {
+            TextureFormat::Depth32Float => format!("texture_depth_{shape}"),
+            TextureFormat::R32Uint | TextureFormat::Rg16Uint | TextureFormat::Depth24PlusStencil8 => {
+                format!("texture_{shape}<u32>")
+            }
+            _ => format!("texture_{shape}<f32>"),
+        };
+        let (summary, group, binding) = (&self.planned.resource.summary, linking.group, self.planned.binding);
+        let _ = writeln!(text, "/// {}.", capitalised(summary));
+        let _ = writeln!(text, "@group({group}) @binding({binding}) var {}: {kind};\n", self.name());
+    }
+
+    /// `X_load`, of what a texel holds.
+    fn load(&self, text: &mut String) {
+        let kind = match self.format {
+            TextureFormat::R32Uint | TextureFormat::Rg16Uint | TextureFormat::Depth24PlusStencil8 => "u32",
+            TextureFormat::R32Float | TextureFormat::Depth32Float => "f32",
+            TextureFormat::Rg32Float => "vec2<f32>",
+            TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float => "vec4<f32>",
+        };
+        let _ = writeln!(text, "fn {}_load({}) -> {kind} {{", self.name(), self.parameters());
+        let _ = writeln!(text, "    return {};\n}}\n", self.read("pixel_texel(pixel)"));
+    }
+
+    fn parameters(&self) -> String {
+        let index = self.planned.resource.extents.iter().map(|extent| format!("{}: u32", extent.name));
+        index.collect::<Vec<_>>().join(", ")
+    }
+
+    /// What the texel at `place` holds.
+    fn read(&self, place: &str) -> String {
+        let last = if self.is_multisampled() { SAMPLE } else { "0" };
+        let texel = format!("textureLoad({}, {place}, {last})", self.name());
+        match self.format {
+            TextureFormat::Depth32Float | TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float => texel,
+            TextureFormat::R32Uint | TextureFormat::R32Float | TextureFormat::Depth24PlusStencil8 => {
+                format!("{texel}.x")
+            }
+            TextureFormat::Rg16Uint => format!("word_of_halves({texel}.xy)"),
+            TextureFormat::Rg32Float => format!("{texel}.xy"),
+        }
+    }
+}
+
+/// The extent of a texture's samples.
+const SAMPLE: &str = "sample";
+
+/// `X_load` of a fragment whose words are in a texture each. Without its key it is given that.
+fn entry(whole: &str, textures: &[Texture<'_>], text: &mut String) {
+    let field =
+        |texture: &Texture<'_>| texture.planned.part.as_ref().filter(|p| p.of == whole).map(|p| p.field.clone());
+    let parts: Vec<&Texture<'_>> = textures.iter().filter(|texture| field(texture).is_some()).collect();
+    let Some(first) = parts.first() else { return };
+    let has_key = field(first).as_deref() == Some("key");
+    let key = if has_key { "" } else { ", key: u32" };
+    let _ = writeln!(text, "fn {whole}_load({}{key}) -> Packed {{", first.parameters());
+    text.push_str("    let texel = pixel_texel(pixel);\n");
+    let words = parts.iter().map(|texture| texture.read("texel"));
+    let words = (!has_key).then(|| "key".to_owned()).into_iter().chain(words);
+    let _ = writeln!(text, "    return {};\n}}\n", construct("Packed", words));
+}
+
+/// The outputs of a pass whose targets are a fragment's words.
+fn targets(plan: &Plan, pass: &Pass, text: &mut String) {
+    let parts = pass.state.targets.iter().filter_map(|target| {
+        let planned = plan.resource(&target.resource)?;
+        Some((planned.part.as_ref()?.field.as_str(), Texture::of(planned)?.format))
+    });
+    let parts: Vec<(&str, TextureFormat)> = parts.collect();
+    text.push_str("/// The words of a fragment, one for each target.\nstruct Targets {\n");
+    if parts.is_empty() {
+        // A structure has a member; without a target at its location, what it holds goes nowhere.
+        text.push_str("    @location(0) nothing: u32,\n");
+    }
+    for (location, (field, format)) in parts.iter().enumerate() {
+        let kind = if *format == TextureFormat::Rg16Uint { "vec2<u32>" } else { "u32" };
+        let _ = writeln!(text, "    @location({location}) {field}: {kind},");
+    }
+    text.push_str("}\n\nfn fragment_targets(entry: Packed) -> Targets {\n");
+    let values = parts.iter().map(|(field, format)| match format {
+        TextureFormat::Rg16Uint => format!("word_halves(entry.{field})"),
+        _ => format!("entry.{field}"),
+    });
+    let nothing = parts.is_empty().then(|| "0u".to_owned());
+    let _ = writeln!(text, "    return {};\n}}\n", construct("Targets", nothing.into_iter().chain(values)));
+}

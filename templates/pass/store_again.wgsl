@@ -1,0 +1,17 @@
+// Stores the scene's fragments, round after round: each comes again in every round. Events are counted in the first.
+
+@fragment
+fn store(varyings: Varyings) {
+    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+}
+
+/// Stores one fragment. `position` is the fragment's, in pixels.
+fn store_fragment(position: vec2<f32>, fragment: Fragment) {
+    if !admit(fragment) {
+        return;
+    }
+    if frame.iteration == 0u {
+        count_event(GENERATED);
+    }
+    sync_store(pixel_index(position), fragment_pack(fragment));
+}
