@@ -69,6 +69,7 @@ pub fn named() -> Vec<Case> {
         ("kplus_ab_sb", technique("kplus_ab_sb"), vec![("k", "32")]),
         ("kb_multi", technique("kb_multi"), vec![]),
         ("z_buffer", technique("z_buffer"), vec![]),
+        ("kb_sr", technique("kb_sr"), vec![]),
         ("reserving_interlock", technique("kplus_array_revised"), vec![("sync", "interlock")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),

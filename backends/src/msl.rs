@@ -1,5 +1,5 @@
-//! Metal by naga. Every resource is bound as the buffer of its binding number; naga asks for the sizes of all buffers in
-//! one more.
+//! Metal by naga. Every resource is bound as the buffer, or the texture, of its binding number; naga asks for the sizes of all
+//! buffers in one more.
 
 use naga::back::msl;
 
@@ -38,8 +38,12 @@ fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String
         }
         let read_only = matches!(variable.space, naga::AddressSpace::Uniform)
             || matches!(variable.space, naga::AddressSpace::Storage { access } if !access.contains(naga::StorageAccess::STORE));
-        bindings
-            .insert(binding, msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() });
+        let is_texture = matches!(module.types[variable.ty].inner, naga::TypeInner::Image { .. });
+        let target = match is_texture {
+            true => msl::BindTarget { texture: Some(slot), ..msl::BindTarget::default() },
+            false => msl::BindTarget { buffer: Some(slot), mutable: !read_only, ..msl::BindTarget::default() },
+        };
+        bindings.insert(binding, target);
     }
     let entry = msl::EntryPointResources { resources: bindings, immediates_buffer: None, sizes_buffer: Some(SIZES) };
     Ok(module.entry_points.iter().map(|point| (point.name.clone(), entry.clone())).collect())

@@ -4,6 +4,7 @@
 //! not clamped and loops not bounded at run time unless a file of the user's own is part of the program.
 
 mod edits;
+mod sample_mask;
 
 use naga::back::spv;
 

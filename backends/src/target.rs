@@ -71,8 +71,15 @@ pub struct File {
 }
 
 /// What both dialects of desktop GLSL offer.
-const GLSL_FACTS: &[Fact] =
-    &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics, Fact::Linkable];
+const GLSL_FACTS: &[Fact] = &[
+    Fact::FragmentAtomics,
+    Fact::Fences,
+    Fact::Coherent,
+    Fact::Interlock,
+    Fact::U64Atomics,
+    Fact::SampleMask,
+    Fact::Linkable,
+];
 
 /// Every target, in the order in which files and manifests list them.
 pub const TARGETS: &[Target] = &[
@@ -80,14 +87,14 @@ pub const TARGETS: &[Target] = &[
         name: "wgsl",
         summary: "the WGSL standard: browsers and every wgpu back end",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::SampleMask, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
         name: "wgsl-native",
         summary: "WGSL with naga's coherent buffers and 64-bit atomics: wgpu on native back ends",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::SampleMask, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -115,14 +122,21 @@ pub const TARGETS: &[Target] = &[
         name: "spirv",
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics],
+        offers: &[
+            Fact::FragmentAtomics,
+            Fact::Fences,
+            Fact::Coherent,
+            Fact::Interlock,
+            Fact::U64Atomics,
+            Fact::SampleMask,
+        ],
         emit: spirv::emit,
     },
     Target {
         name: "hlsl",
         summary: "HLSL, shader model 6.0",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::SampleMask, Fact::Linkable],
         emit: hlsl::emit,
     },
     Target {

@@ -66,6 +66,7 @@ pub const CONTRACTS: &[Contract] = &[
     row("addressing", "pixel_count", "() -> u32", "pixels of the frame"),
     row("counters", "count_event", "(counter: u32)", "counts what is no loss"),
     row("counters", "count_loss", "(counter: u32)", "counts a loss"),
+    row("counters", "count_losses", "(counter: u32, number: u32)", "counts several losses at once, or none"),
     row("sort", "sort_gather", "(entry: Packed)", "takes one fragment of the pixel into `layers`"),
     row("sort", "sort_finish", "()", "puts `layers` in order, nearest first"),
     row(

@@ -1,5 +1,6 @@
 //! `fragbuf render`: a picture of a scene through one description, and the figures of its frame.
 
+use fragbuf::vocabulary::Fact;
 use fragbuf_frame::{LoopEnd, Looped};
 use serde_json::{Value, json};
 
@@ -111,9 +112,10 @@ pub(crate) struct Tally {
     pub(crate) hit_ratio: f64,
 }
 
-/// `None` where not every event was counted.
+/// `None` where not every event was counted: a test that is fixed function counts nothing.
 pub(crate) fn tally(painted: &Painted) -> Option<Tally> {
-    let counters = painted.drawn.counters.as_ref().filter(|_| painted.counts_everything())?;
+    let is_counted = painted.counts_everything() && !painted.plan.selection.offers().contains(&Fact::FixedFunction);
+    let counters = painted.drawn.counters.as_ref().filter(|_| is_counted)?;
     let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
     let stored = generated.saturating_sub(culled + counters.lost());
     let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };

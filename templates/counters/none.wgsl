@@ -5,3 +5,6 @@ fn count_event(counter: u32) {}
 
 /// Not counted here.
 fn count_loss(counter: u32) {}
+
+/// Not counted here.
+fn count_losses(counter: u32, number: u32) {}

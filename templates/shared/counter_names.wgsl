@@ -8,3 +8,4 @@ const SPIN_EXHAUSTED = 4u;
 const LAYERS_EXCEEDED = 5u;
 const EQUAL_KEYS = 6u;
 const UNSETTLED = 7u;
+const SAMPLES_EXHAUSTED = 8u;

@@ -1,5 +1,4 @@
-// How numbers become words whose unsigned order is the numbers' order, how unit vectors become one word, and how words
-// become two halves.
+// How numbers become words whose unsigned order is the numbers' order, and how unit vectors become one word.
 
 /// A depth as a word. Bits of floats from +0.0 up are in the order of their values; below zero and -0.0 count as 0.0.
 fn depth_bits(depth: f32) -> u32 {
@@ -10,15 +9,6 @@ fn depth_bits(depth: f32) -> u32 {
 fn ordered_bits(value: f32) -> u32 {
     let bits = bitcast<u32>(value);
     return min(bits ^ select(0x80000000u, 0xffffffffu, (bits & 0x80000000u) != 0u), EMPTY - 1u);
-}
-
-/// A word as two halves, the lower first, for texels that have no room for more in a channel.
-fn word_halves(word: u32) -> vec2<u32> {
-    return vec2<u32>(word & 0xffffu, word >> 16u);
-}
-
-fn word_of_halves(halves: vec2<u32>) -> u32 {
-    return halves.x | (halves.y << 16u);
 }
 
 /// A unit vector as two 16-bit coordinates on the octahedron (Cigolle et al. 2014). The zero vector counts as +z.

@@ -4,7 +4,7 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 8] = [
+pub const COUNTERS: [(&str, bool, &str); 9] = [
     ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
     ("culled", false, "fragments turned away by the cull"),
     ("displaced", true, "fragments rejected or replaced because better ones were there"),
@@ -17,6 +17,7 @@ pub const COUNTERS: [(&str, bool, &str); 8] = [
         true,
         "fragments that still changed something in the last round of a loop: entries may be lost or double",
     ),
+    ("samples_exhausted", true, "fragments that came when every sample of their pixel had one"),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

@@ -47,6 +47,7 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/store_again"),
             vec!["addressing", "storage", "sync", "counters"],
         ),
+        row("route", "sets the stencil of one sample of every pixel", template!("pass/route"), vec![]),
         row(
             "store_targets",
             "stores the scene's fragments in targets, by tests that are fixed function",

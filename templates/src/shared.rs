@@ -2,11 +2,12 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 7] = [
+pub(crate) const TEMPLATES: [Template; 8] = [
     template!("shared/markers"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),
     template!("shared/encoding"),
+    template!("shared/halves"),
     template!("shared/layers"),
     template!("shared/gap_sort"),
     template!("shared/workgroup_scan"),

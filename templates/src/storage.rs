@@ -27,6 +27,7 @@ pub(crate) fn rows() -> Vec<Row> {
         regions::bounded_regions(),
         repeated::repeated_array(),
         fixed_function::depth_tested(),
+        fixed_function::stencil_routed(),
     ]
 }
 

@@ -196,6 +196,19 @@ pub(crate) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "kb_sr".to_owned(),
+            title: "KB-SR (stencil routing)",
+            paper: "Myers & Bavoil 2007; K15 §2",
+            summary: "the first k, each in a sample of a multisampled pixel: one draw, no atomic operation; not exact at borders",
+            keep: KeepDefault::Best(4),
+            choices: vec![
+                ("storage", "stencil_routed"),
+                ("sync", "fixed_function"),
+                ("ties", "unordered"),
+                ("sort", "insertion"),
+            ],
+        },
+        Technique {
             key: "kb_multi".to_owned(),
             title: "KB-Multi",
             paper: "Liu et al. 2009; K15 §2",

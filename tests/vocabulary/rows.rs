@@ -2,8 +2,8 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Compare, Coverage, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource,
-    Row, Samples, Soundness, StencilOperation, StencilState, Step, Technique, TextureFormat, Until,
+    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row,
+    Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -13,11 +13,8 @@ pub(super) fn registry() -> Registry {
         .with_axis(allocation, "overflow")
         .with(Row::new("allocation", "as_said", "what the description says", ""))
         .with(predict_k())
-        .with(fixed_function())
-        .with(stencil_routed())
         .with(front_to_back())
         .with(dual())
-        .with_technique(technique("kb_sr", KeepDefault::Best(8), vec![("storage", "stencil_routed")]))
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
         .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
         .with_technique(technique(
@@ -33,76 +30,6 @@ fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static 
 
 fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource {
     Resource::new(name, Element::Texture(format), summary).by("pixel", "pixels")
-}
-
-fn fixed_function() -> Row {
-    Row { requires: vec![Fact::FixedFunction], ..Row::new("sync", "fixed_function", "by tests and blending", "") }
-}
-
-/// Myers & Bavoil 2007: sample i of a pixel takes the i-th fragment.
-fn stencil_routed() -> Row {
-    let per_sample = |name, format, summary| {
-        Resource::new(name, Element::Texture(format), summary).by("sample", "k").by("pixel", "pixels")
-    };
-    let mut route = Pass::fullscreen("route", "route");
-    route.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Always,
-        fail: StencilOperation::Keep,
-        pass: StencilOperation::Replace,
-        reference: "iteration + 2".into(),
-    });
-    route.state.samples = routed("pow2(iteration)");
-    let mut store =
-        Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
-    store.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Equal,
-        fail: StencilOperation::DecrementClamp,
-        pass: StencilOperation::DecrementClamp,
-        reference: "2".into(),
-    });
-    store.state.samples = routed("pow2(k) - 1");
-    let mut overflow = Pass::fullscreen("overflow", "count_overflow").uses("overflowed", Access::Atomic);
-    overflow.state.stencil = Some(StencilState {
-        resource: "routing".to_owned(),
-        compare: Compare::Equal,
-        fail: StencilOperation::Keep,
-        pass: StencilOperation::Keep,
-        reference: "0".into(),
-    });
-    overflow.state.samples = routed("pow2(k - 1)");
-    Row {
-        resources: vec![
-            per_sample("depths", TextureFormat::R32Float, "depth of the sample's fragment"),
-            per_sample("colors", TextureFormat::Rgba8Unorm, "colour of the sample's fragment"),
-            per_sample("routing", TextureFormat::Depth24PlusStencil8, "fragments to go before this sample's, plus two"),
-            Resource::new("overflowed", Element::Word, "pixels whose last sample was passed").cleared(0),
-        ],
-        steps: vec![
-            Step::Repeat(Repeat {
-                body: vec![Step::Pass(route)],
-                until: Until::Times("k".into()),
-                at_most: "k".into(),
-            }),
-            Step::Pass(store),
-            Step::Pass(overflow),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("depths", Access::Sampled)
-                    .uses("colors", Access::Sampled)
-                    .target("output", Blend::Over),
-            ),
-        ],
-        offers: vec![Fact::FixedFunction],
-        requires: vec![Fact::SampleMask, Fact::OneWordBesideDepth],
-        defaults: vec![("sync".into(), "fixed_function".into())],
-        ..Row::new("storage", "stencil_routed", "samples of a multisampled target", "Myers & Bavoil 2007")
-    }
-}
-
-fn routed(mask: &'static str) -> Option<Samples> {
-    Some(Samples { count: "k".into(), mask: mask.into(), coverage: Coverage::WholePixel })
 }
 
 /// Everitt 2001: each round draws what lies behind the last round's nearest.

@@ -37,7 +37,7 @@ const ARRAY: &[Check] = &[("ab_array", &[], "wgsl", Model::Sequential), ("ab_arr
 /// Storages whose changes are not tried yet. Of 273 changes to the first four, 35 go unnoticed and unexplained: most want cases
 /// with too little room, which are not tried for storages that keep the k best, because how many find none depends on the
 /// order; one deletes a fence of the revised array.
-const NOT_YET: [&str; 8] = [
+const NOT_YET: [&str; 9] = [
     "revised_array",
     "ordered_list",
     "bounded_regions",
@@ -48,6 +48,7 @@ const NOT_YET: [&str; 8] = [
     "repeated_array",
     // Fixed function is merged later.
     "depth_tested",
+    "stencil_routed",
 ];
 
 const MUTATED: [(&str, &str, &[Check]); 9] = [

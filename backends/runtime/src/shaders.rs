@@ -8,6 +8,7 @@ use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
 use fragbuf_templates::vocabulary::{Access, Fact};
 
 use crate::action::actions;
+use crate::texture::at_most;
 use crate::words::from_bytes;
 use crate::{Error, Interlock};
 
@@ -94,6 +95,14 @@ impl Shaders {
             features |= wgpu::Features::PASSTHROUGH_SHADERS;
         } else if coherent && self.profile == Profile::Native {
             features |= wgpu::Features::MEMORY_DECORATION_COHERENT;
+        }
+        let several = passes.iter().filter_map(|pass| pass.state.samples.as_ref());
+        let counts = several.filter_map(|samples| at_most(&self.plan, &samples.count, None, "samples").ok());
+        for count in counts {
+            // One and four are what every device has.
+            if count != 1 && count != 4 {
+                features |= wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+            }
         }
         for fact in &self.plan.requires {
             features |= match fact {

@@ -115,6 +115,15 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                 assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "pixel {pixel} holds a key twice: {kept:?}");
                 kept
             }
+            "stencil_routed" => {
+                let word = |name: &str, sample: usize| buffer(name)[sample * PIXELS + pixel];
+                let routed = 256 - plan.bound.value("capacity").unwrap() as u32;
+                let fields = || std::iter::once("key").chain(plan.layout.beside.iter().map(|word| word.field.as_str()));
+                let samples = (0..k).take_while(|sample| word("routing", *sample) < routed);
+                samples
+                    .map(|sample| fields().map(|field| word(&format!("entries_{field}"), sample)).collect())
+                    .collect()
+            }
             "depth_tested" => {
                 let fields = plan.layout.beside.iter().map(|word| buffer(&format!("entries_{}", word.field))[pixel]);
                 let depth = buffer("depths")[pixel];

@@ -13,6 +13,7 @@ mod kept;
 mod oracle;
 mod order;
 mod quads;
+mod samples;
 mod stage;
 
 mod capture;

@@ -7,12 +7,13 @@ use fragbuf_backends::{Request, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_model::{Draft, Origin, Variant, check};
 use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
-use fragbuf_runtime::{Counters, Error, Output, Renderer, Settings, Shaders, block_on};
+use fragbuf_runtime::{Counters, Error, Output, Pending, Renderer, Settings, Shaders, block_on};
 use fragbuf_templates::Registry;
 
 use crate::kept;
 use crate::oracle::Words;
 use crate::quads::{Quad, SIZE, vertices};
+use crate::samples;
 
 /// The CPU's adapter: the same on every machine, and in the order of submission.
 pub fn device() -> MutexGuard<'static, Headless> {
@@ -91,7 +92,12 @@ pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, V
     let names: Vec<String> = renderer.plan().resources.iter().map(|planned| planned.resource.name.clone()).collect();
     let reads: Vec<_> = names.iter().map(|name| (name.clone(), renderer.words(name, &mut encoder))).collect();
     stage.queue.submit([encoder.finish()]);
-    reads.into_iter().filter_map(|(name, words)| Some((name, words?.wait(&stage.device).unwrap()))).collect()
+    let read = |(name, words): (String, Option<Pending<Vec<u32>>>)| match (words, renderer.texture(&name)) {
+        (Some(words), _) => Some((name, words.wait(&stage.device).unwrap())),
+        (None, Some(texture)) => Some((name, samples::read(stage, texture))),
+        (None, None) => None,
+    };
+    reads.into_iter().filter_map(read).collect()
 }
 
 /// Draws `quads` in their order over the background.

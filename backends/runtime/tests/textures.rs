@@ -114,7 +114,7 @@ fn textures_are_as_large_as_the_frame() {
     let shaders = shaders(&technique("z_buffer", &[]), "wgsl");
     let small = Settings { width: 3, height: 70, ..settings() };
     let mut renderer = renderer(&stage, &shaders, &small).unwrap();
-    let counters = 4 * 8;
+    let counters = 4 * 9;
     assert_eq!(renderer.allocated_bytes(), 4 * 2 * 3 * 70 + counters);
     assert_eq!(renderer.texture("depths").map(|texture| (texture.width(), texture.height())), Some((3, 70)));
     assert!(renderer.buffer("depths").is_none() && renderer.texture("counters").is_none());
@@ -122,4 +122,64 @@ fn textures_are_as_large_as_the_frame() {
     assert_eq!(renderer.allocated_bytes(), 4 * 2 * u64::from(SIZE * SIZE) + counters);
     let quads = scattered(8, 9);
     check_nearest(&see(&stage, &mut renderer, &quads), &quads, PLAIN.words);
+}
+
+/// The first k fragments of a pixel, in the order of drawing, and how many came too late. Quads cover whole pixels.
+#[test]
+fn stencil_routing_keeps_the_first() {
+    let stage = stage::device();
+    let variant = technique("kb_sr", &[("counters", "all")]);
+    let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
+    for k in [4, 3, 1] {
+        block_on(&stage.device, renderer.set_k(k)).unwrap().unwrap();
+        each_frame(&mut renderer, &stage, |seen, quads| check_first(seen, quads, k as usize));
+    }
+    // More than a stencil has room for: some of them are counted.
+    block_on(&stage.device, renderer.set_k(4)).unwrap().unwrap();
+    let many: Vec<Quad> = (0..300).map(|index| Quad::whole(index as f32 / 300.0, [9, index as u8, 9, 9])).collect();
+    let seen = see(&stage, &mut renderer, &many);
+    assert_eq!(seen.counters.get("samples_exhausted"), (255 - 4) * SIZE * SIZE);
+    assert!(seen.kept.iter().all(|kept| kept.len() == 4 && kept[3] == (PLAIN.words)(&many[3])));
+}
+
+/// As many words as there are targets.
+#[test]
+fn stencil_routing_takes_eight_words() {
+    let stage = stage::device();
+    let text = "buffer Wide from kb_sr { fragment { id: u32, color: vec4, depth: f32, uv: vec2 } }";
+    let wide = fragbuf_syntax::parse(text, "wide.fragbuf").draft.unwrap();
+    let wide = fragbuf_model::check(&wide, &fragbuf_templates::Registry::builtin()).unwrap();
+    assert_eq!(wide.attributes.len(), 4);
+    let refused =
+        described_faults("buffer Wider from kb_sr { fragment { color: vec4, depth: f32, uv: vec2, a: u32, b: u32 } }");
+    assert!(refused.contains("there are eight targets"), "{refused}");
+    let made = renderer(&stage, &shaders(&wide, "wgsl"), &settings());
+    assert!(
+        made.is_ok_and(|renderer| renderer.texture("entries_uv_y").is_some_and(|texture| texture.sample_count() == 4))
+    );
+}
+
+fn described_faults(text: &str) -> String {
+    let parsed = fragbuf_syntax::parse(text, "test.fragbuf");
+    fragbuf_model::check(&parsed.draft.unwrap(), &fragbuf_templates::Registry::builtin()).unwrap_err().to_string()
+}
+
+fn check_first(seen: &Seen, quads: &[Quad], k: usize) {
+    let (mut late, mut pixels) = (0, seen.pixels.iter());
+    for (kept, (x, y)) in seen.kept.iter().zip(oracle::pixels()) {
+        let fragments = oracle::fragments(quads, x, y);
+        let mut first: Vec<Quad> = fragments.iter().take(k).copied().collect();
+        late += fragments.len() - first.len();
+        first.sort_by_key(PLAIN.words);
+        assert_eq!(*kept, first.iter().map(PLAIN.words).collect::<Vec<_>>(), "{x}, {y} of {quads:?}");
+        let (color, pixel) = (oracle::over(&first), pixels.next().unwrap());
+        for channel in 0..3 {
+            let expected = color[channel] + (1.0 - color[3]) * BACKGROUND[channel];
+            assert!((f64::from(pixel[channel]) - expected).abs() <= 1.0 / 255.0, "{x}, {y} of {quads:?}");
+        }
+    }
+    let count = |name: &str| seen.counters.get(name) as usize;
+    assert_eq!(count("samples_exhausted"), late, "{quads:?}");
+    // Where two triangles meet, both have a fragment, each for its own samples.
+    assert!(count("generated") >= seen.kept.iter().map(Vec::len).sum::<usize>() + late);
 }

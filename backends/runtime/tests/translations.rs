@@ -125,6 +125,7 @@ fn minima_links_ranges_and_slots_without_a_lock() {
 #[test]
 fn targets_and_textures() {
     check(&technique("z_buffer", &[("counters", "all"), ("fragment.color", "rgba16")]), |_| {});
+    check(&technique("kb_sr", &[("counters", "all")]), |_| {});
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! What naga cannot write in SPIR-V, put in afterwards: the built-in for helper invocations and the ends of an interlock.
+//! What naga cannot write in SPIR-V, put in afterwards: the built-in for helper invocations, the ends of an interlock,
+//! and the sample mask as an array.
 //!
 //! In: the words of a module with one entry point, in which markers are functions with names. Out: the same module, calls
 //! to markers replaced, with what they need declared. A module without such calls comes back as it was.
@@ -7,6 +8,7 @@ use rspirv::binary::Assemble;
 use rspirv::dr::{Instruction, Module, Operand, load_words};
 use rspirv::spirv::{BuiltIn, Capability, Decoration, ExecutionMode, Op, StorageClass, Word};
 
+use super::sample_mask;
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
 
 /// Applies the edits; `prefix` precedes the markers' names.
@@ -22,7 +24,8 @@ pub(super) fn apply(words: Vec<u32>, prefix: &str) -> Result<Vec<u32>, String> {
         declare_interlock(&mut module)?;
     }
     let helper = read_helper_invocation(&mut module, &format!("{prefix}{HELPER_LANE}"))?;
-    Ok(if begin || end || helper { module.assemble() } else { words })
+    let mask = sample_mask::mend(&mut module)?;
+    Ok(if begin || end || helper || mask { module.assemble() } else { words })
 }
 
 /// Replaces every call of the function called `name`; whether there was one.

@@ -29,6 +29,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         offered.extend(criterion.is_none().then_some(Fact::DepthKey));
         offered.extend(keep.is_some().then_some(Fact::Limited));
         offered.extend((keep == Some(1)).then_some(Fact::LimitedToOne));
+        offered.extend(matches!(keep, Some(2 | 4 | 8)).then_some(Fact::SampleCount));
         offered.push(if keep.is_some() { Fact::KeepsBest } else { Fact::KeepsAll });
         facts::check(draft, &choices, &offered, registry, &mut diagnostics);
     }

@@ -1,7 +1,8 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
 use crate::vocabulary::{
-    Access, Blend, Compare, DepthState, Element, Fact, Hazard, Pass, Resource, Row, Step, Text, TextureFormat,
+    Access, Blend, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples,
+    StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
 /// The nearest fragment, by the depth test.
@@ -54,6 +55,87 @@ pub(super) fn depth_tested() -> Row {
             "depth_tested",
             "the nearest fragment, by the depth test, its words in targets",
             "Catmull 1974; K15 §4.3 (Z-buffer)",
+        )
+    }
+}
+
+/// The first k fragments, each in a sample of its own, by the stencil.
+pub(super) fn stencil_routed() -> Row {
+    let by_sample = |name: &str, element: Element, summary: &'static str| {
+        Resource::new(name, element, summary).by("sample", "k").by("pixel", "pixels").cleared(0)
+    };
+    // A fragment that covers some samples of a pixel is lost or doubled: where a device can, it covers all or none.
+    let samples = |mask: &'static str| {
+        Some(Samples { count: "capacity".into(), mask: mask.into(), coverage: Coverage::WholePixel })
+    };
+    let mut route = Pass::fullscreen("route", "route").uses("routing", Access::Attachment);
+    route.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Always,
+        fail: StencilOperation::Keep,
+        pass: StencilOperation::Replace,
+        reference: "256 - capacity + iteration".into(),
+    });
+    route.state.samples = samples("pow2(iteration)");
+    let mut store = Pass::geometry("store", "store_targets")
+        .uses("routing", Access::Attachment)
+        .uses("entries", Access::Attachment)
+        .target("entries", Blend::Replace);
+    store.state.stencil = Some(StencilState {
+        resource: "routing".to_owned(),
+        compare: Compare::Equal,
+        fail: StencilOperation::DecrementClamp,
+        pass: StencilOperation::DecrementClamp,
+        reference: "256 - capacity".into(),
+    });
+    store.state.samples = samples("pow2(capacity) - 1");
+    let resolve = Pass::fullscreen("resolve", "resolve").uses("routing", Access::Sampled);
+    Row {
+        template: Some(template!("storage/stencil_routed")),
+        resources: vec![
+            by_sample("entries", Element::EntryTextures(TextureFormat::Rg16Uint), "the sample's fragment"),
+            by_sample(
+                "routing",
+                Element::Texture(TextureFormat::Depth24PlusStencil8),
+                "stencil: how many fragments come before the sample's own; shaders read the stencil",
+            ),
+        ],
+        steps: vec![
+            Step::Repeat(Repeat {
+                body: vec![Step::Pass(route)],
+                until: Until::Times("capacity".into()),
+                at_most: "capacity".into(),
+            }),
+            Step::Pass(store),
+            Step::Pass(resolve.uses("entries", Access::Sampled).target("output", Blend::Over)),
+        ],
+        calls: vec!["counters"],
+        offers: vec![Fact::FixedFunction],
+        requires: vec![
+            Fact::DepthKey,
+            Fact::SampleCount,
+            Fact::WordPerTarget,
+            Fact::LeftToTests,
+            Fact::SampleMask,
+            Fact::OwnEntryPoints,
+        ],
+        defaults: vec![LEFT_TO_TESTS, ARRIVAL],
+        hazards: vec![
+            hazard("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
+            hazard(
+                "borders",
+                "where a triangle covers some samples of a pixel, fragments are lost or stored twice, and not counted",
+            ),
+            hazard(
+                "many-late",
+                "beyond 255 - capacity fragments of a pixel that came too late, no more of them are counted",
+            ),
+        ],
+        ..Row::new(
+            "storage",
+            "stencil_routed",
+            "the first k fragments, each in a sample of a multisampled target, by the stencil",
+            "Myers & Bavoil 2007; K15 §2 (KB-SR)",
         )
     }
 }

@@ -54,10 +54,11 @@ facts! {
     // What a description offers.
     Limited "a limit on what is kept: `keep 8`";
     LimitedToOne "a limit of one: `keep 1`";
+    SampleCount "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`";
     DepthKey "that depth decides which fragment is worst: no criterion";
     Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
-    WordPerTarget "at most eight words beside depth in the payload: there are eight targets";
+    WordPerTarget "at most eight words in the payload: there are eight targets";
     // What a target offers.
     FragmentAtomics "atomic operations in fragment shaders";
     Fences "memory fences in fragment shaders";

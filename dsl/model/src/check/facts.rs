@@ -128,8 +128,11 @@ impl Situation<'_> {
             return "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`".to_owned();
         }
         let ways = self.ways_out(pick);
-        if fact == Fact::LimitedToOne {
-            return format!("write `keep 1;`{}", ways.map_or(String::new(), |ways| format!(", or choose {ways}")));
+        let or_else = ways.as_ref().map_or(String::new(), |ways| format!(", or choose {ways}"));
+        match fact {
+            Fact::LimitedToOne => return format!("write `keep 1;`{or_else}"),
+            Fact::SampleCount => return format!("write `keep 4;`{or_else}"),
+            _ => {}
         }
         if let Some(ways) = ways {
             return format!("choose {ways}");

@@ -42,7 +42,7 @@ pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     if words <= 2 {
         facts.push(Fact::OneWordBesideDepth);
     }
-    if words <= 1 + TARGETS {
+    if words <= TARGETS {
         facts.push(Fact::WordPerTarget);
     }
     facts
