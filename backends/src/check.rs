@@ -38,6 +38,7 @@ pub(crate) fn capabilities(profile: Profile) -> Capabilities {
         Profile::Portable => Capabilities::empty(),
         Profile::Native => {
             Capabilities::MEMORY_DECORATION_COHERENT
+                | Capabilities::PRIMITIVE_INDEX
                 | Capabilities::SHADER_INT64
                 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
                 | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS

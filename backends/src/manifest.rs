@@ -282,8 +282,14 @@ fn pass_json(pass: &Pass) -> Value {
     }
     map.insert("uses".into(), uses.into());
     map.insert("state".into(), state(&pass.state));
-    if let Objects::Visible(query) = &pass.objects {
-        map.insert("objects".into(), json!({ "visible_in": query }));
+    match &pass.objects {
+        Objects::All => {}
+        Objects::Boxes => {
+            map.insert("objects".into(), "boxes".into());
+        }
+        Objects::Visible(query) => {
+            map.insert("objects".into(), json!({ "visible_in": query }));
+        }
     }
     map.into()
 }
@@ -319,7 +325,9 @@ fn state(state: &State) -> Value {
     let targets = state.targets.iter().map(|t| json!({ "resource": t.resource, "blend": blend(t.blend) }));
     map.insert("targets".into(), targets.collect());
     if let Some(samples) = &state.samples {
-        map.insert("samples".into(), json!({ "count": samples.count.0, "mask": samples.mask.0 }));
+        let coverage = dashed(&format!("{:?}", samples.coverage));
+        let (count, mask) = (&samples.count.0, &samples.mask.0);
+        map.insert("samples".into(), json!({ "count": count, "mask": mask, "coverage": coverage }));
     }
     map.into()
 }

@@ -1,15 +1,18 @@
 //! The scene's vertices as a description's payload: each attribute from what the scene has under its name.
 
+use std::ops::Range;
+
 use fragbuf_codegen::Plan;
 use fragbuf_model::Format;
 use fragbuf_scene::{Object, Scene};
 
 use super::output::Failure;
 
-/// Words of vertices, one after the other, and three indices per triangle.
+/// Words of vertices, one after the other, three indices per triangle, and the part of the indices that each object has.
 pub(crate) struct Geometry {
     pub(crate) vertices: Vec<u32>,
     pub(crate) indices: Vec<u32>,
+    pub(crate) objects: Vec<Range<u32>>,
 }
 
 /// The words of one attribute of a vertex.
@@ -31,7 +34,7 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
     let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
     let columns: Vec<(usize, Words)> = columns.collect::<Result<_, _>>()?;
     let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(3 * scene.triangles()));
-    let mut first = 0;
+    let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
     for (id, object) in (0..).zip(&scene.objects) {
         for vertex in 0..object.positions.len() {
             let position = bits(&object.positions, vertex);
@@ -40,11 +43,13 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
                 vertices.extend(values.iter().take(words));
             }
         }
+        let begin = indices.len() as u32;
         indices.extend(object.triangles.iter().flatten().map(|index| first + index));
+        objects.push(begin..indices.len() as u32);
         first += object.positions.len() as u32;
     }
     u32::try_from(indices.len()).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
-    Ok(Geometry { vertices, indices })
+    Ok(Geometry { vertices, indices, objects })
 }
 
 /// Words in a vertex, and where they come from.

@@ -1,6 +1,7 @@
 //! `fragbuf render`: a picture of a scene through one description, and the figures of its frame.
 
 use fragbuf::vocabulary::Fact;
+use fragbuf_frame::{LoopEnd, Looped};
 use serde_json::{Value, json};
 
 use super::output::{self, Failure};
@@ -75,9 +76,22 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
         },
         "lost": losses,
         "hit_ratio": tally.as_ref().map(|tally| tally.hit_ratio),
+        "loops": loops(painted),
         "frames": painted.frames,
         "slices": painted.drawn.slices,
     })
+}
+
+/// How the loops ended that wait for something: `cut` left work undone.
+fn loops(painted: &Painted) -> Value {
+    let row = |looped: &Looped| {
+        let end = match looped.end {
+            LoopEnd::Reached => "reached",
+            LoopEnd::Cut => "cut",
+        };
+        json!({ "until": looped.until, "rounds": looped.rounds, "end": end })
+    };
+    painted.drawn.loops.iter().map(row).collect()
 }
 
 /// The attributes that fragments carried, each with its format.

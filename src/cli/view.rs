@@ -14,7 +14,7 @@ pub(crate) struct View {
     #[arg(long, value_name = "PATH|builtin:NAME")]
     pub(crate) scene: String,
     /// Pixels
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
     /// The PNG to write
     #[arg(long, value_name = "PNG")]
@@ -37,7 +37,8 @@ pub(crate) struct View {
     /// A GPU where there is one, else the CPU device; the CPU device, which needs no driver; or an adapter by a part of its name
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
     device: Wanted,
-    /// The order of same-pixel fragments on the CPU device: as submitted, or interleaved by a seed
+    /// The order of same-pixel fragments on the CPU device: as submitted, or their shaders interleaved by a seed; tests and
+    /// blending keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
     order: Option<Order>,
     /// Figures on stdout, as JSON; counts every event unless the description says otherwise

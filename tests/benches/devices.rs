@@ -1,5 +1,7 @@
 //! The CPU device beside the software driver: milliseconds of each pass, of all passes, and of the whole command, as ratios.
 //! The whole command has everything in it: the scene, compilation, opening the device, the PNG.
+//!
+//! `FRAGBUF_SCENE=dragon.ply.gz cargo bench --bench devices` measures a model instead of the generated scenes.
 #![allow(
     missing_docs,
     clippy::unwrap_used,
@@ -72,8 +74,17 @@ fn fastest(device: &str, case: (&str, &str, &str, &str)) -> Times {
     runs.min_by(|a, b| a.passes().total_cmp(&b.passes())).unwrap()
 }
 
+/// The generated scenes, or the model that the environment names.
+fn cases(model: Option<&str>) -> Vec<(&'static str, &str, &'static str, &'static str)> {
+    match model {
+        Some(model) => ["kplus_array", "ab_ll"].map(|key| (key, model, "512x512", "a model")).to_vec(),
+        None => CASES.to_vec(),
+    }
+}
+
 fn main() {
-    for case in CASES {
+    let model = std::env::var("FRAGBUF_SCENE").ok();
+    for case in cases(model.as_deref()) {
         let (key, scene, size, what) = case;
         let (own, driver) = (fastest("cpu", case), fastest("llvmpipe", case));
         println!("{key}, {scene} ({what}), {size}, in milliseconds: cpu / llvmpipe");

@@ -115,7 +115,8 @@ fn parsed(shader: &Shader<'_>) -> Result<Checked, Error> {
 
 fn program(checked: &Checked, entry: &str, shader: &Shader<'_>) -> Result<Program, Error> {
     let options = Options { markers: &MARKERS };
-    Program::entry_point(checked.module(), checked.info(), entry, &options).map_err(|faults| refused(&faults, shader))
+    let program = Program::entry_point(checked.module(), checked.info(), entry, &options);
+    program.and_then(Program::without_textures).map_err(|faults| refused(&faults, shader))
 }
 
 fn refused(faults: &[Unsupported], shader: &Shader<'_>) -> Error {

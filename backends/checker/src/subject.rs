@@ -218,7 +218,7 @@ fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>
     let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
     let entry = |entry: &&EntryPoint| entry.stage == stage;
     let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
-    let program = Program::entry_point(module, info, name, &options)?;
+    let program = Program::entry_point(module, info, name, &options)?.without_textures()?;
     let fragment = match stage {
         Stage::Fragment => Some(FragmentPrograms {
             unpack: Program::function(module, info, "varyings_fragment", &options)?,

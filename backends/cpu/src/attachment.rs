@@ -114,21 +114,12 @@ impl<'a> Attachments<'a> {
             is_early: pass.state.depth.as_ref().is_some_and(|depth| depth.early),
         })
     }
-
-    /// Whether nothing is attached: a pass that writes buffers alone.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.targets.is_empty() && self.depth.is_none() && self.stencil.is_none()
-    }
 }
 
 impl Target<'_> {
     /// The words of the texel `index`.
     pub(crate) fn load(&self, index: usize) -> [u32; 4] {
-        let words = self.texel.words();
-        std::array::from_fn(|word| match self.words.get(index * words + word) {
-            Some(held) if word < words => held.load(Ordering::Relaxed),
-            _ => 0,
-        })
+        self.texel.load(self.words, index)
     }
 
     pub(crate) fn store(&self, index: usize, texel: [u32; 4]) {

@@ -41,6 +41,7 @@ const OFFERS: &[Fact] = &[
     Fact::MinMaxBlend,
     Fact::SampleMask,
     Fact::OwnEntryPoints,
+    Fact::PrimitiveIndex,
 ];
 
 /// What templates have no word of WGSL for.

@@ -50,5 +50,10 @@ fn one(program: &Program, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) ->
         Space::Workgroup => own.as_slice(),
         _ => *shared,
     });
-    workgroup(program, group, groups, &mut View { buffers: buffers.collect(), wide: view.wide })
+    workgroup(
+        program,
+        group,
+        groups,
+        &mut View { buffers: buffers.collect(), textures: view.textures.clone(), wide: view.wide },
+    )
 }

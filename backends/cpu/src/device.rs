@@ -1,12 +1,12 @@
 //! What a caller sees: a device for one plan at one size, meshes in, pictures out.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
-use fragbuf_frame::{Counters, Counting, PassTime, Sizing, Symbols, Value, resource, set, symbols, zeros};
+use fragbuf_frame::{Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, zeros};
 
 use crate::memory::{Memory, read};
-use crate::triangle::Coverage;
 use crate::{Code, Error, frame};
 
 /// What a caller decides.
@@ -20,8 +20,6 @@ pub struct Settings {
     pub sizing: Sizing,
     /// In which order fragments of one pixel run.
     pub order: Order,
-    /// Which samples a triangle covers, where a pass has several.
-    pub coverage: Coverage,
 }
 
 /// In which order fragments of one pixel run.
@@ -30,15 +28,16 @@ pub enum Order {
     /// One after the other, as they were submitted.
     #[default]
     Submission,
-    /// In passes that write buffers alone: permuted and interleaved from one shared access to the next, by this seed. Passes
-    /// with attachments keep the order of submission, as tests and blending do everywhere.
+    /// Shaders are permuted and interleaved from one shared access to the next, by this seed. The fixed function around them
+    /// keeps the order of submission, as it does on every device: early tests come before all shaders of the pixel, late tests
+    /// and blending after them.
     Shuffled(u64),
 }
 
 /// Triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
-    /// Interleaved vertices, as words: the inputs of the vertex stage in the order of their locations.
+    /// Interleaved vertices, as words: the inputs of the vertex stage in the order of their locations, the position first.
     pub vertices: &'a [u32],
     /// Three per triangle.
     pub indices: &'a [u32],
@@ -64,6 +63,10 @@ pub struct Picture {
     pub counters: Option<Counters>,
     /// Passes that went out of bounds: they read 0 there, and wrote nothing.
     pub out_of_bounds: Vec<String>,
+    /// Samples that passed all tests in the last run of each pass, in the order of the plan; 0 for those that draw nothing.
+    pub samples: Vec<u64>,
+    /// The loops that wait for something, in the order of the plan.
+    pub loops: Vec<Looped>,
 }
 
 /// Runs one plan.
@@ -76,6 +79,7 @@ pub struct Device {
     pub(crate) memory: Memory,
     pub(crate) uniforms: Vec<u32>,
     pub(crate) camera: Vec<u32>,
+    pub(crate) objects: Vec<Range<u32>>,
 }
 
 /// The camera before any is set: positions are clip space.
@@ -92,7 +96,8 @@ impl Device {
         let mut memory = Memory::default();
         memory.resize(&code.plan, &symbols)?;
         let uniforms = zeros(&code.plan.variant.uniforms);
-        let mut device = Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new() };
+        let mut device =
+            Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new(), objects: Vec::new() };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -100,6 +105,11 @@ impl Device {
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&mut self, view_projection: &[f32; 16]) {
         self.camera = view_projection.iter().map(|number| number.to_bits()).collect();
+    }
+
+    /// The objects of the meshes to come, which can be seen or not: a part of the index list each. None: all is one object.
+    pub fn set_objects(&mut self, objects: &[Range<u32>]) {
+        self.objects = objects.to_vec();
     }
 
     /// One of the description's own uniforms.

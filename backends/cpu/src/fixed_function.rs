@@ -11,6 +11,7 @@ use std::sync::atomic::Ordering;
 use fragbuf_templates::vocabulary::{Blend, Compare, StencilOperation, TextureFormat};
 
 use crate::attachment::{Attachments, Depth, Stencil};
+use crate::texel::DEPTH_24;
 
 impl Attachments<'_> {
     /// Tests a sample and writes what the tests write; whether it passes.
@@ -39,7 +40,7 @@ impl Attachments<'_> {
     pub(crate) fn blend(&self, target: usize, index: usize, color: [u32; 4]) {
         let Some(target) = self.targets.get(target) else { return };
         if target.texel.is_raw() {
-            return target.store(index, color);
+            return target.store(index, target.texel.encode_whole(color));
         }
         let new = color.map(f32::from_bits);
         let old = if target.blend == Blend::Replace { [0.0; 4] } else { target.texel.decode(target.load(index)) };
@@ -58,9 +59,6 @@ fn blended(blend: Blend, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
         Blend::Add => each(&|new_channel, old_channel| new_channel + old_channel),
     }
 }
-
-/// Steps of a 24-bit depth.
-const DEPTH_24: f64 = 16_777_215.0;
 
 impl Depth<'_> {
     fn passes(&self, index: usize, depth: f32) -> bool {

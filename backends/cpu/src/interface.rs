@@ -48,7 +48,7 @@ pub(crate) enum Source {
     Linear(usize),
 }
 
-/// Where what a fragment returns goes.
+/// Where what a fragment returns goes: words of its result, from the first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outputs {
     pub(crate) depth: Option<usize>,
@@ -74,6 +74,13 @@ impl Varyings {
             weighed[output.words.start - first..output.words.end - first].fill(Weighed::Float);
         }
         Ok(Varyings { stride: vertex.result.len(), position: position.words.start - first, weighed })
+    }
+}
+
+impl Varyings {
+    /// The position among the words of a vertex, in clip space.
+    pub(crate) fn position_in(&self, words: &[u32]) -> [f32; 4] {
+        std::array::from_fn(|axis| f32::from_bits(words[self.position + axis]))
     }
 }
 
@@ -129,13 +136,15 @@ fn varying(vertex: &Program, location: u32, interpolation: Option<Interpolation>
 pub(crate) fn outputs(fragment: &Program) -> Result<Outputs, String> {
     let mut outputs = Outputs::default();
     for output in &fragment.outputs {
+        let first = fragment.result.start;
+        let words = output.words.start - first..output.words.end - first;
         match output {
-            _ if output.is(BuiltIn::FragDepth) => outputs.depth = Some(output.words.start),
-            _ if output.is(BuiltIn::SampleMask) => outputs.mask = Some(output.words.start),
-            Input { binding: Some(Binding::Location { location, .. }), words, .. } => {
+            _ if output.is(BuiltIn::FragDepth) => outputs.depth = Some(words.start),
+            _ if output.is(BuiltIn::SampleMask) => outputs.mask = Some(words.start),
+            Input { binding: Some(Binding::Location { location, .. }), .. } => {
                 let location = *location as usize;
                 outputs.colors.resize(outputs.colors.len().max(location + 1), None);
-                outputs.colors[location] = Some(words.clone());
+                outputs.colors[location] = Some(words);
             }
             other => return Err(format!("the output `{}` of a fragment", other.name)),
         }

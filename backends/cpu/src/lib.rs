@@ -10,8 +10,10 @@
 //! a pixel instead, from one shared access to the next, as a GPU may.
 //!
 //! Rasterisation follows the rules of the graphics APIs: 8 bits of subpixel, top left edges, perspective-correct and flat
-//! attributes, clipping at the near and far planes, depth and stencil tests, blending, 1, 2, 4 or 8 samples. Not run: sampled textures,
-//! indirect draws, objects by visibility. Nothing here knows a technique, naga's front end or a GPU.
+//! attributes, clipping at the near and far planes, depth and stencil tests, blending, 1, 2, 4 or 8 samples, with multisample
+//! coverage or without. Attachments are read as textures by later passes, loops end when a counter or a query says so, objects are
+//! drawn by their boxes' queries, draws and dispatches by arguments in a buffer. Nothing here knows a technique, naga's front
+//! end or a GPU.
 
 mod attachment;
 mod clip;
@@ -21,9 +23,11 @@ mod device;
 mod draw;
 mod error;
 mod fixed_function;
+mod fragments;
 mod frame;
 mod interface;
 mod memory;
+mod sampled;
 mod schedule;
 mod stages;
 mod texel;
@@ -35,4 +39,3 @@ mod view;
 pub use code::Code;
 pub use device::{Device, Mesh, Order, Picture, Settings, Stage};
 pub use error::Error;
-pub use triangle::Coverage;

@@ -16,23 +16,25 @@ pub(crate) type Waiting<'a> = (&'a Triangle, Place);
 /// Fragments of a pixel that have begun and not ended, at most: what a GPU has in flight.
 const IN_FLIGHT: usize = 8;
 
-/// Runs all fragments; `ended` hears how each ended.
+/// Runs all fragments; `ended` hears how each ended, by its number.
 pub(crate) fn interleave<'a>(
     stage: &FragmentStage<'a>,
-    fragments: &mut Vec<Waiting<'a>>,
+    fragments: &[Waiting<'a>],
     view: &View<'_>,
     seed: u64,
-    mut ended: impl FnMut(&mut Machine<'a>, Exit),
+    mut ended: impl FnMut(usize, &mut Machine<'a>, Exit),
 ) {
     let mut numbers = Numbers::seeded(seed);
+    let mut waiting: Vec<usize> = (0..fragments.len()).collect();
     let mut flight: Vec<Running<'a>> = Vec::with_capacity(IN_FLIGHT);
     let mut spare: Vec<Machine<'a>> = Vec::new();
     loop {
-        while flight.len() < IN_FLIGHT && !fragments.is_empty() {
-            let (triangle, place) = fragments.swap_remove(numbers.below(fragments.len()));
+        while flight.len() < IN_FLIGHT && !waiting.is_empty() {
+            let number = waiting.swap_remove(numbers.below(waiting.len()));
+            let (triangle, place) = &fragments[number];
             let mut machine = spare.pop().unwrap_or_else(|| stage.machine());
-            stage.begin(&mut machine, triangle, &place);
-            flight.push(Running { machine, standing: None, parked: None, is_inside: false });
+            stage.begin(&mut machine, triangle, place);
+            flight.push(Running { number, machine, standing: None, parked: None, is_inside: false });
         }
         let Some(next) = choose(&mut flight, &mut numbers) else { return };
         let mut step = Step { view, may_go: flight[next].standing.is_some(), done: None };
@@ -45,7 +47,7 @@ pub(crate) fn interleave<'a>(
             Exit::Stopped(event) => flight[next].standing = Some(event),
             exit => {
                 let mut over = flight.swap_remove(next);
-                ended(&mut over.machine, exit);
+                ended(over.number, &mut over.machine, exit);
                 spare.push(over.machine);
             }
         }
@@ -54,6 +56,8 @@ pub(crate) fn interleave<'a>(
 
 /// A fragment that has begun.
 struct Running<'a> {
+    /// Which of the fragments it is.
+    number: usize,
     machine: Machine<'a>,
     /// What it stands before; nothing, before its first access.
     standing: Option<Event>,
@@ -116,6 +120,14 @@ impl Shared for Step<'_, '_> {
 
     fn constant(&self, place: Word) -> u32 {
         self.view.constant(place)
+    }
+
+    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
+        self.view.texel(texture, place)
+    }
+
+    fn extent(&self, texture: u16) -> [u32; 3] {
+        self.view.extent(texture)
     }
 
     fn event(&mut self, event: &Event) -> Reply {

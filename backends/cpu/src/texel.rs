@@ -2,8 +2,13 @@
 //!
 //! In: channels as floats. Out: words, and back. Values are clamped and rounded to nearest as the graphics APIs say.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fragbuf_interpreter::{from_half, to_half};
 use fragbuf_templates::vocabulary::TextureFormat;
+
+/// Steps of a 24-bit depth.
+pub(crate) const DEPTH_24: f64 = 16_777_215.0;
 
 /// How a colour attachment keeps its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +30,34 @@ impl Texel {
 
     /// Whether it holds bits rather than numbers, so that nothing can be blended.
     pub(crate) fn is_raw(self) -> bool {
-        self == Texel::Format(TextureFormat::R32Uint)
+        matches!(self, Texel::Format(TextureFormat::R32Uint | TextureFormat::Rg16Uint))
+    }
+
+    /// The words of the texel `index`; those beyond its size are 0.
+    pub(crate) fn load(self, held: &[AtomicU32], index: usize) -> [u32; 4] {
+        let words = self.words();
+        std::array::from_fn(|word| match held.get(index * words + word) {
+            Some(held) if word < words => held.load(Ordering::Relaxed),
+            _ => 0,
+        })
+    }
+
+    /// The words of a texel of whole numbers.
+    pub(crate) fn encode_whole(self, channels: [u32; 4]) -> [u32; 4] {
+        let [low, high, ..] = channels;
+        match self {
+            Texel::Format(TextureFormat::Rg16Uint) => [low & 0xffff | high << 16, 0, 0, 0],
+            _ => channels,
+        }
+    }
+
+    /// The channels of a texel of whole numbers, of which nothing is a number with a point: words of a colour, or a stencil.
+    pub(crate) fn decode_whole(self, words: [u32; 4]) -> [u32; 4] {
+        match self {
+            Texel::Format(TextureFormat::Rg16Uint) => [words[0] & 0xffff, words[0] >> 16, 0, 1],
+            Texel::Format(TextureFormat::Depth24PlusStencil8) => [words[0] & 0xff, 0, 0, 1],
+            _ => [words[0], 0, 0, 1],
+        }
     }
 
     /// The channels of a texel.
@@ -36,6 +68,7 @@ impl Texel {
             Texel::Format(TextureFormat::Rg32Float) => [f32::from_bits(a), f32::from_bits(b), 0.0, 1.0],
             Texel::Format(TextureFormat::Rgba8Unorm) => a.to_le_bytes().map(|byte| f32::from(byte) / 255.0),
             Texel::Format(TextureFormat::Rgba16Float) => [a, a >> 16, b, b >> 16].map(|half| from_half(half as u16)),
+            Texel::Format(TextureFormat::Depth24PlusStencil8) => [(f64::from(a >> 8) / DEPTH_24) as f32, 0.0, 0.0, 1.0],
             Texel::Format(_) => [f32::from_bits(a), 0.0, 0.0, 1.0],
         }
     }

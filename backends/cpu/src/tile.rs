@@ -2,7 +2,9 @@
 //!
 //! In: triangles in the order of submission. Out: a list of them per tile, in the same order, and the covered pixels of each.
 
-use crate::triangle::{Coverage, MIDDLE, Triangle, sample_places};
+use fragbuf_templates::vocabulary::Coverage;
+
+use crate::triangle::{MIDDLE, Triangle, sample_places};
 
 /// Pixels along each side of a tile.
 pub(crate) const SIDE: u32 = 16;
@@ -103,7 +105,7 @@ pub(crate) fn cover(
     let (x0, x1) = (bounds[0].max(rectangle[0]), bounds[1].min(rectangle[1]));
     let (y0, y1) = (bounds[2].max(rectangle[2]), bounds[3].min(rectangle[3]));
     let steps = triangle.steps();
-    let by_middle = samples == 1 || coverage == Coverage::Middle;
+    let by_middle = samples == 1 || coverage == Coverage::WholePixel;
     let all = u32::MAX >> (32 - samples);
     for y in y0..y1 {
         let mut edges = triangle.edges(x0, y, MIDDLE);
@@ -152,7 +154,7 @@ mod tests {
         let bins = Bins::of(triangles, SIZE);
         for bin in &bins.tiles {
             for number in bins.triangles(bin) {
-                cover(&triangles[*number as usize], bin.rectangle, SIZE, (samples, Coverage::Samples), |covered| {
+                cover(&triangles[*number as usize], bin.rectangle, SIZE, (samples, Coverage::PerSample), |covered| {
                     let pixel = &mut counts[(covered.y * SIZE.0 + covered.x) as usize];
                     pixel.iter_mut().enumerate().for_each(|(sample, count)| *count += covered.mask >> sample & 1);
                 });
@@ -223,10 +225,14 @@ mod tests {
     fn the_middle_decides_for_all_samples_where_it_is_asked_to() {
         let triangle = triangle([(2.6, 0.0), (2.6, 20.0), (-20.0, 10.0)]).unwrap();
         let mut masks = Vec::new();
-        cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::Middle), |covered| masks.push((covered.x, covered.mask)));
+        cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::WholePixel), |covered| {
+            masks.push((covered.x, covered.mask))
+        });
         assert_eq!(masks, [(0, 15), (1, 15), (2, 15)]);
         masks.clear();
-        cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::Samples), |covered| masks.push((covered.x, covered.mask)));
+        cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::PerSample), |covered| {
+            masks.push((covered.x, covered.mask))
+        });
         // Samples at 3/8 and 1/8 lie left of 0.6.
         assert_eq!(masks, [(0, 15), (1, 15), (2, 0b0101)]);
     }

@@ -5,16 +5,6 @@
 
 use crate::clip::Corner;
 
-/// Which samples of a pixel a triangle covers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coverage {
-    /// Those that lie inside of it.
-    #[default]
-    Samples,
-    /// All, where the pixel's middle lies inside: what routing fragments to samples needs, so that no fragment is half there.
-    Middle,
-}
-
 /// 256ths of a pixel.
 pub(crate) const SUBPIXELS: i64 = 256;
 

@@ -24,8 +24,13 @@ pub(crate) fn stride(program: &Program) -> usize {
     program.inputs.iter().filter(|input| input.location().is_some()).map(|input| input.words.len()).sum()
 }
 
-/// Runs `count` vertices, whose words are `vertices`. `None`: one goes round for ever.
-pub(crate) fn run(program: &Program, view: &View<'_>, vertices: &[u32], count: usize) -> Result<Vec<u32>, String> {
+/// Runs `count` vertices of an instance, whose words are `vertices`. `Err`: an input that nothing feeds, or one goes round for ever.
+pub(crate) fn run(
+    (program, view): (&Program, &View<'_>),
+    vertices: &[u32],
+    count: usize,
+    instance: u32,
+) -> Result<Vec<u32>, String> {
     let feeds = feeds(program)?;
     let stride = stride(program);
     let words = program.result.len();
@@ -42,7 +47,7 @@ pub(crate) fn run(program: &Program, view: &View<'_>, vertices: &[u32], count: u
                 for (number, feed) in feeds.iter().enumerate() {
                     match feed {
                         Feed::VertexIndex => machine.set_input(number, &[vertex as u32]),
-                        Feed::InstanceIndex => machine.set_input(number, &[0]),
+                        Feed::InstanceIndex => machine.set_input(number, &[instance]),
                         Feed::Words(first) => {
                             let from = vertices.get(vertex * stride + first..).unwrap_or_default();
                             machine.set_input(number, from);

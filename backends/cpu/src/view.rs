@@ -5,10 +5,14 @@ use std::sync::{Mutex, PoisonError};
 
 use fragbuf_interpreter::{Access, Atomic, Event, Operation, Place, Reply, Shared};
 
+use crate::sampled::Sampled;
+
 /// Buffers of a program, by its numbers.
 #[derive(Clone)]
 pub(crate) struct View<'a> {
     pub(crate) buffers: Vec<&'a [AtomicU32]>,
+    /// Textures, by its numbers too.
+    pub(crate) textures: Vec<Sampled<'a>>,
     /// Held during accesses of 64 bits, which are two words here.
     pub(crate) wide: &'a Mutex<()>,
 }
@@ -72,6 +76,14 @@ impl Shared for View<'_> {
     #[inline]
     fn constant(&self, place: Place) -> u32 {
         self.word(place).load(Ordering::Relaxed)
+    }
+
+    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
+        self.textures[usize::from(texture)].texel(place)
+    }
+
+    fn extent(&self, texture: u16) -> [u32; 3] {
+        self.textures[usize::from(texture)].extent()
     }
 
     #[inline]

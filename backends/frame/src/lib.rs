@@ -6,6 +6,7 @@
 mod counters;
 mod error;
 mod host;
+mod looped;
 mod pass_time;
 mod room;
 mod symbols;
@@ -15,6 +16,7 @@ mod unrolled;
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, POOL_EXHAUSTED};
 pub use error::Error;
 pub use host::Decision;
+pub use looped::{LoopEnd, Looped};
 pub use pass_time::PassTime;
 pub use room::{Counting, Room, Sizing, bytes, reserve, symbols};
 pub use symbols::Symbols;

@@ -11,8 +11,8 @@
 //! access, and any model of memory. Nothing here knows fragbuf: what a shader has no word for is a [`Marker`] by name.
 //!
 //! WGSL's arithmetic is followed where it is defined (wrapping, division by zero, shifts, saturating conversions);
-//! uninitialised memory is zero; an index out of bounds reads 0 or writes nothing, and is a [`Fault`]. Textures,
-//! derivatives, subgroups, ray queries, 16-bit and 64-bit floats are [`Unsupported`].
+//! uninitialised memory is zero; an index out of bounds reads 0 or writes nothing, and is a [`Fault`]. Flat textures
+//! are read texel by texel, single and multisampled; samplers, storage textures, layers and levels, derivatives, subgroups, ray queries, 16-bit and 64-bit floats are [`Unsupported`].
 
 mod arithmetic;
 mod compile;
@@ -30,5 +30,5 @@ mod workgroup;
 pub use machine::{Exit, Fault, Machine};
 pub use memory::{Access, Atomic, Event, Operation, Place, Reply, Sequential, Shared};
 pub use packing::{from_half, to_half};
-pub use program::{Buffer, Input, Marker, Options, Program, Space, Unsupported};
+pub use program::{Buffer, Input, Marker, Options, Program, Space, Texture, Unsupported};
 pub use workgroup::{Dispatch, dispatch, workgroup};

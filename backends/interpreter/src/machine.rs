@@ -193,6 +193,17 @@ impl<'p> Machine<'p> {
                         self.fault.get_or_insert(Fault { at: at as u32 });
                     }
                 },
+                Op::Texel { to, texture, place, count } => {
+                    let place = [read!(place), read!(place + 1), read!(place + 2)];
+                    let texel = shared.texel(texture, place).unwrap_or_else(|| {
+                        self.fault.get_or_insert(Fault { at: at as u32 });
+                        [0; 4]
+                    });
+                    words[to as usize..(to + count) as usize].copy_from_slice(&texel[..count as usize]);
+                }
+                Op::Extent { to, texture } => {
+                    words[to as usize..to as usize + 3].copy_from_slice(&shared.extent(texture));
+                }
                 Op::Constant { to, buffer, address, offset } => match inside(shared, buffer, read!(address), offset, 1)
                 {
                     Some(place) => read!(to) = shared.constant(place),

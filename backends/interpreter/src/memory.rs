@@ -118,6 +118,14 @@ pub trait Shared {
     fn length(&self, buffer: u16) -> u32;
     /// A word of a buffer that this program never writes.
     fn constant(&self, place: Place) -> u32;
+    /// The four numbers of a texel: column, row, and sample or level. `None`: there is no such texel.
+    fn texel(&self, _texture: u16, _place: [u32; 3]) -> Option<[u32; 4]> {
+        None
+    }
+    /// Columns, rows and samples of a texture.
+    fn extent(&self, _texture: u16) -> [u32; 3] {
+        [0; 3]
+    }
     /// Something is about to happen.
     fn event(&mut self, event: &Event) -> Reply;
 }

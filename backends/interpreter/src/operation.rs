@@ -106,6 +106,18 @@ pub(crate) enum Op {
         from: Word,
         count: u32,
     },
+    /// The first `count` numbers of a texel; `place` has column, row, and sample or level.
+    Texel {
+        to: Word,
+        texture: u16,
+        place: Word,
+        count: u32,
+    },
+    /// Columns, rows and samples of a texture.
+    Extent {
+        to: Word,
+        texture: u16,
+    },
     /// A word that nothing in the program writes.
     Constant {
         to: Word,
@@ -203,6 +215,11 @@ impl Op {
                 visit(Read, index, 1);
                 visit(Write, to, 1);
             }
+            Op::Texel { to, place, count, .. } => {
+                visit(Read, place, 3);
+                visit(Write, to, *count);
+            }
+            Op::Extent { to, .. } => visit(Write, to, 3),
             Op::Length { to, .. } | Op::HelperLane { to } => visit(Write, to, 1),
             Op::LoadLocal { to, variable, length, address, count } => {
                 visit(Read, address, 1);

@@ -79,6 +79,21 @@ pub struct Buffer {
     pub is_wide: bool,
 }
 
+/// A texture that a program reads, texel by texel. No program writes any.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// Its name in the module.
+    pub name: String,
+    /// Group and binding.
+    pub binding: Option<(u32, u32)>,
+    /// The kind of its numbers.
+    pub kind: naga::ScalarKind,
+    /// Whether it is declared as depth, of which the first number alone is read.
+    pub is_depth: bool,
+    /// Whether it is declared with several samples.
+    pub is_multisampled: bool,
+}
+
 /// A part of what goes into an entry point or function, or of what comes out of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
@@ -116,6 +131,8 @@ pub struct Program {
     pub outputs: Vec<Input>,
     /// Buffers by number.
     pub buffers: Vec<Buffer>,
+    /// Textures by number.
+    pub textures: Vec<Texture>,
     /// Invocations of a workgroup; 1 where it is no compute shader.
     pub workgroup_size: [u32; 3],
 }
@@ -139,6 +156,15 @@ impl Program {
         options: &Options<'_>,
     ) -> Result<Self, Vec<Unsupported>> {
         compile::function(module, info, name, options)
+    }
+
+    /// The same, for memory that has no textures. `Err`: it reads some.
+    pub fn without_textures(self) -> Result<Self, Vec<Unsupported>> {
+        let refused = |texture: &Texture| {
+            let what = format!("the texture `{}`, for which there is no memory here", texture.name);
+            Unsupported { what, span: Span::UNDEFINED }
+        };
+        if self.textures.is_empty() { Ok(self) } else { Err(self.textures.iter().map(refused).collect()) }
     }
 
     /// Where the instruction at `at` stands in the source, and the calls that lead there, innermost first.

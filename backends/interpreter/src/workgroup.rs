@@ -117,6 +117,14 @@ impl<S: Shared> Shared for Passing<'_, S> {
         self.shared.constant(place)
     }
 
+    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
+        self.shared.texel(texture, place)
+    }
+
+    fn extent(&self, texture: u16) -> [u32; 3] {
+        self.shared.extent(texture)
+    }
+
     fn event(&mut self, event: &Event) -> Reply {
         if *event == Event::Barrier && !self.has_passed {
             self.has_passed = true;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fragbuf_backends::target;
-use fragbuf_cpu::{Code, Coverage, Device, Mesh, Order};
+use fragbuf_cpu::{Code, Device, Mesh, Order};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Room, Sizing, VertexInputs};
 use fragbuf_templates::Registry;
@@ -20,8 +20,7 @@ use crate::stage::{self, renderer, see, settings, shaders, technique};
 
 fn device(variant: &Variant, order: Order) -> Device {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings =
-        fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order, coverage: Coverage::Samples };
+    let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order };
     Device::new(Arc::new(code), settings).unwrap()
 }
 
@@ -42,18 +41,14 @@ fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>)
     (kept::kept(device, &buffers), pixels)
 }
 
-/// Techniques in textures that a shader reads: merged later.
-const NOT_YET: [&str; 2] = ["z_buffer", "kb_sr"];
-
-/// Every technique, where there is a k with four of it.
+/// Every technique, where there is a k with four of it, or as many as it can have.
 fn techniques() -> Vec<(String, Variant)> {
     let registry = Registry::builtin();
     let variant = |key: &str, keep: KeepDefault| match keep {
         KeepDefault::All => technique(key, &[]),
-        KeepDefault::Best(_) => technique(key, &[("k", "4")]),
+        KeepDefault::Best(most) => technique(key, &[("k", &most.min(4).to_string())]),
     };
-    let known = registry.techniques().iter().filter(|row| !NOT_YET.contains(&row.key.as_str()));
-    known.map(|row| (row.key.clone(), variant(&row.key, row.keep))).collect()
+    registry.techniques().iter().map(|row| (row.key.clone(), variant(&row.key, row.keep))).collect()
 }
 
 #[test]

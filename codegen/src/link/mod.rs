@@ -52,6 +52,11 @@ impl Source {
         Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(origins) }
     }
 
+    /// Whether these words stand anywhere in it.
+    pub(crate) fn mentions(&self, words: &str) -> bool {
+        self.text.contains(words)
+    }
+
     /// The atomic accessors that its declarations mention: buffers offer many, and few are ever used.
     pub(crate) fn atomic_accessors(&self) -> Vec<String> {
         match self.items() {

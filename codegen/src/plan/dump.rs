@@ -2,7 +2,9 @@
 
 use std::fmt::{Display, Formatter, Result, Write};
 
-use fragbuf_templates::vocabulary::{Access, Element, Init, Kind, Life, Loads, Objects, Pass, State, Step, Until};
+use fragbuf_templates::vocabulary::{
+    Access, Coverage, Element, Init, Kind, Life, Loads, Objects, Pass, State, Step, Until,
+};
 
 use super::{Plan, Planned};
 use crate::Key;
@@ -122,8 +124,10 @@ fn pass_lines(f: &mut Formatter<'_>, pass: &Pass, indent: &str) -> Result {
     if !uses.is_empty() {
         writeln!(f, "{indent}  uses {}", uses.join(", "))?;
     }
-    if let Objects::Visible(query) = &pass.objects {
-        writeln!(f, "{indent}  objects visible in {query}")?;
+    match &pass.objects {
+        Objects::All => {}
+        Objects::Boxes => writeln!(f, "{indent}  objects by their boxes")?,
+        Objects::Visible(query) => writeln!(f, "{indent}  objects visible in {query}")?,
     }
     let state = state(&pass.state);
     if state.is_empty() { Ok(()) } else { writeln!(f, "{indent}  state {state}") }
@@ -145,7 +149,8 @@ fn state(state: &State) -> String {
         let _ = write!(text, "target {} {}; ", target.resource, word(&target.blend));
     }
     if let Some(samples) = &state.samples {
-        let _ = write!(text, "samples {} mask {}; ", samples.count, samples.mask);
+        let coverage = if samples.coverage == Coverage::WholePixel { " whole-pixel" } else { "" };
+        let _ = write!(text, "samples {} mask {}{coverage}; ", samples.count, samples.mask);
     }
     text.trim_end_matches("; ").to_owned()
 }

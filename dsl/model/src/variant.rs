@@ -133,6 +133,7 @@ const TARGET_FACTS: &[Fact] = &[
     Fact::SampleMask,
     Fact::Linkable,
     Fact::OwnEntryPoints,
+    Fact::PrimitiveIndex,
 ];
 
 /// Whether `fact` is a target's to offer.

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use fragbuf::Registry;
-use fragbuf_cpu::{Code, Coverage, Device, Error, Mesh, Order, Settings};
+use fragbuf_cpu::{Code, Device, Error, Mesh, Order, Settings};
 use fragbuf_frame::{POOL_EXHAUSTED, Room, Sizing};
 
 use super::{Figures, Painted, Task};
@@ -34,11 +34,12 @@ pub(super) fn paint(
     let (width, height) = view.size;
     loop {
         let sizing = room.map_or(Sizing::Auto, |fragments| Sizing::Reserve(Room::Fragments(fragments)));
-        let settings = Settings { width, height, sizing, order, coverage: Coverage::Samples };
+        let settings = Settings { width, height, sizing, order };
         let mut device = Device::new(code.clone(), settings)?;
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
         }
+        device.set_objects(&geometry.objects);
         device.set_camera(&stage.camera.view_projection);
         *frames += 1;
         let frame = *frames;
@@ -62,6 +63,7 @@ pub(super) fn paint(
             times: view.json.then_some(picture.times),
             bytes: device.allocated_bytes(),
             slices: 1,
+            loops: picture.loops,
         };
         let backend = "interpreter".to_owned();
         let plan = code.plan.clone();

@@ -159,6 +159,7 @@ impl Painter {
             times,
             bytes: renderer.allocated_bytes(),
             slices: renderer.slices(),
+            loops: Vec::new(),
         }))
     }
 }

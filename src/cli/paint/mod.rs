@@ -8,7 +8,7 @@ mod cpu;
 mod gpu;
 
 use fragbuf::{Plan, Registry, Variant};
-use fragbuf_frame::{Counters, OUT_OF_ORDER, PassTime};
+use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PassTime};
 use fragbuf_scene::Scene;
 
 use super::device::Picked;
@@ -103,6 +103,19 @@ pub(crate) struct Figures {
     /// Bytes held at one time.
     pub(crate) bytes: u64,
     pub(crate) slices: u32,
+    /// Loops whose end was found out while they ran.
+    pub(crate) loops: Vec<Looped>,
+}
+
+impl Figures {
+    /// What loops left undone, in words.
+    fn undone(&self) -> impl Iterator<Item = String> {
+        self.loops.iter().filter(|looped| looped.end == LoopEnd::Cut).map(|Looped { until, rounds, .. }| {
+            format!(
+                "the loop until {until} was ended by its bound, after {rounds} rounds: the picture lacks what was left"
+            )
+        })
+    }
 }
 
 /// The parameter of how many layers a resolve pass holds. What exceeds it is counted as `layers_exceeded`.
@@ -139,6 +152,7 @@ impl Painted {
                 "{description}: no fragment is seen; look at the camera, at `where`, and at uniforms, which are 0 unless given"
             ));
         }
+        self.drawn.undone().for_each(|text| warn(&format!("{description}: {text}")));
         for counter in self.drawn.counters.iter().flat_map(|counters| &counters.0) {
             // What better fragments displaced is what the description asked for.
             if counter.loss && counter.count > 0 && counter.name != "displaced" {
@@ -151,5 +165,22 @@ impl Painted {
                 ));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_that_was_cut_is_said() {
+        let looped = |end| Looped { until: "`left` is zero".to_owned(), rounds: 7, end };
+        let loops = vec![looped(LoopEnd::Reached), looped(LoopEnd::Cut)];
+        let drawn = Figures { pixels: Vec::new(), counters: None, times: None, bytes: 0, slices: 1, loops };
+        let said: Vec<String> = drawn.undone().collect();
+        assert!(
+            said.len() == 1 && said[0].contains("until `left` is zero was ended by its bound, after 7"),
+            "{said:?}"
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
 use crate::vocabulary::{
-    Access, Blend, Compare, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples, StencilOperation,
-    StencilState, Step, Text, TextureFormat, Until,
+    Access, Blend, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples,
+    StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
 /// The nearest fragment, by the depth test.
@@ -64,7 +64,10 @@ pub(super) fn stencil_routed() -> Row {
     let by_sample = |name: &str, element: Element, summary: &'static str| {
         Resource::new(name, element, summary).by("sample", "k").by("pixel", "pixels").cleared(0)
     };
-    let samples = |mask: &'static str| Some(Samples { count: "capacity".into(), mask: mask.into() });
+    // A fragment that covers some samples of a pixel is lost or doubled: where a device can, it covers all or none.
+    let samples = |mask: &'static str| {
+        Some(Samples { count: "capacity".into(), mask: mask.into(), coverage: Coverage::WholePixel })
+    };
     let mut route = Pass::fullscreen("route", "route").uses("routing", Access::Attachment);
     route.state.stencil = Some(StencilState {
         resource: "routing".to_owned(),

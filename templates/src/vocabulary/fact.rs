@@ -77,4 +77,5 @@ facts! {
     SampleMask "a fixed sample mask and several samples per pixel";
     Linkable "functions that a caller's own shader can call";
     OwnEntryPoints "entry points of its own: `--form program`";
+    PrimitiveIndex "the number of a fragment's triangle";
 }

@@ -18,8 +18,8 @@ pub use effect::Effect;
 pub use fact::Fact;
 pub use formula::{Expression, Formula, FormulaError, Polynomial};
 pub use pass::{
-    Access, Blend, Compare, DepthState, Edit, Host, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Role,
-    Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
+    Access, Blend, Compare, Coverage, DepthState, Edit, Host, Instance, Kind, Loads, Memory, Objects, Pass, Repeat,
+    Role, Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
 };
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
 pub use row::{Axis, Hazard, Order, Parameter, Row, Soundness, Takes, Template};

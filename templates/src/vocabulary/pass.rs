@@ -101,7 +101,10 @@ pub enum Kind {
 pub enum Objects {
     /// All of them.
     All,
-    /// Those whose box passed the occlusion query of the pass with this anchor.
+    /// The box of each instead, with an occlusion query each: those that have been dropped are asked for no more.
+    Boxes,
+    /// Those whose box passed the occlusion query of the pass with this anchor, whenever it was last asked in the frame; all, before it
+    /// was. A box that crosses the near plane passes. The objects that fail are dropped until the frame ends.
     Visible(String),
 }
 
@@ -276,6 +279,18 @@ pub struct Samples {
     pub count: Formula,
     /// Which are written, as a bit mask.
     pub mask: Formula,
+    /// Which of them a triangle covers.
+    pub coverage: Coverage,
+}
+
+/// Which samples of a pixel a triangle covers, where there are several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// Those that lie inside of it.
+    PerSample,
+    /// All, where the pixel's middle lies inside: multisample coverage is switched off, and no fragment is half there.
+    /// OpenGL can do it; where a device cannot, fragments at edges cover some samples.
+    WholePixel,
 }
 
 /// A change that the row of another axis makes to a technique's steps. Edits apply in the order of the axes.

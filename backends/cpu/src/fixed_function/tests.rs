@@ -5,15 +5,14 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicU32;
 
 use fragbuf_interpreter::{Options, Program};
-use fragbuf_templates::vocabulary::{Blend, Compare, StencilOperation, TextureFormat};
+use fragbuf_templates::vocabulary::{Blend, Compare, Coverage, StencilOperation, TextureFormat};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::attachment::{Attachments, Depth, Stencil, Target};
 use crate::device::Order;
-use crate::draw::{Draw, Indices, draw};
+use crate::draw::{Call as Triangles, Draw, draw};
 use crate::memory::{Words, read, words};
 use crate::texel::Texel;
-use crate::triangle::Coverage;
 use crate::view::View;
 
 const SIZE: u32 = 4;
@@ -66,14 +65,17 @@ impl Call<'_> {
         let numbers = corners.iter().flat_map(|(position, color)| position.iter().chain(color));
         let vertices: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
         let wide = Mutex::new(());
-        let view =
-            |program: &Program| View { buffers: program.buffers.iter().map(|_| &self.list[..]).collect(), wide: &wide };
+        let view = |program: &Program| {
+            let buffers = program.buffers.iter().map(|_| &self.list[..]).collect();
+            View { buffers, textures: Vec::new(), wide: &wide }
+        };
         let indices: Vec<u32> = (0..corners.len() as u32).collect();
         let call = Draw {
             vertex: (&vertex, view(&vertex)),
             fragment: (&fragment, view(&fragment)),
             vertices: &vertices,
-            indices: Indices::These(&indices),
+            indices: Some(&indices),
+            call: Triangles::once(indices.len() as u32 / 3),
             size: (SIZE, SIZE),
             attachments: self.attachments.clone(),
             coverage: self.coverage,
@@ -99,7 +101,7 @@ fn target(words: &[AtomicU32], blend: Blend) -> Target<'_> {
 fn first(attachments: Attachments<'_>, blend: Blend, draws: &[Corners]) -> [f32; 4] {
     let (output, list) = (zeros(4 * PIXELS), zeros(64));
     let attachments = Attachments { targets: vec![target(&output, blend)], ..attachments };
-    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::Samples };
+    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::PerSample };
     for corners in draws {
         call.draw(corners);
     }
@@ -164,7 +166,7 @@ fn several_targets_get_their_own_colours() {
     let text = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
         @fragment fn main(in: Varyings) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
     let attachments = Attachments { targets: vec![bytes, pairs], ..none(1) };
-    let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+    let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
     assert_eq!(call.draw(&whole(0.75, [1.0, 0.0, 0.2, 1.0])), PIXELS as u64);
     assert_eq!(read(&a), vec![0xff33_00ff; PIXELS]);
     assert_eq!(read(&b)[..2], [0, 0.75f32.to_bits()], "max(0, -0.75) and max(0, 0.75)");
@@ -179,13 +181,13 @@ fn stencil_routing_sends_fragments_to_samples_one_by_one() {
     for sample in 0..SAMPLES {
         let state = stencil(Compare::Always, StencilOperation::Keep, StencilOperation::Replace, sample + 2);
         let attachments = Attachments { stencil: Some(state), mask: 1 << sample, ..none(SAMPLES) };
-        let call = Call { text: "@fragment fn main() {}", attachments, list: &list, coverage: Coverage::Middle };
+        let call = Call { text: "@fragment fn main() {}", attachments, list: &list, coverage: Coverage::WholePixel };
         assert_eq!(call.draw(&whole(0.5, RED)), PIXELS as u64);
     }
     let state = stencil(Compare::Equal, StencilOperation::DecrementClamp, StencilOperation::DecrementClamp, 2);
     let targets = vec![target(&output, Blend::Replace)];
     let attachments = Attachments { stencil: Some(state), targets, ..none(SAMPLES) };
-    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::Middle };
+    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::WholePixel };
     // The lower left half of the frame, thrice: the diagonal runs through pixels and leaves their samples on both sides.
     let half = |red: f32| -> Corners {
         [[-1.0, 1.2], [-1.0, -1.0], [1.2, -1.0]].map(|[x, y]| ([x, y, 0.5, 1.0], [red, 0.0, 0.0, 1.0])).to_vec()
@@ -227,7 +229,7 @@ fn samples_are_covered_one_by_one_and_masked() {
     for (text, expected) in shaders {
         let (output, list) = (zeros(4 * PIXELS * 8), zeros(64));
         let attachments = Attachments { targets: vec![target(&output, Blend::Replace)], ..none(8) };
-        let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+        let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
         let passed = call.draw(&left);
         let seen = read(&output);
         let written = (0..8 * PIXELS).filter(|texel| seen[4 * texel] != 0).count();
@@ -243,7 +245,7 @@ fn early_tests_come_before_the_shader_and_survive_a_discard() {
         let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
         let attachments = Attachments { depth: Some(depth), is_early, ..none(1) };
         let text = "@fragment fn main(in: Varyings) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
-        let call = Call { text, attachments, list: &list, coverage: Coverage::Samples };
+        let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
         call.draw(&whole(0.75, RED));
         assert_eq!(
             read(&list)[0],
@@ -267,7 +269,7 @@ fn a_shader_may_say_its_depth() {
     let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
     let text = "@fragment fn main(in: Varyings) -> @builtin(frag_depth) f32 { return in.color.r; }";
     let attachments = Attachments { depth: Some(depth), ..none(1) };
-    Call { text, attachments, list: &list, coverage: Coverage::Samples }.draw(&whole(0.1, [0.625, 0.0, 0.0, 0.0]));
+    Call { text, attachments, list: &list, coverage: Coverage::PerSample }.draw(&whole(0.1, [0.625, 0.0, 0.0, 0.0]));
     assert_eq!(read(&depths)[5], 0.625f32.to_bits());
 }
 
@@ -290,7 +292,7 @@ fn attributes_are_interpolated_as_they_are_declared() {
     };
     let (a, b) = (corner(-1.0, 1.0, 1.0, 0.0, 4.0), corner(-1.0, -1.0, 1.0, 0.0, 7.0));
     let (c, d) = (corner(1.0, -1.0, 3.0, 1.0, 7.0), corner(1.0, 1.0, 3.0, 1.0, 7.0));
-    Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples }.draw(&vec![a, b, c, a, c, d]);
+    Call { text, attachments: none(1), list: &list, coverage: Coverage::PerSample }.draw(&vec![a, b, c, a, c, d]);
     let seen = read(&list);
     for pixel in 0..PIXELS {
         let (x, y) = (pixel % 4, pixel / 4);
@@ -311,6 +313,6 @@ fn attributes_are_interpolated_as_they_are_declared() {
 fn a_shader_that_does_not_end_is_an_error() {
     let list = zeros(1);
     let text = "@fragment fn main(in: Varyings) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
-    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::Samples };
+    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::PerSample };
     assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("for ever"));
 }

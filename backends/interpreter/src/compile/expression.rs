@@ -65,8 +65,7 @@ impl Compiler<'_> {
                     .ok_or_else(|| "a missing argument".to_owned());
             }
             Expression::GlobalVariable(handle) => {
-                let spot = self.globals.get(handle).copied().ok_or("a variable that was refused")?;
-                return Ok(Value::Spot(spot));
+                return self.globals.get(handle).copied().ok_or_else(|| "a variable that was refused".to_owned());
             }
             Expression::LocalVariable(handle) => {
                 let place = self.frame.locals[handle.index()].ok_or("a variable that was refused")?;
@@ -92,9 +91,12 @@ impl Compiler<'_> {
             | Expression::WorkGroupUniformLoadResult { .. } => {
                 return Err("a result before its statement".to_owned());
             }
-            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => {
-                return Err("textures".to_owned());
+            Expression::ImageLoad { image, coordinate, array_index: None, sample, level } => {
+                self.texel(*image, *coordinate, sample.or(*level))?
             }
+            Expression::ImageLoad { .. } => return Err("layers of textures".to_owned()),
+            Expression::ImageQuery { image, query } => self.extent(*image, query)?,
+            Expression::ImageSample { .. } => return Err("samplers".to_owned()),
             Expression::Derivative { .. } => return Err("derivatives".to_owned()),
             Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. } => {
                 return Err("subgroup operations".to_owned());

@@ -61,6 +61,7 @@ impl Compiler<'_> {
             result,
             outputs,
             buffers: self.buffers,
+            textures: self.textures,
             workgroup_size,
         }
     }

@@ -241,6 +241,7 @@ impl<'m> Compiler<'m> {
         match self.value(expression)? {
             Value::Words(words) => Ok(words),
             Value::Spot(_) => Err("a pointer as a value".to_owned()),
+            Value::Texture(_) => Err("a texture as a value".to_owned()),
         }
     }
 

@@ -15,13 +15,14 @@ mod math;
 mod matrix;
 mod number;
 mod place;
+mod texture;
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{AddressSpace, Expression, Function, Handle, Module, Span, TypeInner};
 use std::collections::HashMap;
 
 use crate::operation::{Op, Word};
-use crate::program::{Buffer, Options, Program, Space, Unsupported};
+use crate::program::{Buffer, Options, Program, Space, Texture, Unsupported};
 use crate::shape::Shapes;
 use place::Spot;
 
@@ -35,6 +36,8 @@ pub(super) enum Value {
     Words(Word),
     /// A place that a pointer points to.
     Spot(Spot),
+    /// The texture of this number.
+    Texture(u16),
 }
 
 /// Makes one program.
@@ -52,8 +55,9 @@ pub(super) struct Compiler<'m> {
     constant_words: HashMap<u32, Word>,
     /// Words of private variables and what they begin with.
     privates: Vec<u32>,
-    globals: HashMap<Handle<naga::GlobalVariable>, Spot>,
+    globals: HashMap<Handle<naga::GlobalVariable>, Value>,
     buffers: Vec<Buffer>,
+    pub(super) textures: Vec<Texture>,
     /// The first word that is free, and the most that were ever taken.
     pub(super) top: Word,
     highest: Word,
@@ -129,6 +133,7 @@ fn compile<'m>(
         privates: Vec::new(),
         globals: HashMap::new(),
         buffers: Vec::new(),
+        textures: Vec::new(),
         top: 0,
         highest: 0,
         faults: Vec::new(),
@@ -170,8 +175,8 @@ impl<'m> Compiler<'m> {
             }
             let span = self.module.global_variables.get_span(handle);
             match self.global(variable) {
-                Ok(spot) => {
-                    self.globals.insert(handle, spot);
+                Ok(value) => {
+                    self.globals.insert(handle, value);
                 }
                 Err(what) => self.faults.push(Unsupported { what, span }),
             }
@@ -180,7 +185,7 @@ impl<'m> Compiler<'m> {
         self.highest = self.top;
     }
 
-    fn global(&mut self, variable: &naga::GlobalVariable) -> Result<Spot> {
+    fn global(&mut self, variable: &naga::GlobalVariable) -> Result<Value> {
         let inner = self.shapes.inner(variable.ty);
         let space = match variable.space {
             AddressSpace::Private => {
@@ -191,12 +196,12 @@ impl<'m> Compiler<'m> {
                 let first = self.privates.len() as Word;
                 let length = words.len() as u32;
                 self.privates.extend(words);
-                return Ok(Spot::local(first, length));
+                return Ok(Value::Spot(Spot::local(first, length)));
             }
             AddressSpace::Uniform => Space::Uniform,
             AddressSpace::Storage { .. } => Space::Storage,
             AddressSpace::WorkGroup => Space::Workgroup,
-            AddressSpace::Handle => return Err("textures and samplers".to_owned()),
+            AddressSpace::Handle => return self.texture(variable),
             _ => return Err("this kind of variable".to_owned()),
         };
         let number = u16::try_from(self.buffers.len()).map_err(|_| "so many buffers".to_owned())?;
@@ -210,7 +215,7 @@ impl<'m> Compiler<'m> {
             is_coherent: variable.memory_decorations.contains(naga::MemoryDecorations::COHERENT),
             is_wide: false,
         });
-        Ok(Spot::shared(number))
+        Ok(Value::Spot(Spot::shared(number)))
     }
 
     /// Words of a buffer, arrays of unknown length not counted.

@@ -42,7 +42,7 @@ impl Compiler<'_> {
     pub(super) fn spot(&mut self, pointer: Handle<Expression>) -> Result<Spot> {
         match self.value(pointer)? {
             Value::Spot(spot) => Ok(spot),
-            Value::Words(_) => Err("a pointer that is a value".to_owned()),
+            Value::Words(_) | Value::Texture(_) => Err("a pointer that is a value".to_owned()),
         }
     }
 

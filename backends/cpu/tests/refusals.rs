@@ -1,0 +1,107 @@
+//! What a plan may not say, and how that is said.
+
+use fragbuf_cpu::{Error, Mesh, Order};
+use fragbuf_templates::vocabulary::{
+    Access, Blend, Element, Objects, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
+};
+
+use crate::stage::{code, device, picture, storage, texture};
+
+/// A texture of floats, as a text declares it that does not ask the plan.
+const BLEND: &str = "
+@group(0) @binding(peeled) var floats: texture_2d<f32>;
+
+@fragment
+fn blend(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(floats, vec2<u32>(position.xy), 0);
+}
+";
+
+fn refused(rows: Row, texts: &[(&str, &str)]) -> String {
+    let code = match code(rows, texts, None) {
+        Ok(code) => code,
+        Err(error) => return error.to_string(),
+    };
+    let mut device = device(&code, Order::Submission);
+    let drawn: Result<_, Error> = device.render(&Mesh { vertices: &[], indices: &[] }, &|_| {});
+    drawn.map_or_else(|error| error.to_string(), |_| "nothing".to_owned())
+}
+
+/// Three textures of a format, the third of which a pass reads.
+fn read(format: TextureFormat, pass: Pass) -> Row {
+    let layer = |name: &str, format| texture(name, format);
+    let any = TextureFormat::R32Float;
+    storage(vec![layer("a", any), layer("b", any), layer("peeled", format)], vec![Step::Pass(pass)])
+}
+
+#[test]
+fn a_texture_is_not_read_while_it_is_drawn_to() {
+    let pass = Pass::fullscreen("blend", "blend").uses("peeled", Access::Sampled).target("peeled", Blend::Over);
+    let seen = refused(read(TextureFormat::Rgba8Unorm, pass), &[("blend", BLEND)]);
+    assert!(seen.contains("pass `blend`: `peeled`, which it reads and draws to at once"), "{seen}");
+}
+
+#[test]
+fn a_texture_is_what_the_plan_says() {
+    let pass = || picture("blend").uses("peeled", Access::Sampled);
+    let seen = refused(read(TextureFormat::R32Uint, pass()), &[("blend", BLEND)]);
+    assert!(seen.contains("the texture `floats`: it is declared otherwise than R32Uint"), "{seen}");
+    let several = Resource::new("peeled", Element::Texture(TextureFormat::Rgba8Unorm), "")
+        .by("sample", "4")
+        .by("pixel", "pixels");
+    let mut rows = read(TextureFormat::Rgba8Unorm, pass());
+    rows.resources[2] = several;
+    let seen = refused(rows, &[("blend", BLEND)]);
+    assert!(seen.contains("another number of samples than the plan's 4"), "{seen}");
+    let mut rows = read(TextureFormat::Rgba8Unorm, pass());
+    rows.resources[2] = Resource::new("peeled", Element::Word, "").by("pixel", "pixels");
+    let seen = refused(rows, &[("blend", BLEND)]);
+    assert!(seen.contains("the plan has a buffer there"), "{seen}");
+}
+
+#[test]
+fn only_resources_of_one_shape_take_each_others_place() {
+    let rows = |step: Step| {
+        let words = Resource::new("words", Element::Word, "").by("pixel", "pixels");
+        storage(
+            vec![words, texture("texels", TextureFormat::R32Uint), texture("pairs", TextureFormat::Rg32Float)],
+            vec![step],
+        )
+    };
+    for (a, b) in [("words", "texels"), ("texels", "pairs")] {
+        let seen = refused(rows(Step::Swap(a.to_owned(), b.to_owned())), &[]);
+        assert!(seen.contains(&format!("`{a}` in the place of `{b}`, which has another shape")), "{seen}");
+        let seen = refused(rows(Step::Copy { from: a.to_owned(), to: b.to_owned() }), &[]);
+        assert!(seen.contains("another shape"), "{seen}");
+    }
+}
+
+#[test]
+fn arguments_are_long_enough_and_for_one_draw() {
+    const NOTHING: &str = "
+@fragment
+fn nothing() {}
+";
+    let rows = |words: &'static str, objects: Objects| {
+        let arguments = Resource::new("arguments", Element::Word, "").by("word", words);
+        let pass = Pass::geometry("nothing", "nothing").uses("arguments", Access::Indirect);
+        storage(vec![arguments], vec![Step::Pass(Pass { objects, ..pass })])
+    };
+    let seen = refused(rows("4", Objects::All), &[("nothing", NOTHING)]);
+    assert!(seen.contains("`arguments` as arguments: it has 4 words, and needs 5"), "{seen}");
+    let seen = refused(rows("5", Objects::Visible("nothing".to_owned())), &[("nothing", NOTHING)]);
+    assert!(seen.contains("arguments in a buffer for several objects"), "{seen}");
+}
+
+#[test]
+fn loops_and_objects_ask_passes_that_there_are() {
+    let rows = |until: Until| {
+        let body = vec![Step::Clear { resource: "words".to_owned(), value: 0 }];
+        let words = Resource::new("words", Element::Word, "").by("pixel", "pixels");
+        storage(vec![words], vec![Step::Repeat(Repeat { body, until, at_most: "2".into() })])
+    };
+    let seen = refused(rows(Until::NoSamples("nobody".to_owned())), &[]);
+    assert!(seen.contains("the samples of `nobody`, which is no pass"), "{seen}");
+    let seen = refused(rows(Until::Zero("nobody".to_owned())), &[]);
+    assert!(seen.contains("`nobody`, which the plan does not have"), "{seen}");
+}

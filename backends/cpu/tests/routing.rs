@@ -1,0 +1,125 @@
+//! Stencil routing (Myers & Bavoil 2007): the i-th fragment of a pixel lands in its sample i. Right at edges only where a
+//! triangle covers pixels as wholes.
+
+use fragbuf_cpu::{Code, Order};
+use fragbuf_templates::vocabulary::{
+    Access, Blend, Compare, Coverage, Pass, Repeat, Row, Samples, StencilOperation, StencilState, Step, TextureFormat,
+    Until,
+};
+use std::sync::Arc;
+
+use crate::stage::{FAR, built_in, code, device, different, draw, fragments, picture, sampled, scattered, storage};
+
+const STORE_ROUTED: &str = "
+struct Stored {
+    @location(0) depth: f32,
+    @location(1) color: vec4<f32>,
+}
+
+@fragment
+fn store_routed(varyings: Varyings) -> Stored {
+    let fragment = varyings_fragment(varyings);
+    return Stored(fragment.depth, fragment.color);
+}
+";
+
+const NOTHING: &str = "
+@fragment
+fn nothing() {}
+";
+
+const RESOLVE_SAMPLES: &str = "
+@fragment
+fn resolve_samples(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = pixel_index(position.xy);
+    var sum = vec4<f32>();
+    var last = -1.0;
+    // The next behind the last, as often as there are samples.
+    for (var round = 0u; round < textureNumSamples(depths); round++) {
+        var nearest = 1.0;
+        var color = vec4<f32>();
+        for (var sample = 0u; sample < frame.k; sample++) {
+            let depth = depths_load(sample, pixel);
+            if depth > last && depth < nearest {
+                nearest = depth;
+                color = colors_load(sample, pixel);
+            }
+        }
+        sum += (1.0 - sum.a) * vec4<f32>(color.rgb * color.a, color.a);
+        last = nearest;
+    }
+    return sum;
+}
+";
+
+const TEXTS: [(&str, &str); 3] =
+    [("nothing", NOTHING), ("store_routed", STORE_ROUTED), ("resolve_samples", RESOLVE_SAMPLES)];
+
+/// The pass that sees the pixels whose last sample was passed: an occlusion count, for a shader that counts would run before the test.
+const OVERFLOW: usize = 2;
+
+fn stencil(compare: Compare, both: [StencilOperation; 2], reference: &'static str) -> Option<StencilState> {
+    let [fail, pass] = both;
+    Some(StencilState { resource: "routing".to_owned(), compare, fail, pass, reference: reference.into() })
+}
+
+fn rows(coverage: Coverage) -> Row {
+    use StencilOperation::{DecrementClamp, Keep, Replace};
+    let samples = |mask: &'static str| Some(Samples { count: "k".into(), mask: mask.into(), coverage });
+    let mut route = Pass::fullscreen("route", "nothing");
+    route.state.stencil = stencil(Compare::Always, [Keep, Replace], "iteration + 2");
+    route.state.samples = samples("pow2(iteration)");
+    let mut store =
+        Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
+    store.state.stencil = stencil(Compare::Equal, [DecrementClamp, DecrementClamp], "2");
+    store.state.samples = samples("pow2(k) - 1");
+    let mut overflow = Pass::fullscreen("overflow", "nothing");
+    overflow.state.stencil = stencil(Compare::Equal, [Keep, Keep], "0");
+    overflow.state.samples = samples("pow2(k - 1)");
+    let rounds = Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() };
+    storage(
+        vec![
+            sampled("depths", TextureFormat::R32Float).cleared(FAR),
+            sampled("colors", TextureFormat::Rgba8Unorm),
+            sampled("routing", TextureFormat::Depth24PlusStencil8),
+        ],
+        vec![
+            Step::Repeat(rounds),
+            Step::Pass(store),
+            Step::Pass(overflow),
+            Step::Pass(picture("resolve_samples").uses("depths", Access::Sampled).uses("colors", Access::Sampled)),
+        ],
+    )
+}
+
+fn routed(coverage: Coverage, k: u32) -> Arc<Code> {
+    code(rows(coverage), &TEXTS, Some(k)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn every_fragment_lands_in_a_sample_of_its_own_at_edges_too() {
+    for (k, count, seed) in [(2, 2, 6), (4, 4, 2), (8, 8, 3), (8, 8, 4)] {
+        let triangles = scattered(count, seed);
+        let expected = draw(&mut built_in("ab_ll"), &triangles);
+        for order in [Order::Submission, Order::Shuffled(7)] {
+            let mut device = device(&routed(Coverage::WholePixel, k), order);
+            let seen = draw(&mut device, &triangles);
+            assert_eq!(different(&seen.pixels, &expected.pixels, 1.0 / 255.0), 0, "k = {k}, seed {seed}");
+            assert_eq!(seen.samples[OVERFLOW], 0, "k = {k}");
+        }
+        // With multisample coverage fragments at edges are half there.
+        let split = draw(&mut device(&routed(Coverage::PerSample, k), Order::Submission), &triangles);
+        assert!(different(&split.pixels, &expected.pixels, 1.0 / 255.0) > 4, "k = {k}, seed {seed}");
+    }
+}
+
+#[test]
+fn pixels_with_more_fragments_than_samples_are_counted() {
+    for seed in 9..12 {
+        let triangles = scattered(24, seed);
+        let seen = draw(&mut device(&routed(Coverage::WholePixel, 4), Order::Submission), &triangles);
+        let crowded = fragments(&triangles).into_iter().filter(|count| *count > 4).count();
+        assert!(crowded > 10);
+        assert_eq!(seen.samples[OVERFLOW], crowded as u64, "seed {seed}");
+    }
+}
