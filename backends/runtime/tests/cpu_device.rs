@@ -102,7 +102,7 @@ fn leaked_pages_lose_nothing_but_room() {
     let with = |order: Order, room: u32| {
         let code = Code::of(&variant, &Registry::builtin()).unwrap();
         let sizing = Sizing::Reserve(Room::Fragments(room));
-        let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing, order, coverage: Coverage::Samples };
+        let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing, order };
         let mut device = Device::new(Arc::new(code), settings).unwrap();
         let (kept, _) = draw(&mut device, &quads);
         let counters = fragbuf_runtime::Counters::each(&device.words("counters").unwrap()).remove(0);
