@@ -1,6 +1,6 @@
 //! What rows state that may go wrong: all of it does, and nothing else.
 
-use fragbuf_checker::{Model, Report};
+use fragbuf_checker::{Limits, Model, Report};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Effect, Row};
 
@@ -43,6 +43,15 @@ fn whatever_goes_wrong_is_stated() {
             assert!(report.failure.is_some() && report.is_stated, "{} {model:?}: {:#?}", racy.0, report.failure);
         }
     }
+}
+
+/// By default no more fragments are tried than race; three do nothing that two do not.
+#[test]
+fn what_three_fragments_do_is_stated_too() {
+    let limits = Limits { fragments: vec![3], entries: vec![1, 2], ..limits(2, Model::Sequential) };
+    let report = report("kb", &[], "wgsl", &limits, &Registry::builtin()).unwrap();
+    assert!(report.is_whole && report.is_stated, "{:#?}", report.failure);
+    assert!(report.cases > 50 && report.states > 500_000, "{} cases, {} states", report.cases, report.states);
 }
 
 #[test]
