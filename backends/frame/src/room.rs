@@ -11,9 +11,10 @@ use crate::{Error, Symbols};
 pub enum Sizing {
     /// [`Sizing::Exact`] where a host step of the plan finds the number out, else room for eight fragments per pixel.
     Auto,
-    /// Exactly what the frame has: it is cut where the host reads the number back and makes room.
+    /// Exactly what the frame has: it is cut where the host reads the number back and makes room, and after each round of a
+    /// loop whose end is found out on the device.
     Exact,
-    /// What the caller says. The frame is never cut; fragments beyond are counted as lost.
+    /// What the caller says. The frame is never cut; fragments beyond are counted as lost, and such loops go on to their bound.
     Reserve(Room),
 }
 
