@@ -15,6 +15,7 @@ mod order;
 mod quads;
 mod stage;
 
+mod buckets;
 mod capture;
 mod cpu_device;
 mod embedding;
