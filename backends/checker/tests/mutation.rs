@@ -27,6 +27,15 @@ const SORTED: &[Check] = &[
 const LIST: &[Check] = &[("ab_ll", &[], "wgsl", Model::Sequential), ("ab_ll", &[], "wgsl", Model::Late)];
 const REGIONS: &[Check] = &[("ab_sb", &[], "wgsl", Model::Sequential), ("ab_sb", &[], "wgsl", Model::Late)];
 
+const PAGES: &[Check] = &[
+    ("ab_ll_paged", &[("storage.page", "2")], "wgsl", Model::Sequential),
+    ("ab_ll_paged", &[("storage.page", "1")], "wgsl", Model::Sequential),
+    ("ab_ll_paged", &[], "wgsl", Model::Late),
+    // Helper invocations are of those targets that know them.
+    ("ab_ll_paged", &[("storage.page", "2")], "spirv", Model::Sequential),
+];
+const BUCKETS: &[Check] = &[("ab_ll_bun", &[], "wgsl", Model::Sequential), ("ab_ll_bun", &[], "wgsl", Model::Late)];
+
 const HEAP: &[Check] = &[("kplus_heap", &[], "wgsl", Model::Sequential), ("kplus_heap", &[], "spirv", Model::Late)];
 const CASCADE: &[Check] = &[
     ("mdt32_coplanar", &[], "wgsl", Model::Sequential),
@@ -63,7 +72,9 @@ const RANGES: &[Check] = &[
     ("depth_partition", &[("sync", "interlock")], "spirv", Model::Late),
 ];
 
-const MUTATED: [(&str, &str, &[Check]); 15] = [
+const MUTATED: [(&str, &str, &[Check]); 17] = [
+    ("storage", "paged_list", PAGES),
+    ("storage", "bucket_lists", BUCKETS),
     ("storage", "max_heap", HEAP),
     ("storage", "cascade", CASCADE),
     ("storage", "fixed_array", ARRAY),

@@ -16,6 +16,7 @@ mod quads;
 mod samples;
 mod stage;
 
+mod buckets;
 mod capture;
 mod cpu_device;
 mod embedding;
