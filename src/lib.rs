@@ -40,7 +40,7 @@ pub mod snapshot;
 pub use fragbuf_backends::{
     Checked, File, Generation, Request, SCHEMA, TARGETS, TIERS, Target, generate, manifest, plan_json, target, tier,
 };
-pub use fragbuf_codegen::{Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
+pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
 pub use fragbuf_dsl::{builder, closure, fragment_buffer, function, glam};
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Selection, Variant, check};
 pub use fragbuf_syntax::{Parsed, parse};

@@ -152,7 +152,18 @@ fn every_technique_has_its_page() {
             technique.key
         );
     }
-    assert_eq!(files("examples/techniques", "md").len(), techniques.len(), "a page of no technique");
+    assert_eq!(files("examples/techniques", "md").len(), techniques.len() + 1, "a page of no technique");
+}
+
+/// The paper's table stands beside the pages, with ours as it is computed.
+#[test]
+fn the_papers_table_has_ours_beside_it() {
+    let path = root().join("examples/techniques/table_1.md");
+    let table = fragbuf(&["list", "--table-1"], root());
+    if updating() {
+        std::fs::write(&path, &table).unwrap();
+    }
+    assert_eq!(read(&path), table, "{} is out of date", path.display());
 }
 
 /// The guide's reference of the language is what the type checker's tables say. `INSTA_UPDATE=always` writes it anew.

@@ -19,7 +19,7 @@ mod program;
 pub use contract::{CONTRACTS, Contract, verify};
 pub use layout::{Key, Layout, Word};
 pub use own::adopt;
-pub use plan::{Bound, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
+pub use plan::{Arrival, Bound, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
 
 /// What a generator puts on the first line of every file that it writes.

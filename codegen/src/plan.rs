@@ -5,15 +5,17 @@
 mod dump;
 mod edit;
 mod roles;
+mod summary;
 mod textures;
 
 pub(crate) use roles::{axis_of, instance_row};
+pub use summary::Arrival;
+use summary::{passes, words_per_pixel};
 
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
-    Until,
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
 };
 
 use crate::Layout;
@@ -120,7 +122,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         constants: constants(&bound, parameters),
         frame: built.frame,
         resources: built.resources,
-        geometry_passes: geometry_passes(&built.steps, &bound).to_string(),
+        geometry_passes: passes(&built.steps, &bound, &|pass| pass.kind == Kind::Geometry).to_string(),
         steps: built.steps,
         words_per_pixel: built.words_per_pixel,
         bound,
@@ -165,22 +167,20 @@ fn build(
         );
     let steps: Vec<Step> = clears.chain(steps).collect();
     let mut planned = Vec::with_capacity(resources.len());
-    let mut total = Polynomial::default();
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
-        let (words, polynomial) = size(&resource, bound).map_err(|error| error.to_string())?;
-        total = total.plus(&polynomial, 1);
+        let words = size(&resource).map_err(|error| error.to_string())?;
         planned.push(Planned { resource, binding, words, part });
     }
     Ok(Built {
         frame: frame(limit, &planned, &steps),
-        words_per_pixel: words_per_pixel(&total).to_string(),
+        words_per_pixel: words_per_pixel(&planned, bound).to_string(),
         resources: planned,
         steps,
     })
 }
 
 /// Words of a resource: the product of its extents and of an element's words.
-fn size(resource: &Resource, bound: &Bound) -> Result<(Formula, Polynomial), FormulaError> {
+fn size(resource: &Resource) -> Result<Formula, FormulaError> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
         Element::Word => {}
@@ -192,44 +192,17 @@ fn size(resource: &Resource, bound: &Bound) -> Result<(Formula, Polynomial), For
         Element::BesideTextures(_) => factors.push("beside_words".into()),
         Element::EntryTextures(_) => factors.push("entry_words".into()),
     }
-    let mut product = Polynomial::number(1);
     for factor in &factors {
-        product = product.times(&factor.read()?.polynomial(&|symbol| bound.value(symbol)));
+        factor.read()?;
     }
     let texts: Vec<String> = factors.iter().map(written_factor).collect();
     let text = if texts.is_empty() { "1".to_owned() } else { texts.join(" * ") };
-    Ok((text.into(), product))
+    Ok(text.into())
 }
 
 fn written_factor(factor: &Formula) -> String {
     let is_sum = factor.0.contains(" + ") || factor.0.contains(" - ");
     if is_sum && !factor.0.contains('(') { format!("({factor})") } else { factor.to_string() }
-}
-
-/// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
-/// node, and f/4 per word of a page of four. Sizes that grow with neither, or with a fraction of the pixels, are left to the list of resources.
-fn words_per_pixel(total: &Polynomial) -> Polynomial {
-    total
-        .coefficient("pixels")
-        .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
-        .plus(&total.coefficient("kept").times(&Polynomial::symbol("f_k")), 1)
-        .plus(&total.fractions("fragments", "f"), 1)
-}
-
-/// Times that the scene is drawn, as a formula over the bounds of loops.
-fn geometry_passes(steps: &[Step], bound: &Bound) -> Polynomial {
-    steps.iter().fold(Polynomial::default(), |sum, step| match step {
-        Step::Pass(pass) if pass.kind == Kind::Geometry => sum.plus(&Polynomial::number(1), 1),
-        Step::Repeat(Repeat { body, until, at_most }) => {
-            let rounds = if let Until::Times(times) = until { times } else { at_most };
-            let rounds = rounds.read().map_or_else(
-                |_| Polynomial::symbol(&rounds.0),
-                |rounds| rounds.polynomial(&|symbol| bound.value(symbol)),
-            );
-            sum.plus(&geometry_passes(body, bound).times(&rounds), 1)
-        }
-        _ => sum,
-    })
 }
 
 /// What every program may name, then the parameters of the chosen rows.

@@ -1,6 +1,6 @@
 //! `fragbuf list`: what there is, computed from the rows.
 
-use fragbuf::{Form, Generation, Registry, Request, TARGETS, TIERS, Target, generate, tier};
+use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
 use fragbuf_templates::vocabulary::Technique;
 use serde_json::{Map, Value, json};
 
@@ -12,11 +12,17 @@ pub(crate) struct List {
     /// As JSON
     #[arg(long)]
     json: bool,
+    /// Table 1 of the k⁺-buffer paper with ours beside it, as Markdown
+    #[arg(long, conflicts_with = "json")]
+    table_1: bool,
 }
 
 impl List {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let registry = Registry::builtin();
+        if self.table_1 {
+            return output::print(&super::table_1::table(&registry)?);
+        }
         let rows: Vec<Value> =
             registry.techniques().iter().map(|technique| row(technique, &registry)).collect::<Result<_, _>>()?;
         output::print(&if self.json { output::json(&Value::from(rows)) } else { table(&rows) })
@@ -52,41 +58,86 @@ fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
         "paper": technique.paper,
         "summary": technique.summary,
         "axes": axes,
-        "words_per_pixel": words(&generation),
+        "words_per_pixel": over_plans(&generation, " or ", |plan| plan.words_per_pixel.clone()),
+        "bytes_per_pixel": over_plans(&generation, " or ", |plan| plan.bytes_per_pixel().to_string()),
         "geometry_passes": passes,
+        "draws": over_plans(&generation, " or ", |plan| plan.draw_count().to_string()),
+        "passes": over_plans(&generation, " or ", |plan| plan.pass_count().to_string()),
+        "deterministic": over_plans(&generation, " or ", |plan| yes(plan.arrival() != Arrival::Race)),
+        "order_independent": over_plans(&generation, " or ", |plan| yes(plan.arrival() == Arrival::Any)),
+        "features": over_plans(&generation, " or ", features),
         "targets": tiers,
     }))
 }
 
-/// Those of the first target's plan, and what they are on targets that follow another.
-fn words(generation: &Generation) -> String {
-    let mut words: Vec<&str> = Vec::new();
+/// What the first target's plan says, and what those of targets that follow another do.
+fn over_plans(generation: &Generation, or: &str, said: impl Fn(&Plan) -> String) -> String {
+    let mut words: Vec<String> = Vec::new();
     for planned in &generation.plans {
-        if !words.contains(&planned.plan.words_per_pixel.as_str()) {
-            words.push(&planned.plan.words_per_pixel);
+        let word = said(&planned.plan);
+        if !words.contains(&word) {
+            words.push(word);
         }
     }
-    words.join(" or ")
+    words.join(or)
 }
+
+fn yes(is_so: bool) -> String {
+    if is_so { "yes" } else { "no" }.to_owned()
+}
+
+/// What a target must offer.
+fn features(plan: &Plan) -> String {
+    let words: Vec<String> = plan.requires.iter().map(|fact| fact.word()).collect();
+    words.join("+")
+}
+
+/// Columns of the table, and the fields that they show.
+const HEADS: [&str; 11] = [
+    "key",
+    "words/pixel",
+    "bytes/pixel",
+    "geometry",
+    "draws",
+    "passes",
+    "same every frame",
+    "any order",
+    "tiers",
+    "paper",
+    "what",
+];
+const FIELDS: [&str; 11] = [
+    "key",
+    "words_per_pixel",
+    "bytes_per_pixel",
+    "geometry_passes",
+    "draws",
+    "passes",
+    "deterministic",
+    "order_independent",
+    "tiers",
+    "paper",
+    "summary",
+];
+const LAST: usize = 10;
 
 /// The same as a table for people: one line per technique.
 fn table(rows: &[Value]) -> String {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let mut lines = vec![["key", "words/pixel", "geometry", "tiers", "paper", "what"].map(str::to_owned)];
+    let mut lines = vec![HEADS.map(str::to_owned)];
     for row in rows {
         let tiers = row["targets"].as_object().map(grouped).unwrap_or_default();
-        let cells = ["key", "words_per_pixel", "geometry_passes"].map(|field| text(&row[field]));
-        let [key, words, passes] = cells;
-        lines.push([key, words, passes, tiers, text(&row["paper"]), text(&row["summary"])]);
+        let cells = FIELDS.map(|field| if field == "tiers" { tiers.clone() } else { text(&row[field]) });
+        lines.push(cells);
     }
     let widths: Vec<usize> =
-        (0..5).map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0)).collect();
+        (0..LAST).map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0)).collect();
     let mut out = String::new();
     for line in lines {
         for (cell, width) in line.iter().zip(&widths) {
             out.push_str(&format!("{cell:width$}  "));
         }
-        out.push_str(&line[5]);
+        out.push_str(&line[LAST]);
         out.push('\n');
     }
     out

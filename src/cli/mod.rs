@@ -24,6 +24,7 @@ mod progress;
 #[cfg(feature = "pictures")]
 mod render;
 mod show;
+mod table_1;
 #[cfg(feature = "pictures")]
 mod uniforms;
 #[cfg(feature = "pictures")]

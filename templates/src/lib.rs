@@ -29,8 +29,10 @@ mod shared;
 mod sort;
 mod storage;
 mod sync;
+mod table_1;
 mod technique;
 mod ties;
 
 pub use counters::COUNTERS;
 pub use registry::Registry;
+pub use table_1::{PaperRow, TABLE_1};

@@ -1,0 +1,86 @@
+//! What a plan comes to, for whoever compares plans: bytes, passes, and what a picture depends on.
+//!
+//! In: a plan. Out: formulas in the papers' notation, and words. Everything follows from facts, hazards and steps; nothing here
+//! knows a technique.
+
+use fragbuf_templates::vocabulary::{Effect, Fact, Kind, Order, Pass, Polynomial, Repeat, Soundness, Step, Until};
+
+use super::{Bound, Plan, Planned};
+
+/// What a picture depends on beside the fragments themselves, as long as the counters say that nothing was lost for want of
+/// room or time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Arrival {
+    /// On nothing: fragments may come in any order.
+    Any,
+    /// On the order in which they were submitted: every frame is the same.
+    Submission,
+    /// On which of several fragments is faster: frames may differ.
+    Race,
+}
+
+impl Plan {
+    /// What a picture depends on.
+    pub fn arrival(&self) -> Arrival {
+        let offers = self.selection.offers();
+        let has = |fact| offers.contains(&fact);
+        let effects: Vec<Effect> = self.hazards.iter().filter_map(|hazard| Effect::of(&hazard.name)).collect();
+        let order = self.selection.rows.iter().find_map(|selected| selected.row.order);
+        let decides = matches!(order, None | Some(Order::Payload | Order::Attribute));
+        let is_promised = has(Fact::KeepsAll) || has(Fact::KeepsBest) || effects.contains(&Effect::OnePerRange);
+        let is_kept = effects.iter().all(|effect| matches!(effect, Effect::OnePerRange | Effect::Uncounted));
+        if is_promised && is_kept && decides && self.soundness != Soundness::Racy {
+            Arrival::Any
+        } else if has(Fact::FixedFunction) || has(Fact::OrderedCritical) {
+            Arrival::Submission
+        } else {
+            Arrival::Race
+        }
+    }
+
+    /// Draws and dispatches of a frame, as a formula over the bounds of loops.
+    pub fn pass_count(&self) -> Polynomial {
+        passes(&self.steps, &self.bound, &|_| true)
+    }
+
+    /// Draws of a frame: the scene's, and triangles over the whole frame.
+    pub fn draw_count(&self) -> Polynomial {
+        passes(&self.steps, &self.bound, &|pass| !matches!(pass.kind, Kind::Compute { .. }))
+    }
+
+    /// Bytes per pixel, in the notation of [`Plan::words_per_pixel`].
+    pub fn bytes_per_pixel(&self) -> Polynomial {
+        words_per_pixel(&self.resources, &self.bound).times(&Polynomial::number(4))
+    }
+}
+
+/// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
+/// node, and f/4 per word of a page of four. Sizes that grow with neither, or with a fraction of the pixels, are left to the
+/// list of resources.
+pub(super) fn words_per_pixel(resources: &[Planned], bound: &Bound) -> Polynomial {
+    let total = resources.iter().fold(Polynomial::default(), |total, planned| {
+        let words = planned.words.read().map(|words| words.polynomial(&|symbol| bound.value(symbol)));
+        words.map_or_else(|_| total.clone(), |words| total.plus(&words, 1))
+    });
+    total
+        .coefficient("pixels")
+        .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
+        .plus(&total.coefficient("kept").times(&Polynomial::symbol("f_k")), 1)
+        .plus(&total.fractions("fragments", "f"), 1)
+}
+
+/// Runs of the passes that are `meant`, as a formula over the bounds of loops.
+pub(super) fn passes(steps: &[Step], bound: &Bound, meant: &dyn Fn(&Pass) -> bool) -> Polynomial {
+    steps.iter().fold(Polynomial::default(), |sum, step| match step {
+        Step::Pass(pass) if meant(pass) => sum.plus(&Polynomial::number(1), 1),
+        Step::Repeat(Repeat { body, until, at_most }) => {
+            let rounds = if let Until::Times(times) = until { times } else { at_most };
+            let rounds = rounds.read().map_or_else(
+                |_| Polynomial::symbol(&rounds.0),
+                |rounds| rounds.polynomial(&|symbol| bound.value(symbol)),
+            );
+            sum.plus(&passes(body, bound, meant).times(&rounds), 1)
+        }
+        _ => sum,
+    })
+}
