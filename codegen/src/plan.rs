@@ -11,7 +11,7 @@ pub(crate) use roles::{axis_of, instance_row};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step, Text,
     Until,
 };
 
@@ -64,7 +64,7 @@ pub struct Planned {
 
 /// Values of the symbols that are bound when code is generated.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bound(pub Vec<(&'static str, u64)>);
+pub struct Bound(pub Vec<(Text, u64)>);
 
 impl Bound {
     /// The value of `symbol`, if it is bound by now.
@@ -82,16 +82,19 @@ pub fn bucket(keep: Option<u32>) -> u32 {
 /// Plans one selection of a variant's rows.
 pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Result<Plan, Diagnostics> {
     let layout = Layout::of(variant);
-    let bound = Bound(vec![
-        ("capacity", u64::from(bucket(variant.keep))),
-        ("entry_words", u64::from(layout.entry_words())),
-        ("beside_words", u64::from(layout.beside_words())),
+    let mut bound = Bound(vec![
+        ("capacity".into(), u64::from(bucket(variant.keep))),
+        ("entry_words".into(), u64::from(layout.entry_words())),
+        ("beside_words".into(), u64::from(layout.beside_words())),
     ]);
-    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
-    let built = build(selection, limit, registry, &bound).map_err(|problem| {
+    let internal = |problem: String| {
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
-    })?;
+    };
+    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
+    let constants = constants(selection, &bound).map_err(|error| internal(error.to_string()))?;
+    bound.0.extend(constants.iter().map(|(name, value)| (name.clone().into(), u64::from(*value))));
+    let built = build(selection, limit, registry, &bound).map_err(internal)?;
     let offers = selection.offers();
     let rows = || selection.rows.iter().map(|selected| &selected.row);
     let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
@@ -102,7 +105,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         variant: variant.clone(),
         selection: selection.clone(),
         layout,
-        constants: built.constants,
+        constants,
         frame: built.frame,
         resources: built.resources,
         geometry_passes: geometry_passes(&built.steps, &bound).to_string(),
@@ -119,7 +122,6 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
 }
 
 struct Built {
-    constants: Vec<(String, u32)>,
     frame: Vec<String>,
     resources: Vec<Planned>,
     steps: Vec<Step>,
@@ -149,7 +151,6 @@ fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound
         planned.push(Planned { resource, binding, words });
     }
     Ok(Built {
-        constants: constants(selection, bound).map_err(|error| error.to_string())?,
         frame: frame(limit, &planned, &steps),
         words_per_pixel: words_per_pixel(&total).to_string(),
         resources: planned,

@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn formulas_keep_their_meaning() {
-        let bound = Bound(vec![("entry_words", 3)]);
+        let bound = Bound(vec![("entry_words".into(), 3)]);
         let of = |text: &'static str| formula(&Formula::from(text), &bound);
         let (parameters, text) = of("pixels * k * entry_words");
         assert_eq!((parameters, text.as_str()), (vec!["width", "height", "k"], "(((width * height) * k) * 3)"));

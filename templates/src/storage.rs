@@ -41,7 +41,14 @@ fn sorted_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed, Fact::SurvivesRaces],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+            Fact::SurvivesRaces,
+        ],
         // Entries are in the order of their keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
@@ -100,6 +107,7 @@ fn fixed_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed],
+        implies: vec![(Fact::Limited, Fact::BestSuffice)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(

@@ -176,9 +176,14 @@ fn placed(subject: &Subject, base: &Case, cases: &mut Vec<Case>) {
 }
 
 impl Subject {
-    /// Whether the storage keeps no more than k; else it keeps all.
+    /// Whether what the storage holds depends on k; else it holds all.
     pub(crate) fn keeps_best(&self) -> bool {
-        !self.plan.selection.offers().contains(&Fact::KeepsAll)
+        !self.keeps_all() || self.is_handed_the_best()
+    }
+
+    /// Whether the storage keeps whatever it is handed.
+    pub(crate) fn keeps_all(&self) -> bool {
+        self.plan.selection.offers().contains(&Fact::KeepsAll)
     }
 
     /// Whether what must be kept is known: all, or the k best. Of any other storage only that is known which holds for all.

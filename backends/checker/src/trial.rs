@@ -63,12 +63,14 @@ impl<'s> Trial<'s> {
         let machines = case.new.iter().map(|fragment| machine(&runnable.program, &fragment.inputs)).collect();
         let first = ground.start(words, machines);
         let fragments = case.prior.iter().chain(real).map(|fragment| fragment.words.clone()).collect();
+        let k = case.symbols.k.unwrap_or(u32::MAX) as usize;
         let policy = Policy {
-            k: subject.keeps_best().then(|| case.symbols.k.unwrap_or(u32::MAX) as usize),
+            k: (!subject.keeps_all()).then_some(k),
             deciding: deciding_words(subject),
             too_many: case.too_many + u32::from(case.has_unseen),
             may_give_up: search.may_give_up,
-            culls: subject.bound.is_some(),
+            culls: subject.turns_away(),
+            handed: subject.is_handed_the_best().then_some(k),
             fragments,
             neighbours: 1,
             neighbours_lost: u32::from(case.reserved.is_some()),

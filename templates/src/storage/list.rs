@@ -32,6 +32,7 @@ pub(super) fn linked_list() -> Row {
         ],
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll],
+        implies: vec![(Fact::Limited, Fact::BestSuffice)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new("storage", "linked_list", "a list per pixel through one pool of nodes", "Yang et al. 2010; K15 §2")
@@ -68,7 +69,7 @@ pub(super) fn ordered_list() -> Row {
             ),
         ],
         calls: vec!["overflow", "counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsBest],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice],
         // The list is in the order of its keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],

@@ -73,7 +73,14 @@ pub(super) fn bounded_regions() -> Row {
         resources,
         steps,
         calls: vec!["overflow", "counters"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Counted, Fact::Indexed],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Counted,
+            Fact::Indexed,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter {

@@ -41,7 +41,13 @@ pub(super) fn revised_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter {
@@ -85,7 +91,13 @@ fn worst_first(row: Row) -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row

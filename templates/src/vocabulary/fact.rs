@@ -41,6 +41,7 @@ facts! {
     KeepsAll "a storage that keeps every fragment";
     KeepsBest "a storage that keeps the k best";
     SelectsBest "that the k best are chosen among all";
+    BestSuffice "a storage that may be handed the k best fragments alone";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
     CanReplace "that a kept fragment can be replaced";
     Counted "the number of fragments of each pixel, known before they are stored";

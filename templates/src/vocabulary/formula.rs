@@ -1,8 +1,8 @@
 //! Sizes as formulas: the same text in a row, in a plan's dump and in the manifest.
 //!
 //! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
-//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`), allocation (`width height
-//! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned.
+//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`, and the constants of the
+//! chosen rows' parameters, which are written in capitals), allocation (`width height pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
