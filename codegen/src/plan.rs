@@ -11,8 +11,8 @@ pub(crate) use roles::{axis_of, instance_row};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step, Text,
-    Until,
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
+    Text, Until,
 };
 
 use crate::Layout;

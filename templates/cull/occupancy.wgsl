@@ -1,7 +1,7 @@
 // Occupancy culling (Vasilakis & Papaioannou 2015): turns away what is surely not among the k best, whatever the order
 // of arrival. Two geometry passes go before the store pass. The first finds the range of a pixel's keys; the second
-// cuts the range into 32 * OCCUPANCY_WORDS buckets and sets the bit of every fragment's bucket. Then the k-th bit that is
-// set ends the range: what lies beyond its bucket is turned away.
+// cuts it into 32 * OCCUPANCY_WORDS buckets and sets the bit of every fragment's bucket. Then the bucket of the k-th
+// bit ends the range: what lies beyond is turned away.
 //
 // Invariant: buckets are in the order of keys, and k of them up to the end of the narrowed range hold a fragment. So at
 // least k fragments, of different keys, are better than any that is turned away. Where fewer than k bits are set, the
@@ -11,11 +11,11 @@
 // depth (0.5 to 1, 0.25 to 0.5, ...) those are the paper's uniform intervals; over several, nearer ones are finer. Any
 // criterion has keys. Keys are told apart by the upper 19 bits of their distance from the nearest.
 //
-// Memory: OCCUPANCY_WORDS + 2 words per pixel; the paper's d + 3, without a word for the bound. The k-buffer's words are
-// not shared, which may be reset already.
+// Memory: OCCUPANCY_WORDS + 2 words per pixel; the paper's d + 3, without a word for the bound. The k-buffer's words
+// are not shared: they have been reset by then.
 
-/// Words of a pixel in `occupancy`: the complement of its nearest key, so that 0 is none; its farthest key, from `narrow`
-/// on the last that may stay; then the bits.
+/// Words of a pixel in `occupancy`: the complement of its nearest key, so that 0 is none; its farthest key, once it is
+/// narrowed the last that may stay; then the bits.
 const NEAREST = 0u;
 const FARTHEST = 1u;
 const BITS = 2u;

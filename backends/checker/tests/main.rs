@@ -11,6 +11,7 @@
 mod compiles;
 mod litmus;
 mod mutation;
+mod occupancy;
 mod regressions;
 mod subjects;
 mod verdicts;

@@ -11,7 +11,7 @@ use fragbuf_templates::vocabulary::{Row, Template};
 use crate::subjects::{limits, report};
 
 /// Axis and key of a mutated row, and what checks it: technique, changes, target, model.
-type Check = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model);
+pub(crate) type Check = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model);
 
 const KPLUS: &[Check] = &[
     ("kplus_array", &[], "wgsl", Model::Sequential),
@@ -160,11 +160,11 @@ const SURVIVORS: &[(&str, &str, &str, &str)] = &[
 ];
 
 /// One change.
-struct Mutant {
-    text: String,
+pub(crate) struct Mutant {
+    pub(crate) text: String,
     /// The line that was changed, and what it became.
-    before: String,
-    after: String,
+    pub(crate) before: String,
+    pub(crate) after: String,
 }
 
 #[test]
@@ -220,7 +220,7 @@ fn every_small_change_is_noticed() {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Outcome {
+pub(crate) enum Outcome {
     Noticed,
     Survived,
     /// naga or the linker refuses it: it is no program.
@@ -233,7 +233,7 @@ fn deep(model: Model) -> Limits {
     Limits { fragments: vec![7], entries: vec![6], seeds: Some(2), ..limits(2, model) }
 }
 
-fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
+pub(crate) fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     let registry = Registry::builtin();
     let old: &Row = registry.row(axis, key).unwrap();
     let path = old.template.clone().unwrap().path;
@@ -256,7 +256,7 @@ fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     Outcome::Survived
 }
 
-fn mutants(text: &str) -> Vec<Mutant> {
+pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();
     for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
@@ -349,6 +349,8 @@ fn plain(line: &str) -> Option<(String, String)> {
         "sub" => "old - value",
         "exchange" => "value",
         "min" => "min(old, value)",
+        "max" => "max(old, value)",
+        "or" => "old | value",
         other => panic!("no plain form of {other}"),
     };
     let function = format!(

@@ -136,14 +136,3 @@ fn schedules_by_chance_find_what_is_wrong_and_nothing_else() {
         assert_eq!(report.failure.is_none(), holds, "{key} {target} {model:?}: {:#?}", report.failure);
     }
 }
-
-#[test]
-fn temporary() {
-    let registry = Registry::builtin();
-    for (key, set, target, model, holds) in VERDICTS.into_iter().filter(|v| v.1 == OCCUPANCY) {
-        let t = std::time::Instant::now();
-        let report = report(key, set, target, &limits(3, model), &registry).unwrap();
-        println!("{key} {set:?} {target} {model:?}: {} cases, {} states {:?}", report.cases, report.states, t.elapsed());
-        assert_eq!(report.failure.is_none(), holds, "{key} {set:?} {target} {model:?}: {:#?}", report.failure);
-    }
-}

@@ -21,6 +21,7 @@ mod embedding;
 mod failures;
 mod larger;
 mod losses;
+mod occupancy;
 mod rasterisation;
 mod sizing;
 mod sloped;

@@ -41,13 +41,7 @@ pub(super) fn revised_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::CanReplace,
-            Fact::Indexed,
-        ],
+        offers: vec![Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter {
@@ -91,13 +85,7 @@ fn worst_first(row: Row) -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::CanReplace,
-            Fact::Indexed,
-        ],
+        offers: vec![Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row
