@@ -69,6 +69,7 @@ pub fn named() -> Vec<Case> {
         ("kplus_ab_sb", technique("kplus_ab_sb"), vec![("k", "32")]),
         ("reserving_interlock", technique("kplus_array_revised"), vec![("sync", "interlock")]),
         ("occupancy", technique("kplus_array"), vec![("cull", "occupancy")]),
+        ("occupancy_early", technique("kb_ps"), vec![("cull", "occupancy_early else occupancy")]),
         ("occupancy_custom", text(CUSTOM), vec![("cull", "occupancy"), ("cull.words", "2"), ("counters", "all")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),

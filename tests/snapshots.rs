@@ -27,6 +27,7 @@ fn glsl() {
         ("custom", ["store", "resolve"]),
         ("ab_sb", ["scan_blocks", "store"]),
         ("interlock_else_lock", ["store", "store"]),
+        ("occupancy_early", ["limit", "store"]),
     ] {
         let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
         let generation = generated(&checked(&description, &set).unwrap());

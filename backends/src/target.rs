@@ -71,8 +71,15 @@ pub struct File {
 }
 
 /// What both dialects of GLSL offer.
-const GLSL_FACTS: &[Fact] =
-    &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics, Fact::Linkable];
+const GLSL_FACTS: &[Fact] = &[
+    Fact::FragmentAtomics,
+    Fact::Fences,
+    Fact::Coherent,
+    Fact::Interlock,
+    Fact::U64Atomics,
+    Fact::EarlyDepth,
+    Fact::Linkable,
+];
 
 /// Every target, in the order in which files and manifests list them.
 pub const TARGETS: &[Target] = &[
@@ -85,9 +92,9 @@ pub const TARGETS: &[Target] = &[
     },
     Target {
         name: "wgsl-native",
-        summary: "WGSL with naga's coherent buffers and 64-bit atomics: wgpu on native back ends",
+        summary: "WGSL with naga's coherent buffers, 64-bit atomics and early depth tests: wgpu on native back ends",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::EarlyDepth, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -108,7 +115,14 @@ pub const TARGETS: &[Target] = &[
         name: "spirv",
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Interlock, Fact::U64Atomics],
+        offers: &[
+            Fact::FragmentAtomics,
+            Fact::Fences,
+            Fact::Coherent,
+            Fact::Interlock,
+            Fact::U64Atomics,
+            Fact::EarlyDepth,
+        ],
         emit: spirv::emit,
     },
     Target {

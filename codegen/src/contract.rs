@@ -50,6 +50,7 @@ pub const CONTRACTS: &[Contract] = &[
     row("cull", "cull_measure", "(pixel: u32, entry: Packed)", "takes a fragment into the range of the pixel's keys"),
     row("cull", "cull_occupy", "(pixel: u32, entry: Packed)", "marks where in that range a fragment lies"),
     row("cull", "cull_narrow", "(pixel: u32)", "narrows that range to the keys that may stay"),
+    row("cull", "cull_last", "(pixel: u32) -> u32", "the last key that may stay"),
     row("overflow", "on_lost", "(lost: Packed, reason: u32)", "disposes of a fragment that finds no place"),
     row("addressing", "pixel_index", "(position: vec2<f32>) -> u32", "the pixel's number, below pixel_count()"),
     row("addressing", "pixel_count", "() -> u32", "pixels of the frame"),

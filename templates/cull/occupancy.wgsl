@@ -38,6 +38,10 @@ fn cull_occupy(pixel: u32, entry: Packed) {
 }
 
 fn cull_narrow(pixel: u32) {
+    occupancy_store(FARTHEST, pixel, cull_last(pixel));
+}
+
+fn cull_last(pixel: u32) -> u32 {
     var left = frame.k;
     for (var word = 0u; word < OCCUPANCY_WORDS; word++) {
         var bits = occupancy_load(BITS + word, pixel);
@@ -47,25 +51,25 @@ fn cull_narrow(pixel: u32) {
             for (; left > 1u; left--) {
                 bits &= bits - 1u;
             }
-            occupancy_end(pixel, 32u * word + countTrailingZeros(bits));
-            return;
+            return occupancy_end(pixel, 32u * word + countTrailingZeros(bits));
         }
         left -= count;
     }
+    return occupancy_load(FARTHEST, pixel);
 }
 
 fn cull_fragment(pixel: u32, entry: Packed) -> bool {
     return entry.key > occupancy_load(FARTHEST, pixel);
 }
 
-/// The range ends with the last key of this bucket, which is the one before the first step of the next.
-fn occupancy_end(pixel: u32, bucket: u32) {
+/// The last key of a bucket, which is the one before the first step of the next.
+fn occupancy_end(pixel: u32, bucket: u32) -> u32 {
     let nearest = ~occupancy_load(NEAREST, pixel);
     let span = occupancy_load(FARTHEST, pixel) - nearest;
     let next_step = ((bucket + 1u) * occupancy_steps(span) + BUCKETS - 1u) / BUCKETS;
     // Behind the last step of all words the shift wraps to 0, and what is before it to the last word.
     let last = (next_step << occupancy_shift(span)) - 1u;
-    occupancy_store(FARTHEST, pixel, nearest + min(last, span));
+    return nearest + min(last, span);
 }
 
 /// By how many bits distances from the nearest key are cut to steps: to 19 bits, which times the buckets are a word.

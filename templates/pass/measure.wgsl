@@ -1,5 +1,5 @@
-// Draws the scene ahead of the store pass, for a cull that wants the range of each pixel's keys: the same fragments, the
-// same constraints.
+// Draws the scene ahead of the store pass, for a cull that wants the range of each pixel's keys: the same fragments,
+// the same constraints.
 
 @fragment
 fn measure(varyings: Varyings) {

@@ -1,5 +1,5 @@
-// Draws the scene ahead of the store pass, for a cull that wants to know where in their range each pixel's keys lie: the
-// same fragments, the same constraints.
+// Draws the scene ahead of the store pass, for a cull that wants to know where in their range each pixel's keys lie:
+// the same fragments, the same constraints.
 
 @fragment
 fn occupy(varyings: Varyings) {

@@ -72,6 +72,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "cull"],
         ),
         row(
+            "limit",
+            "writes the depth beyond which each pixel's fragments are turned away",
+            template!("pass/limit"),
+            vec!["addressing", "cull"],
+        ),
+        row(
             "settle",
             "draws the scene again for what a storage could not settle in one pass",
             template!("pass/settle"),

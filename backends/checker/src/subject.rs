@@ -215,7 +215,7 @@ fn question(plan: &Plan, anchor: &str) -> Pass {
     let mut pass = Pass::compute(anchor, anchor, "1", "1");
     let mut passes = plan.passes();
     // What reads a pixel out in the frame itself may count: its resources are touched as there.
-    if let Some(resolve) = passes.iter().position(|pass| pass.kind == Kind::Fullscreen) {
+    if let Some(resolve) = passes.iter().rposition(|pass| pass.kind == Kind::Fullscreen) {
         let resolve = passes.remove(resolve);
         let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic);
         pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();

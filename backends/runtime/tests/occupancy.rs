@@ -1,10 +1,12 @@
 //! Occupancy culling before every storage that may be handed the k best alone: what stays, and the picture, are what they
 //! are without it, and what was turned away is counted.
 
+use fragbuf_cpu::Order;
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Renderer, Room, Settings, Sizing, block_on};
 
 use crate::capture::{GLASS_KEEPS, cases, compare, glass, glass_resolve, scattered, set_uniforms};
+use crate::cpu_device::{device, draw};
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE};
@@ -147,4 +149,24 @@ fn slices_turn_away_the_same() {
     });
     assert!(culled[0].1 > 500, "{}", culled[0].1);
     assert!(culled[0] == culled[1]);
+}
+
+/// What no device but the CPU's runs yet: depth attachments are refused by the runtime, by name.
+#[test]
+fn a_depth_test_turns_away_before_the_shader() {
+    for key in ["kplus_array", "kplus_heap", "kplus_ab_sb", "kb_ps", "mdt32_coplanar", "kb_mdt64"] {
+        let set = [("k", "4"), ("cull", "occupancy_early"), ("counters", "all")];
+        let mut device = device(&technique(key, &set), Order::Submission);
+        let (mut seen, mut drawn) = (0, 0);
+        for (name, quads) in cases().into_iter().chain(deep()) {
+            for quads in orders(&quads).into_iter().take(2) {
+                let kept = draw(&mut device, &quads).0;
+                assert_eq!(kept, oracle::kept_words(&PLAIN, &quads, Some(4)), "{key}, {name}: {quads:?}");
+                seen += device.words("counters").unwrap()[0];
+                drawn += oracle::total(&PLAIN, &quads) as u32;
+            }
+        }
+        println!("{key}: the shader sees {seen} of {drawn}");
+        assert!(seen < drawn * 3 / 4, "{key}: the shader sees {seen} of {drawn}");
+    }
 }
