@@ -12,7 +12,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Row, Template};
 
 use crate::mutation::{Check, Outcome, judge, mutants};
-use crate::subjects::variant;
+use crate::subjects::{limits, report, variant};
 
 /// The functions of one variant.
 pub(crate) struct Cull {
@@ -213,6 +213,32 @@ fn the_k_best_are_never_turned_away() {
                     assert!(!away || better.len() >= k as usize, "{key:x} of {keys:x?} for k = {k}");
                 }
             }
+        }
+    }
+}
+
+/// Technique, value of the axis, target, model. The passes before the store pass are explored too.
+const HOLDS: [(&str, &str, &str, Model); 8] = [
+    ("kplus_array", "occupancy", "wgsl", Model::Sequential),
+    ("kplus_array", "occupancy", "spirv", Model::Late),
+    ("kplus_ab_sb", "occupancy", "wgsl", Model::Sequential),
+    ("mdt32_coplanar", "occupancy", "wgsl", Model::Late),
+    ("kb_ll", "occupancy", "spirv", Model::Late),
+    ("kb_ab_ll", "occupancy", "wgsl", Model::Late),
+    ("kplus_array", "occupancy_early", "spirv", Model::Late),
+    ("mdt32_coplanar", "occupancy_early", "spirv", Model::Late),
+];
+
+#[test]
+fn no_order_of_fragments_changes_what_stays() {
+    let registry = Registry::builtin();
+    for (key, cull, target, model) in HOLDS {
+        for words in ["1", "4"] {
+            let set = [("cull", cull), ("cull.words", words)];
+            let report = report(key, &set, target, &limits(2, model), &registry).unwrap();
+            println!("{key} {set:?} {target} {model:?}: {} cases, {} states", report.cases, report.states);
+            assert_eq!(report.failure, None, "{key} {set:?} {target} {model:?}");
+            assert!(report.is_whole && report.cases >= 100, "{key} {set:?} {target} {model:?}: {}", report.cases);
         }
     }
 }

@@ -11,10 +11,9 @@ use crate::subjects::{limits, report, target, variant};
 type Verdict = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model, bool);
 
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
-const OCCUPANCY: &[(&str, &str)] = &[("cull", "occupancy")];
 const INTERLOCK: &[(&str, &str)] = &[("sync", "interlock")];
 
-const VERDICTS: [Verdict; 38] = [
+const VERDICTS: [Verdict; 34] = [
     ("kb", &[], "wgsl", Model::Sequential, false),
     ("kb", &[], "spirv", Model::Late, false),
     ("kb", LOCKED, "wgsl", Model::Sequential, true),
@@ -45,10 +44,6 @@ const VERDICTS: [Verdict; 38] = [
     ("kplus_ab_sb", &[], "wgsl", Model::Sequential, true),
     ("kplus_ab_sb", &[], "spirv", Model::Late, true),
     ("kb_mdt64", &[], "wgsl-native", Model::Sequential, true),
-    ("kplus_array", OCCUPANCY, "wgsl", Model::Sequential, true),
-    ("kplus_array", OCCUPANCY, "spirv", Model::Late, true),
-    ("mdt32_coplanar", OCCUPANCY, "wgsl", Model::Late, true),
-    ("kb_ab_ll", OCCUPANCY, "wgsl", Model::Late, true),
     ("ab_ll", &[], "wgsl", Model::Sequential, true),
     ("ab_ll", &[], "wgsl", Model::Late, true),
     ("ab_sb", &[], "wgsl", Model::Sequential, true),
