@@ -151,10 +151,23 @@ fn slices_turn_away_the_same() {
     assert!(culled[0] == culled[1]);
 }
 
-/// What no device but the CPU's runs yet: depth attachments are refused by the runtime, by name.
+/// Techniques whose depth test the CPU device runs; they belong among those of `COMPOSED`, by `occupancy_early`, once the
+/// runtime has depth attachments.
+const MERGED_LATER: [&str; 6] = ["kplus_array", "kplus_heap", "kplus_ab_sb", "kb_ps", "mdt32_coplanar", "kb_mdt64"];
+
+#[test]
+fn depth_attachments_are_refused_by_name() {
+    let stage = stage::device();
+    for key in MERGED_LATER {
+        let variant = technique(key, &[("cull", "occupancy_early")]);
+        let refusal = renderer(&stage, &shaders(&variant, "wgsl-native"), &settings()).err().unwrap().to_string();
+        assert!(refusal.contains("a depth or stencil test") || refusal.contains("limits"), "{key}: {refusal}");
+    }
+}
+
 #[test]
 fn a_depth_test_turns_away_before_the_shader() {
-    for key in ["kplus_array", "kplus_heap", "kplus_ab_sb", "kb_ps", "mdt32_coplanar", "kb_mdt64"] {
+    for key in MERGED_LATER {
         let set = [("k", "4"), ("cull", "occupancy_early"), ("counters", "all")];
         let mut device = device(&technique(key, &set), Order::Submission);
         let (mut seen, mut drawn) = (0, 0);
