@@ -64,6 +64,17 @@ const CASES: &[(&str, &[Expected])] = &[
         &[("duplicate", 3, 5, "leave one of them out")],
     ),
     (
+        "buffer B from kplus_heap {\n    cull: occupancy { words: 1 };\n}",
+        &[("bad-option", 2, 30, "`words: 2` or more")],
+    ),
+    ("buffer B from ab_ll {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`cull: none`")]),
+    ("buffer B from kb_ab_sb {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`storage: linked_list`")]),
+    ("buffer B from depth_partition {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`storage: sorted_array`")]),
+    (
+        "buffer B from kplus_array {\n    keep 8 least |f| f.depth - f.color.w;\n    cull: occupancy_early;\n}",
+        &[("unmet", 3, 11, "`cull: occupancy`")],
+    ),
+    (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
         &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],
     ),

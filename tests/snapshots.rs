@@ -27,6 +27,7 @@ fn glsl() {
         ("custom", ["store", "resolve"]),
         ("ab_sb", ["scan_blocks", "store"]),
         ("interlock_else_lock", ["store", "store"]),
+        ("occupancy_early", ["limit", "store"]),
     ] {
         let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
         let generation = generated(&checked(&description, &set).unwrap());
@@ -43,11 +44,16 @@ fn glsl() {
 /// SPIR-V by what an engine depends on: ids would change with every naga.
 #[test]
 fn spirv_summaries() {
-    let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "kplus_array").unwrap();
-    let generation = generated(&checked(&description, &set).unwrap());
-    for file in generation.files.iter().filter(|file| file.target == "spirv") {
-        let name = file.path.replace('/', ".");
-        insta::assert_snapshot!(format!("kplus_array.{name}"), summary(&file.bytes));
+    let cases: [(&str, &[&str]); 2] =
+        [("kplus_array", &["reset", "store", "resolve"]), ("occupancy_early", &["limit", "store"])];
+    for (case, passes) in cases {
+        let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
+        let generation = generated(&checked(&description, &set).unwrap());
+        let wanted = |file: &&fragbuf::File| file.target == "spirv" && passes.contains(&file.pass.as_str());
+        for file in generation.files.iter().filter(wanted) {
+            let name = file.path.replace('/', ".");
+            insta::assert_snapshot!(format!("{case}.{name}"), summary(&file.bytes));
+        }
     }
 }
 

@@ -42,6 +42,7 @@ pub(crate) fn capabilities(profile: Profile) -> Capabilities {
                 | Capabilities::SHADER_INT64
                 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
                 | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS
+                | Capabilities::EARLY_DEPTH_TEST
         }
     }
 }

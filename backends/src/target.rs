@@ -89,6 +89,7 @@ const GLSL_FACTS: &[Fact] = &[
     Fact::Interlock,
     Fact::OrderedInterlock,
     Fact::U64Atomics,
+    Fact::EarlyDepth,
     Fact::SampleMask,
     Fact::Linkable,
 ];
@@ -104,9 +105,16 @@ pub const TARGETS: &[Target] = &[
     },
     Target {
         name: "wgsl-native",
-        summary: "WGSL with naga's coherent buffers and 64-bit atomics: wgpu on native back ends",
+        summary: "WGSL with naga's coherent buffers, 64-bit atomics and early depth tests: wgpu on native back ends",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Coherent, Fact::U64Atomics, Fact::SampleMask, Fact::Linkable],
+        offers: &[
+            Fact::FragmentAtomics,
+            Fact::Coherent,
+            Fact::U64Atomics,
+            Fact::EarlyDepth,
+            Fact::SampleMask,
+            Fact::Linkable,
+        ],
         emit: wgsl::emit,
     },
     Target {
@@ -141,6 +149,7 @@ pub const TARGETS: &[Target] = &[
             Fact::Interlock,
             Fact::OrderedInterlock,
             Fact::U64Atomics,
+            Fact::EarlyDepth,
             Fact::SampleMask,
         ],
         emit: spirv::emit,

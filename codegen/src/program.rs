@@ -197,9 +197,12 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let mut templates: Vec<Source> =
         registry.shared().iter().map(|template| Source::template(template, &no_renames)).collect();
     templates.extend(instances::sources(pass, plan, registry)?);
-    for skeleton in stage_text.into_iter().chain([pass.skeleton.as_str()]) {
-        templates.push(instances::skeleton(skeleton, registry)?);
+    if let Some(stage) = stage_text {
+        templates.push(instances::skeleton(stage, registry)?);
     }
+    let skeleton = instances::skeleton(&pass.skeleton, registry)?;
+    let is_early = pass.state.depth.as_ref().is_some_and(|depth| depth.early);
+    templates.push(if is_early { skeleton.with_early_depth()? } else { skeleton });
     let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
     let mut sources = emit::sources(plan, pass, linking, &atomics);
     sources.extend(templates);

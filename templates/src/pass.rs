@@ -79,6 +79,30 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage"],
         ),
         row(
+            "measure",
+            "draws the scene ahead of the store pass, for the range of each pixel's keys",
+            template!("pass/measure"),
+            vec!["addressing", "cull"],
+        ),
+        row(
+            "occupy",
+            "draws the scene ahead of the store pass, for where in their range each pixel's keys lie",
+            template!("pass/occupy"),
+            vec!["addressing", "cull"],
+        ),
+        row(
+            "narrow",
+            "narrows the range of each pixel's keys to those that may stay",
+            template!("pass/narrow"),
+            vec!["addressing", "cull"],
+        ),
+        row(
+            "limit",
+            "writes the depth beyond which each pixel's fragments are turned away",
+            template!("pass/limit"),
+            vec!["addressing", "cull"],
+        ),
+        row(
             "settle",
             "draws the scene again for what a storage could not settle in one pass",
             template!("pass/settle"),

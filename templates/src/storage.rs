@@ -55,6 +55,7 @@ fn sorted_array() -> Row {
         calls: vec!["overflow"],
         offers: vec![
             Fact::KeepsBest,
+            Fact::BestSuffice,
             Fact::BoundAnyInstant,
             Fact::CanReplace,
             Fact::Indexed,
@@ -125,6 +126,7 @@ fn fixed_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
+        implies: vec![(Fact::Limited, Fact::BestSuffice)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(

@@ -176,8 +176,13 @@ fn placed(subject: &Subject, comers: &Comers, cases: &mut Vec<Case>) -> Result<(
 }
 
 impl Subject {
-    /// Whether the storage keeps no more than k; else it keeps all.
+    /// Whether what the storage holds depends on k; else it holds all.
     pub(crate) fn keeps_best(&self) -> bool {
-        !self.plan.selection.offers().contains(&Fact::KeepsAll)
+        !self.keeps_all() || self.is_handed_the_best()
+    }
+
+    /// Whether the storage keeps whatever it is handed.
+    pub(crate) fn keeps_all(&self) -> bool {
+        self.plan.selection.offers().contains(&Fact::KeepsAll)
     }
 }

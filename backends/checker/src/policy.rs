@@ -23,6 +23,8 @@ pub(crate) struct Policy {
     pub(crate) may_give_up: bool,
     /// Whether fragments can be turned away without being counted as a loss.
     pub(crate) culls: bool,
+    /// Where the storage may be handed so many of the best alone: those beyond can be turned away, kept by no one.
+    pub(crate) handed: Option<usize>,
     /// Words of every fragment of this pixel, and how many the neighbour got.
     pub(crate) fragments: Vec<Vec<u32>>,
     pub(crate) neighbours: u32,
@@ -112,8 +114,19 @@ impl Policy {
     pub(crate) fn choices(&self, gone: usize) -> impl Iterator<Item = Vec<Vec<u32>>> {
         let count = self.fragments.len();
         (0..1u32 << count)
-            .filter(move |out| out.count_ones() as usize == gone)
+            .filter(move |out| self.can_be_out(*out, gone))
             .map(move |out| (0..count).filter(|at| out >> at & 1 == 0).map(|at| self.fragments[at].clone()).collect())
+    }
+
+    /// Whether the fragments of this bit mask can be missing: so many are `gone`, and any others were turned away.
+    fn can_be_out(&self, out: u32, gone: usize) -> bool {
+        let Some(turned_away) = (out.count_ones() as usize).checked_sub(gone) else { return false };
+        let Some(k) = self.handed.filter(|_| turned_away > 0) else { return turned_away == 0 };
+        let mut keys: Vec<u32> = self.fragments.iter().map(|words| words[0]).collect();
+        keys.sort_unstable();
+        let is_beyond = |key: u32| keys.get(k.wrapping_sub(1)).is_some_and(|last| key > *last);
+        let missing = self.fragments.iter().enumerate().filter(|(at, _)| out >> at & 1 == 1);
+        turned_away <= missing.filter(|(_, words)| is_beyond(words[0])).count()
     }
 
     /// The same multiset. Where only the key decides, ties at the edge may fall either way.

@@ -154,6 +154,16 @@ impl Subject {
         self.plan.soundness == Soundness::Racy
     }
 
+    /// Whether fragments can be turned away without being counted as a loss.
+    pub(crate) fn turns_away(&self) -> bool {
+        self.bound.is_some() || self.is_handed_the_best()
+    }
+
+    /// Whether a row turns fragments away by what the pixel's others are, kept or not.
+    pub(crate) fn is_handed_the_best(&self) -> bool {
+        self.plan.selection.rows.iter().any(|selected| selected.row.requires.contains(&Fact::BestSuffice))
+    }
+
     /// The number of the memory that a binding is; groups follow each other.
     pub(crate) fn memory_of(binding: Option<(u32, u32)>) -> usize {
         binding.map_or(usize::MAX, |(group, binding)| (group * 64 + binding) as usize)
@@ -191,7 +201,7 @@ fn question(plan: &Plan, anchor: &str) -> Pass {
     let mut pass = Pass::compute(anchor, anchor, "1", "1");
     let mut passes = plan.passes();
     // What reads a pixel out in the frame itself may count: its resources are touched as there.
-    if let Some(resolve) = passes.iter().position(|pass| pass.kind == Kind::Fullscreen) {
+    if let Some(resolve) = passes.iter().rposition(|pass| pass.kind == Kind::Fullscreen) {
         let resolve = passes.remove(resolve);
         let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic);
         pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();

@@ -13,6 +13,7 @@ mod hazards;
 mod litmus;
 mod mutants;
 mod mutation;
+mod occupancy;
 mod regressions;
 mod repairs;
 mod repeated;

@@ -13,7 +13,7 @@ use crate::subjects::{limits, report};
 use crate::survivors::SURVIVORS;
 
 /// Axis and key of a mutated row, and what checks it: technique, changes, target, model.
-type Check = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model);
+pub(crate) type Check = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model);
 
 const KPLUS: &[Check] = &[
     ("kplus_array", &[], "wgsl", Model::Sequential),
@@ -159,7 +159,7 @@ fn every_small_change_is_noticed() {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Outcome {
+pub(crate) enum Outcome {
     Noticed,
     Survived,
     /// naga or the linker refuses it: it is no program.
@@ -172,7 +172,7 @@ fn deep(model: Model) -> Limits {
     Limits { fragments: vec![7], entries: vec![6], seeds: Some(2), ..limits(2, model) }
 }
 
-fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
+pub(crate) fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     let registry = Registry::builtin();
     let old: &Row = registry.row(axis, key).unwrap();
     let path = old.template.clone().unwrap().path;

@@ -279,7 +279,7 @@ pub fn glass(technique: &str, keep: &str) -> Variant {
     described(&GLASS.replace("TECHNIQUE", technique).replace("KEEP", keep))
 }
 
-fn glass_resolve(kept: &[Quad]) -> [f64; 4] {
+pub fn glass_resolve(kept: &[Quad]) -> [f64; 4] {
     let mut sum = [0.0; 4];
     let mut weight = 1.0;
     for quad in kept {

@@ -18,7 +18,7 @@ use crate::order::orders;
 use crate::quads::{Quad, SIZE, vertices};
 use crate::stage::{self, renderer, see, settings, shaders, technique};
 
-fn device(variant: &Variant, order: Order) -> Device {
+pub fn device(variant: &Variant, order: Order) -> Device {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
     let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order };
     Device::new(Arc::new(code), settings).unwrap()
@@ -34,7 +34,7 @@ fn paint(device: &mut Device, quads: &[Quad]) -> Vec<[f32; 4]> {
 }
 
 /// What the device keeps, and its picture.
-fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>) {
+pub fn draw(device: &mut Device, quads: &[Quad]) -> (Vec<Vec<Words>>, Vec<[f32; 4]>) {
     let pixels = paint(device, quads);
     let names = device.plan().resources.iter().map(|planned| planned.resource.name.clone());
     let buffers: BTreeMap<String, Vec<u32>> = names.map(|name| (name.clone(), device.words(&name).unwrap())).collect();

@@ -23,6 +23,7 @@ mod embedding;
 mod failures;
 mod larger;
 mod losses;
+mod occupancy;
 mod overflow;
 mod rasterisation;
 mod sizing;

@@ -57,6 +57,17 @@ impl Source {
         self.text.contains(words)
     }
 
+    /// The same with a depth test forced before its fragment stage. The attribute stands on the stage's own line: lines keep
+    /// their numbers.
+    pub(crate) fn with_early_depth(mut self) -> Result<Self, String> {
+        let text = self.text.replacen("\n@fragment\n", "\n@early_depth_test(force) @fragment\n", 1);
+        if text == self.text {
+            return Err(format!("{} has no line `@fragment`", self.name));
+        }
+        self.text = text.into();
+        Ok(self)
+    }
+
     /// The atomic accessors that its declarations mention: buffers offer many, and few are ever used.
     pub(crate) fn atomic_accessors(&self) -> Vec<String> {
         match self.items() {

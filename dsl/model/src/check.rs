@@ -3,6 +3,7 @@
 
 mod choices;
 mod facts;
+mod least;
 mod nearest;
 mod payload;
 
@@ -22,6 +23,9 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     let attributes = payload::attributes(draft, &mut diagnostics);
     let choices = choices::resolve(draft, &attributes, technique, registry, &mut diagnostics);
     let keep = keep(draft, technique.map(|technique| technique.keep), &mut diagnostics);
+    if let Some(k) = keep {
+        least::check(draft, &choices, k, &mut diagnostics);
+    }
     let mut offered = payload::facts(&attributes);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {

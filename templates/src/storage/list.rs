@@ -12,6 +12,7 @@ pub(super) fn linked_list() -> Row {
             "the fragment of this node",
         ]),
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
+        implies: vec![(Fact::Limited, Fact::BestSuffice)],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..list(
             store,
@@ -35,7 +36,7 @@ pub(super) fn ordered_list() -> Row {
             "the next best node after this one, plus one; 0: the last",
             "the fragment of this node, written once",
         ]),
-        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::SparesRoom, Fact::LosesWhole],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::SparesRoom, Fact::LosesWhole],
         // The list is in the order of its keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],

@@ -112,7 +112,7 @@ pub(super) fn wide_cascade() -> Row {
 fn by_minima(row: Row) -> Row {
     Row {
         calls: vec!["counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BoundAnyInstant],
+        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant],
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![

@@ -75,6 +75,7 @@ pub(super) fn bounded_regions() -> Row {
         calls: vec!["overflow", "counters"],
         offers: vec![
             Fact::KeepsBest,
+            Fact::BestSuffice,
             Fact::BoundAnyInstant,
             Fact::CanReplace,
             Fact::Counted,

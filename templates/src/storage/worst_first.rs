@@ -41,7 +41,14 @@ pub(super) fn revised_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed, Fact::LosesWhole],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+            Fact::LosesWhole,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter {
@@ -86,7 +93,14 @@ fn worst_first(row: Row) -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BoundAnyInstant, Fact::CanReplace, Fact::Indexed, Fact::LosesWhole],
+        offers: vec![
+            Fact::KeepsBest,
+            Fact::BestSuffice,
+            Fact::BoundAnyInstant,
+            Fact::CanReplace,
+            Fact::Indexed,
+            Fact::LosesWhole,
+        ],
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row

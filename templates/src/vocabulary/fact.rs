@@ -44,6 +44,7 @@ facts! {
     KeepsBest "a storage that keeps the k best";
     SparesRoom "a storage that gives no room to a fragment behind k better ones";
     SelectsBest "that the k best are chosen among all";
+    BestSuffice "a storage that may be handed the k best fragments alone";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
     CanReplace "that a kept fragment can be replaced";
     Counted "the number of fragments of each pixel, known before they are stored";

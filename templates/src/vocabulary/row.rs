@@ -48,6 +48,8 @@ pub struct Row {
     pub defaults: Vec<(Text, Text)>,
     /// What a user can set on it.
     pub parameters: Vec<Parameter>,
+    /// The least that an option may be for what is kept, as (option, formula over `k`). Defaults must meet it.
+    pub least: Vec<(Text, Formula)>,
     /// What can go wrong by design.
     pub hazards: Vec<Hazard>,
     /// What its safety under concurrency rests on.
@@ -166,6 +168,7 @@ impl Row {
             edits: Vec::new(),
             defaults: Vec::new(),
             parameters: Vec::new(),
+            least: Vec::new(),
             hazards: Vec::new(),
             soundness: Soundness::Atomics,
             order: None,
