@@ -1,0 +1,68 @@
+//! Devices with fragment shader interlock, which wgpu has no feature for.
+//!
+//! In: an adapter and what is asked of its device. Out: the device, and whether `VK_EXT_fragment_shader_interlock` was
+//! enabled on it. An adapter without the extension gives the same device as `request_device`; that is not an error here.
+
+use super::adapter::ready;
+use crate::{Error, Interlock};
+
+/// Opens `adapter`, with interlock where there is any. Blocks.
+pub fn open_device(
+    adapter: &wgpu::Adapter,
+    descriptor: &wgpu::DeviceDescriptor<'_>,
+) -> Result<(wgpu::Device, wgpu::Queue, Interlock), Error> {
+    let what = || format!("the device `{}`", adapter.get_info().name);
+    let failed = |error: &dyn std::fmt::Display| Error::Internal { what: what(), message: error.to_string() };
+    #[cfg(not(any(target_vendor = "apple", target_family = "wasm")))]
+    if let Some(opened) = vulkan::open(adapter, descriptor) {
+        let (device, queue) = opened.map_err(|error| failed(&error))?;
+        return Ok((device, queue, Interlock::Enabled));
+    }
+    let (device, queue) = ready(adapter.request_device(descriptor))
+        .ok_or_else(|| failed(&"it takes for ever"))?
+        .map_err(|error| failed(&error))?;
+    Ok((device, queue, Interlock::Absent))
+}
+
+#[cfg(not(any(target_vendor = "apple", target_family = "wasm")))]
+#[allow(unsafe_code, reason = "wgpu lets a device have more extensions than it knows only by its own lower layer")]
+mod vulkan {
+    use ash::{ext::fragment_shader_interlock::NAME, vk};
+    use wgpu::hal::api::Vulkan;
+    use wgpu::hal::vulkan::CreateDeviceCallback;
+
+    type Opened = Result<(wgpu::Device, wgpu::Queue), String>;
+
+    /// `None` where the adapter is not Vulkan's, or has no interlock.
+    pub(super) fn open(adapter: &wgpu::Adapter, descriptor: &wgpu::DeviceDescriptor<'_>) -> Option<Opened> {
+        // SAFETY: the adapter is only asked, and outlives the guard.
+        let hal = unsafe { adapter.as_hal::<Vulkan>() }?;
+        if !hal.physical_device_capabilities().supports_extension(NAME) {
+            return None;
+        }
+        let mut has = vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default();
+        let mut query = vk::PhysicalDeviceFeatures2::default().push_next(&mut has);
+        // SAFETY: the physical device is that of this instance; the driver has the extension, so it fills the chained structure.
+        unsafe {
+            let instance = hal.shared_instance().raw_instance();
+            instance.get_physical_device_features2(hal.raw_physical_device(), &mut query);
+        }
+        if has.fragment_shader_pixel_interlock == vk::FALSE {
+            return None;
+        }
+        let mut wanted =
+            vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default().fragment_shader_pixel_interlock(true);
+        let chained = &mut wanted;
+        let add: Box<CreateDeviceCallback<'_>> = Box::new(move |arguments| {
+            arguments.extensions.push(NAME);
+            *arguments.create_info = std::mem::take(arguments.create_info).push_next(chained);
+        });
+        let (features, limits) = (descriptor.required_features, &descriptor.required_limits);
+        // SAFETY: the driver was asked for the extension and for its feature above; nothing is taken away.
+        let opened = unsafe { hal.open_with_callback(features, limits, &descriptor.memory_hints, Some(add)) };
+        Some(opened.map_err(|error| error.to_string()).and_then(|device| {
+            // SAFETY: the device was made of this adapter just now, with the features and limits of the descriptor.
+            unsafe { adapter.create_device_from_hal::<Vulkan>(device, descriptor) }.map_err(|error| error.to_string())
+        }))
+    }
+}
