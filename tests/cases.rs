@@ -86,6 +86,11 @@ pub fn named() -> Vec<Case> {
         ("shell", technique("kplus_array"), vec![("sort", "shell"), ("k", "32")]),
         ("hybrid", technique("ab_ll"), vec![("sort", "hybrid"), ("sort.insertion", "8")]),
         ("bitonic", technique("ab_sb"), vec![("sort", "bitonic"), ("sort.layers", "33")]),
+        ("lplus", technique("ab_ll"), vec![("sort", "lplus"), ("resolve.opaque", "4")]),
+        ("backwards_memory", technique("ab_ll"), vec![("sort", "backwards_memory"), ("sort.layers", "24")]),
+        ("block", technique("kb_ab_ll"), vec![("sort", "block")]),
+        ("tiled", technique("ab_sb"), vec![("addressing", "tiled")]),
+        ("morton", technique("kplus_array"), vec![("addressing", "morton")]),
         ("interlock_else_lock", technique("kplus_array"), vec![("sync", "interlock else spin_lock")]),
         (
             "locked_sorted_array",

@@ -11,8 +11,8 @@ pub(crate) use roles::{axis_of, instance_row};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource, Soundness, Step,
-    Until,
+    Definition, Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Polynomial, Repeat, Resource,
+    Soundness, Step, Until,
 };
 
 use crate::Layout;
@@ -33,6 +33,8 @@ pub struct Plan {
     pub constants: Vec<(String, u32)>,
     /// Symbols that are bound by now.
     pub bound: Bound,
+    /// Symbols that rows give a value.
+    pub defined: Vec<Definition>,
     /// Fields of the frame's uniform buffer, all `u32`.
     pub frame: Vec<String>,
     /// What is kept in memory.
@@ -109,6 +111,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         steps: built.steps,
         words_per_pixel: built.words_per_pixel,
         bound,
+        defined: rows().flat_map(|row| row.defines.iter().cloned()).collect(),
         requires,
         soundness: selection.soundness(),
         hazards: rows()
@@ -127,12 +130,13 @@ struct Built {
 }
 
 fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound) -> Result<Built, String> {
+    let constants = constants(selection, bound).map_err(|error| error.to_string())?;
     let mut resources: Vec<Resource> =
         selection.rows.iter().flat_map(|selected| selected.row.resources.iter().cloned()).collect();
     let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
     for selected in &selection.rows {
         for change in &selected.row.edits {
-            edit::apply(change, &mut steps, &mut resources)?;
+            edit::apply(change, &mut steps, &mut resources, &constants)?;
         }
     }
     roles::complete(&mut steps, &mut resources, selection, registry)?;
@@ -149,7 +153,7 @@ fn build(selection: &Selection, limit: Limit, registry: &Registry, bound: &Bound
         planned.push(Planned { resource, binding, words });
     }
     Ok(Built {
-        constants: constants(selection, bound).map_err(|error| error.to_string())?,
+        constants,
         frame: frame(limit, &planned, &steps),
         words_per_pixel: words_per_pixel(&total).to_string(),
         resources: planned,
@@ -265,6 +269,12 @@ impl Plan {
         let mut passes = Vec::new();
         collect(&self.steps, &mut passes);
         passes
+    }
+
+    /// Pixels of the frame and of its padding, over its width and height.
+    pub fn pixels(&self) -> Formula {
+        let defined = self.defined.iter().find(|definition| definition.symbol == "pixels");
+        defined.map_or("width * height".into(), |definition| definition.value.clone())
     }
 
     /// A resource by name.

@@ -1,16 +1,29 @@
 // Makes one colour of each pixel's fragments. Pixels without any keep what the target held.
 
+/// The pixel.
+var<private> resolved: u32;
+
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = pixel_index(position.xy);
-    var cursor = storage_first(pixel);
-    while cursor != END {
-        sort_gather(storage_read(pixel, cursor));
-        cursor = storage_next(pixel, cursor);
+    resolved = pixel_index(position.xy);
+    for (var cursor = resolve_first(); cursor != END; cursor = resolve_next(cursor)) {
+        sort_gather(resolve_read(cursor));
     }
     sort_finish();
     if layer_count() == 0u {
         discard;
     }
     return resolve_layers();
+}
+
+fn resolve_first() -> u32 {
+    return storage_first(resolved);
+}
+
+fn resolve_next(cursor: u32) -> u32 {
+    return storage_next(resolved, cursor);
+}
+
+fn resolve_read(cursor: u32) -> Packed {
+    return storage_read(resolved, cursor);
 }

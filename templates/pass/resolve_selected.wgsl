@@ -14,14 +14,26 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         select_fragment(storage_read(pixel, cursor));
         cursor = storage_next(pixel, cursor);
     }
-    for (var slot = 0u; slot < selected_count; slot++) {
-        sort_gather(selected[slot]);
+    for (var slot = resolve_first(); slot != END; slot = resolve_next(slot)) {
+        sort_gather(resolve_read(slot));
     }
     sort_finish();
     if layer_count() == 0u {
         discard;
     }
     return resolve_layers();
+}
+
+fn resolve_first() -> u32 {
+    return select(END, 0u, selected_count > 0u);
+}
+
+fn resolve_next(cursor: u32) -> u32 {
+    return select(END, cursor + 1u, cursor + 1u < selected_count);
+}
+
+fn resolve_read(cursor: u32) -> Packed {
+    return selected[cursor];
 }
 
 fn select_fragment(entry: Packed) {

@@ -1,6 +1,6 @@
 //! Axis `sort`: how the kept fragments are put in the order of depth before they are resolved.
 
-use crate::vocabulary::{Fact, Parameter, Row};
+use crate::vocabulary::{Classes, Edit, Fact, Parameter, Role, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -37,6 +37,54 @@ pub(crate) fn rows() -> Vec<Row> {
             parameters: vec![layers()],
             offers: vec![Fact::Sorted],
             ..Row::new("sort", "bitonic", "all at once, by a network that depends on the count alone", "Batcher 1968")
+        },
+        Row {
+            template: Some(template!("sort/lplus")),
+            parameters: vec![Parameter {
+                name: "batch".into(),
+                constant: "LPLUS_BATCH".into(),
+                default: "32".into(),
+                range: (1, 4096),
+                summary: "fragments that are ordered each time that the pixel is read".into(),
+            }],
+            offers: vec![Fact::Sorted],
+            ..Row::new(
+                "sort",
+                "lplus",
+                "in batches, the pixel read again for each: no array for all, and none is left out",
+                "K15 §4.4, Alg. 4, mended",
+            )
+        },
+        Row {
+            template: Some(template!("sort/backwards_memory")),
+            calls: vec!["counters"],
+            parameters: vec![layers()],
+            offers: vec![Fact::Sorted],
+            edits: vec![Edit::Classes(Classes {
+                anchor: "resolve".to_owned(),
+                constant: "LAYERS".to_owned(),
+                least: 8,
+                // Every pass reads every pixel: what is lost there is counted by the last alone.
+                before_last: vec![Role::of("counters", "none")],
+            })],
+            ..Row::new(
+                "sort",
+                "backwards_memory",
+                "by insertion, in one resolve pass for each of few lengths of its array",
+                "Knowles et al. 2013; K15 §3.3",
+            )
+        },
+        Row {
+            template: Some(template!("sort/block")),
+            calls: vec!["counters"],
+            parameters: vec![layers()],
+            offers: vec![Fact::Sorted],
+            ..Row::new(
+                "sort",
+                "block",
+                "in blocks of eight that registers hold, merged as they are asked for",
+                "Knowles et al. 2014",
+            )
         },
     ]
 }

@@ -32,8 +32,9 @@ pub(crate) struct Symbols {
 /// The value of a symbol, where it has one by now.
 pub(crate) fn value(subject: &Subject, symbols: &Symbols, symbol: &str) -> Option<u64> {
     match symbol {
-        "width" | "pixels" => Some(WIDTH.into()),
+        "width" => Some(WIDTH.into()),
         "height" => Some(1),
+        "pixels" => subject.plan.pixels().evaluate(&|symbol| value(subject, symbols, symbol)).ok(),
         "k" => symbols.k.map(u64::from),
         "fragments" => symbols.fragments.map(u64::from),
         "kept" => symbols.kept.map(u64::from),

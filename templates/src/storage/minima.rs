@@ -102,7 +102,7 @@ pub(super) fn wide_cascade() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::DepthKey, Fact::OneWordBesideDepth],
+        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::OneWordBesideKey],
         ..row
     }
 }

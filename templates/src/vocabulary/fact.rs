@@ -53,6 +53,7 @@ facts! {
     DepthKey "that depth decides which fragment is worst: no criterion";
     Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
+    OneWordBesideKey "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone";
     // What a target offers.
     FragmentAtomics "atomic operations in fragment shaders";
     Fences "memory fences in fragment shaders";

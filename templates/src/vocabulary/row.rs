@@ -48,6 +48,8 @@ pub struct Row {
     pub defaults: Vec<(Text, Text)>,
     /// What a user can set on it.
     pub parameters: Vec<Parameter>,
+    /// Symbols of formulas that it gives a value.
+    pub defines: Vec<Definition>,
     /// What can go wrong by design.
     pub hazards: Vec<Hazard>,
     /// What its safety under concurrency rests on.
@@ -80,6 +82,15 @@ pub struct Parameter {
     pub range: (u32, u32),
     /// What it does.
     pub summary: Text,
+}
+
+/// A symbol of formulas that a row gives a value, over the symbols of allocation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// The symbol.
+    pub symbol: Text,
+    /// Its value.
+    pub value: Formula,
 }
 
 /// What can go wrong by design, and is kept.
@@ -151,6 +162,7 @@ impl Row {
             edits: Vec::new(),
             defaults: Vec::new(),
             parameters: Vec::new(),
+            defines: Vec::new(),
             hazards: Vec::new(),
             soundness: Soundness::Atomics,
             order: None,

@@ -2,7 +2,7 @@
 
 use fragbuf_templates::vocabulary::Fact;
 
-use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, codes};
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
 
 /// The description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
@@ -28,8 +28,8 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     draft.attributes.clone()
 }
 
-/// What a payload offers.
-pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
+/// What a payload offers. A criterion is a word of its own, where depth alone is the key already.
+pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>) -> Vec<Fact> {
     let mut facts = Vec::new();
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
     if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)) {
@@ -38,6 +38,9 @@ pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
     if words <= 2 {
         facts.push(Fact::OneWordBesideDepth);
+    }
+    if words + u32::from(criterion.is_some()) <= 2 {
+        facts.push(Fact::OneWordBesideKey);
     }
     facts
 }
