@@ -17,6 +17,7 @@ mod stage;
 
 mod capture;
 mod cpu_device;
+mod criteria;
 mod embedding;
 mod failures;
 mod invariance;
