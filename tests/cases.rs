@@ -108,6 +108,11 @@ pub fn named() -> Vec<Case> {
         ),
         ("weighted_tail", technique("kb_ab_ll"), vec![("overflow", "weighted_tail"), ("k", "4")]),
         ("fail", technique("ab_array"), vec![("overflow", "fail")]),
+        ("lplus", technique("ab_ll"), vec![("sort", "lplus"), ("resolve.opaque", "4")]),
+        ("backwards_memory", technique("ab_ll"), vec![("sort", "backwards_memory"), ("sort.layers", "24")]),
+        ("block", technique("kb_ab_ll"), vec![("sort", "block")]),
+        ("tiled", technique("ab_sb"), vec![("addressing", "tiled")]),
+        ("morton", technique("kplus_array"), vec![("addressing", "morton")]),
         ("interlock_else_lock", technique("kplus_array"), vec![("sync", "interlock else spin_lock")]),
         (
             "locked_sorted_array",

@@ -295,3 +295,41 @@ fn a_private_name_of_a_template_is_taken() {
     let found: Vec<_> = faults.iter().map(|fault| (fault.code.name, fault.message.as_str())).collect();
     assert_eq!(found, [("refused", "`FREE` is declared in sync/spin_lock.wgsl too")], "{faults}");
 }
+
+const PADDED: &str = "// Rows of whole fours.
+
+//: addressing -- row after row, each padded to four pixels
+//: defines pixels = ceil_div(width, 4) * 4 * height
+
+fn pixel_index(position: vec2<f32>) -> u32 {
+    let at = vec2<u32>(position);
+    return (at.y - frame.first_row) * padded_width() + at.x;
+}
+
+fn pixel_count() -> u32 {
+    return padded_width() * frame.height;
+}
+
+fn padded_width() -> u32 {
+    return (frame.width + 3u) / 4u * 4u;
+}
+";
+
+/// An addressing says how far it pads the frame, and every size follows.
+#[test]
+fn an_addressing_of_the_users_own() {
+    let description = "buffer Own from ab_sb {\n    addressing: wgsl(\"mine.wgsl\");\n}\n";
+    let folder = with("addressing", description, PADDED);
+    assert_eq!(faults(&folder).map_err(|(faults, _)| faults.to_string()), Ok(()));
+    let read = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+    let variant = load(&read, &[], &[], &registry).variant.unwrap();
+    let generation = generate(&variant, &request, &registry).unwrap();
+    assert_eq!(&*generation.plans[0].plan.pixels().0, "ceil_div(width, 4) * 4 * height");
+    assert_eq!(fragbuf::manifest(&generation, 0)["pixels"], "ceil_div(width, 4) * 4 * height");
+    for (from, to, at) in [("pixels =", "fragments =", "fragments"), ("* height", "* depth", "depth")] {
+        let (faults, _) = faults(&with("padded", description, &PADDED.replace(from, to))).unwrap_err();
+        assert!(faults.iter().any(|fault| fault.message.contains(at) || fault.hint.contains("pixels")), "{faults}");
+    }
+}

@@ -183,7 +183,7 @@ fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
     let registry = Registry::builtin();
     let narrow = |key: &String| {
         let storage = registry.technique(key).unwrap().choices.iter().find(|(axis, _)| *axis == "storage").unwrap().1;
-        registry.row("storage", storage).unwrap().requires.contains(&Fact::OneWordBesideDepth)
+        registry.row("storage", storage).unwrap().requires.contains(&Fact::OneWordBesideKey)
     };
     let (narrow, others): (Vec<String>, Vec<String>) = techniques(KeepDefault::Best(8)).into_iter().partition(narrow);
     for key in others {
@@ -398,7 +398,7 @@ fn failures_have_their_exit_codes_and_write_nothing() {
         (&[&lacking, "--scene", "builtin:cubes"], 1, "`heat: f32`"),
         (&["no_such", "--scene", "builtin:cubes"], 1, "there is no technique"),
         (&["kb", "--scene", "nowhere.obj"], 3, "nowhere.obj"),
-        (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, marbles, hairball"),
+        (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, marbles, hairball, needles"),
         (&["kb", "--scene", "builtin:slabs,m=3"], 2, "n (16), seed (1)"),
         (&["kb", "--scene", "builtin:cubes", "--uniform", "x=1"], 2, "no uniform `x`"),
         (&["kb", "--scene", "builtin:cubes", "--size", "0x4"], 2, "WIDTHxHEIGHT"),

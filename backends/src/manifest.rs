@@ -85,6 +85,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("axes".into(), axes.into());
     map.insert("keep".into(), plan.variant.keep.into());
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
+    map.insert("pixels".into(), plan.pixels().0.into());
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
     map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(fact.word())).collect());
     map.insert(
@@ -279,6 +280,10 @@ fn pass_json(pass: &Pass) -> Value {
     map.insert("kind".into(), kind.into());
     if let Kind::Compute { groups } = &pass.kind {
         map.insert("groups".into(), groups.iter().map(|formula| formula.0.to_string()).collect());
+    }
+    if !pass.constants.is_empty() {
+        let constants = pass.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value)));
+        map.insert("constants".into(), constants.collect::<Map<_, _>>().into());
     }
     map.insert("uses".into(), uses.into());
     map.insert("state".into(), state(&pass.state));

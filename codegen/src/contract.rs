@@ -83,13 +83,18 @@ pub const CONTRACTS: &[Contract] = &[
     row("counters", "count_event", "(counter: u32)", "counts what is no loss"),
     row("counters", "count_loss", "(counter: u32)", "counts a loss"),
     row("counters", "count_losses", "(counter: u32, number: u32)", "counts several losses at once, or none"),
-    row("sort", "sort_gather", "(entry: Packed)", "takes one fragment of the pixel into `layers`"),
-    row("sort", "sort_finish", "()", "puts `layers` in order, nearest first"),
+    row("sort", "sort_gather", "(entry: Packed)", "takes one fragment of the pixel"),
+    row("sort", "sort_finish", "()", "puts the fragments in order, nearest first"),
+    row("sort", "layer_count", "() -> u32", "fragments that effects see; 0: the pixel keeps what the target held"),
+    row("sort", "layer", "(index: u32) -> Fragment", "one of them, the nearest first; the last beyond the last"),
+    row("pass", "resolve_first", "() -> u32", "the cursor of a first fragment of the pixel that is resolved, or END"),
+    row("pass", "resolve_next", "(cursor: u32) -> u32", "the cursor after this one, or END"),
+    row("pass", "resolve_read", "(cursor: u32) -> Packed", "the fragment at a cursor; any number of times"),
     row(
         "resolve",
         "resolve_layers",
         "() -> vec4<f32>",
-        "a premultiplied colour from `layers`; called if there is at least one",
+        "a premultiplied colour from what `layer` gives; called if there is at least one",
     ),
     row(
         "resolve",
@@ -120,7 +125,8 @@ pub fn verify(registry: &Registry) -> Vec<String> {
             }
         }
         let offers_any = CONTRACTS.iter().any(|contract| heads.iter().any(|head| head.name == contract.name));
-        if !offers_any && CONTRACTS.iter().any(|contract| contract.axis == row.axis) {
+        let is_chosen = registry.axis(&row.axis).is_some_and(|axis| axis.chosen);
+        if is_chosen && !offers_any && CONTRACTS.iter().any(|contract| contract.axis == row.axis) {
             faults.push(format!("{}: offers no function of the contract `{}`", template.path, row.axis));
         }
     }

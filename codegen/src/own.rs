@@ -26,7 +26,7 @@ pub fn adopt(own: OwnRow, registry: &Registry) -> Result<Row, Diagnostics> {
             Ok(items) => {
                 declarations(&items, &file, &mut faults);
                 functions(&row, &file, places, registry, &mut faults);
-                row.calls = calls(&row, &items);
+                row.calls = calls(&row, &items, registry);
             }
             Err(line) => faults.push(Diagnostic::new(
                 REFUSED,
@@ -209,12 +209,18 @@ fn functions(row: &Row, file: &File<'_>, places: &RowPlaces, registry: &Registry
         }
     }
     for (contract, caller, place) in needed(row, places, registry) {
-        if !heads.iter().any(|head| head.name == contract.name) {
+        let is_shared = || registry.shared().iter().any(|shared| heads_of(&shared.text, contract.name));
+        if !heads.iter().any(|head| head.name == contract.name) && !is_shared() {
             let message = format!("{caller} calls `fn {}`, and the file has none", contract.name);
             let hint = format!("add `fn {}{}`: {}", contract.name, contract.signature, contract.promise);
             faults.push(Diagnostic::new(CONTRACT, &place, message, hint));
         }
     }
+}
+
+/// Whether the text has a function of this name. A shared one serves rows that have none of their own.
+fn heads_of(text: &str, name: &str) -> bool {
+    heads(text).iter().any(|head| head.name == name)
 }
 
 /// The functions that a row must have, each with a caller and the line that brings the caller in: skeletons call from the
@@ -253,10 +259,11 @@ fn pass_line(row: &Row, skeleton: &str, places: &RowPlaces) -> Option<Origin> {
     row.steps.iter().zip(&places.steps).find(|(step, _)| is_it(step)).map(|(_, place)| place.clone())
 }
 
-/// The contracts that the text calls, by axis.
-fn calls(row: &Row, items: &[Item<'_>]) -> Vec<&'static str> {
+/// The contracts that the text calls, by axis. Functions of a pass are there wherever the pass is.
+fn calls(row: &Row, items: &[Item<'_>], registry: &Registry) -> Vec<&'static str> {
     let mut calls: Vec<&'static str> = Vec::new();
-    for contract in CONTRACTS.iter().filter(|contract| contract.axis != row.axis) {
+    let is_chosen = |axis: &str| registry.axis(axis).is_some_and(|axis| axis.chosen);
+    for contract in CONTRACTS.iter().filter(|contract| contract.axis != row.axis && is_chosen(contract.axis)) {
         let is_called = items.iter().any(|item| item.mentions.contains(&contract.name));
         if is_called && !calls.contains(&contract.axis) {
             calls.push(contract.axis);

@@ -15,7 +15,7 @@ use summary::{passes, words_per_pixel};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
+    Definition, Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
 };
 
 use crate::Layout;
@@ -36,6 +36,8 @@ pub struct Plan {
     pub constants: Vec<(String, u32)>,
     /// Symbols that are bound by now.
     pub bound: Bound,
+    /// Symbols that rows give a value.
+    pub defined: Vec<Definition>,
     /// Fields of the frame's uniform buffer, all `u32`.
     pub frame: Vec<String>,
     /// What is kept in memory.
@@ -108,7 +110,8 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let parameters = parameters(selection, &bound).map_err(|error| fault(error.to_string()))?;
     bound.0.extend(parameters.iter().map(|(name, value)| (name.clone(), u64::from(*value))));
     let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
-    let built = build(selection, limit, registry, (&bound, &layout)).map_err(fault)?;
+    let constants = constants(&bound, parameters);
+    let built = build(selection, limit, registry, (&bound, &layout), &constants).map_err(fault)?;
     let offers = selection.offers();
     let rows = || selection.rows.iter().map(|selected| &selected.row);
     let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
@@ -119,13 +122,14 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         variant: variant.clone(),
         selection: selection.clone(),
         layout,
-        constants: constants(&bound, parameters),
+        constants,
         frame: built.frame,
         resources: built.resources,
         geometry_passes: passes(&built.steps, &bound, &|pass| pass.kind == Kind::Geometry).to_string(),
         steps: built.steps,
         words_per_pixel: built.words_per_pixel,
         bound,
+        defined: rows().flat_map(|row| row.defines.iter().cloned()).collect(),
         requires,
         soundness: selection.soundness(),
         hazards: rows()
@@ -147,13 +151,14 @@ fn build(
     limit: Limit,
     registry: &Registry,
     (bound, layout): (&Bound, &Layout),
+    constants: &[(String, u32)],
 ) -> Result<Built, String> {
     let mut resources: Vec<Resource> =
         selection.rows.iter().flat_map(|selected| selected.row.resources.iter().cloned()).collect();
     let mut steps: Vec<Step> = selection.rows.iter().flat_map(|selected| selected.row.steps.iter().cloned()).collect();
     for selected in &selection.rows {
         for change in &selected.row.edits {
-            edit::apply(change, &mut steps, &mut resources)?;
+            edit::apply(change, &mut steps, &mut resources, constants)?;
         }
     }
     roles::complete(&mut steps, &mut resources, selection, registry)?;
@@ -270,6 +275,12 @@ impl Plan {
         let mut passes = Vec::new();
         collect(&self.steps, &mut passes);
         passes
+    }
+
+    /// Pixels of the frame and of its padding, over its width and height.
+    pub fn pixels(&self) -> Formula {
+        let defined = self.defined.iter().find(|definition| definition.symbol == "pixels");
+        defined.map_or("width * height".into(), |definition| definition.value.clone())
     }
 
     /// A resource by name.

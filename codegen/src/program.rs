@@ -9,7 +9,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::link::{self, Source};
-use crate::{GENERATOR, Plan, emit};
+use crate::{CONTRACTS, GENERATOR, Plan, emit};
 
 /// How texts are linked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -194,9 +194,14 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
         _ => None,
     };
     let no_renames = link::Renames::default();
-    let mut templates: Vec<Source> =
-        registry.shared().iter().map(|template| Source::template(template, &no_renames)).collect();
-    templates.extend(instances::sources(pass, plan, registry)?);
+    let own = instances::sources(pass, plan, registry)?;
+    // A shared function serves a contract where no row has one of its own.
+    let fulfilled = CONTRACTS.iter().map(|contract| contract.name);
+    let fulfilled: Vec<&'static str> =
+        fulfilled.filter(|name| own.iter().any(|source| source.declares(name))).collect();
+    let shared = registry.shared().iter();
+    let shared = shared.map(|text| Source::template(text, &no_renames).leaving(fulfilled.clone()));
+    let mut templates: Vec<Source> = shared.chain(own).collect();
     if let Some(stage) = stage_text {
         templates.push(instances::skeleton(stage, registry)?);
     }

@@ -109,7 +109,7 @@ fn buffers(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// What is kept in memory.\n        pub mod buffers {\n");
     for planned in &plan.resources {
         let (name, summary) = (rust::snake_case(&planned.resource.name), &planned.resource.summary);
-        let (parameters, words) = rust::formula(&planned.words, &plan.bound);
+        let (parameters, words) = rust::formula(&planned.words, &plan.bound, &plan.pixels());
         let parameters: Vec<String> = parameters.iter().map(|parameter| format!("{parameter}: u64")).collect();
         let _ =
             write!(text, "            /// `{}`: {summary}.\n            pub mod {name} {{\n", planned.resource.name);

@@ -26,29 +26,27 @@ const SYMBOLS: [&str; 5] = ["width", "height", "k", "fragments", "kept"];
 
 /// A constant function: the parameters that the formula needs, and its value. A formula that cannot be read has been
 /// refused when the plan was made.
-pub(super) fn formula(formula: &Formula, bound: &Bound) -> (Vec<&'static str>, String) {
-    let Ok(expression) = formula.read() else { return (Vec::new(), "0".to_owned()) };
+pub(super) fn formula(formula: &Formula, bound: &Bound, pixels: &Formula) -> (Vec<&'static str>, String) {
+    let (Ok(expression), Ok(pixels)) = (formula.read(), pixels.read()) else { return (Vec::new(), "0".to_owned()) };
     let mut used = Vec::new();
-    let text = written(&expression, bound, &mut used);
+    let text = written(&expression, bound, &pixels, &mut used);
     (SYMBOLS.into_iter().filter(|symbol| used.iter().any(|used| used == symbol)).collect(), text)
 }
 
-fn written(expression: &Expression, bound: &Bound, used: &mut Vec<String>) -> String {
+fn written(expression: &Expression, bound: &Bound, pixels: &Expression, used: &mut Vec<String>) -> String {
     match expression {
         Expression::Number(number) => number.to_string(),
         Expression::Symbol(symbol) => match bound.value(symbol) {
             Some(value) => value.to_string(),
-            None if symbol == "pixels" => {
-                used.extend(["width".to_owned(), "height".to_owned()]);
-                "(width * height)".to_owned()
-            }
+            // Its definition is over the frame's width and height.
+            None if symbol == "pixels" && expression != pixels => written(pixels, bound, pixels, used),
             None => {
                 used.push(symbol.clone());
                 symbol.clone()
             }
         },
         Expression::Apply(operator, arguments) => {
-            let parts: Vec<String> = arguments.iter().map(|argument| written(argument, bound, used)).collect();
+            let parts: Vec<String> = arguments.iter().map(|argument| written(argument, bound, pixels, used)).collect();
             match (*operator, parts.as_slice()) {
                 ("ceil_div", [a, b]) => format!("u64::div_ceil({a}, {b})"),
                 ("pow2", [a]) => format!("(1u64 << {a})"),
@@ -75,7 +73,7 @@ mod tests {
     #[test]
     fn formulas_keep_their_meaning() {
         let bound = Bound(vec![("entry_words".to_owned(), 3)]);
-        let of = |text: &'static str| formula(&Formula::from(text), &bound);
+        let of = |text: &'static str| formula(&Formula::from(text), &bound, &"width * height".into());
         let (parameters, text) = of("pixels * k * entry_words");
         assert_eq!((parameters, text.as_str()), (vec!["width", "height", "k"], "(((width * height) * k) * 3)"));
         assert_eq!(of("ceil_div(pixels, 1024)").1, "u64::div_ceil((width * height), 1024)");

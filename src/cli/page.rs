@@ -72,6 +72,9 @@ fn axes(plan: &Plan, text: &mut String) {
 
 fn memory(plan: &Plan, text: &mut String) {
     let _ = writeln!(text, "\n## Memory\n\n**{} words per pixel** for the papers' payload.\n", plan.words_per_pixel);
+    for definition in &plan.defined {
+        let _ = writeln!(text, "`{}` is `{}`.\n", definition.symbol, definition.value);
+    }
     text.push_str("| buffer | words | what |\n|---|---|---|\n");
     for planned in &plan.resources {
         let _ =

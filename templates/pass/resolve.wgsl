@@ -1,19 +1,33 @@
 // Makes one colour of each pixel's fragments. Pixels without any keep what the target held.
 
+/// The pixel.
+var<private> resolved: u32;
+
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = pixel_index(position.xy);
-    var cursor = storage_first(pixel);
-    while cursor != END {
-        sort_gather(storage_read(pixel, cursor));
-        cursor = storage_next(pixel, cursor);
+    resolved = pixel_index(position.xy);
+    for (var cursor = resolve_first(); cursor != END; cursor = resolve_next(cursor)) {
+        sort_gather(resolve_read(cursor));
     }
     sort_finish();
     if layer_count() == 0u {
-        if overflow_is_empty(pixel) {
+        // Where a pass serves some pixels only, the others have fragments and no layers.
+        if resolve_first() != END || overflow_is_empty(resolved) {
             discard;
         }
-        return overflow_finish(pixel, vec4<f32>(0.0));
+        return overflow_finish(resolved, vec4<f32>(0.0));
     }
-    return overflow_finish(pixel, resolve_layers());
+    return overflow_finish(resolved, resolve_layers());
+}
+
+fn resolve_first() -> u32 {
+    return storage_first(resolved);
+}
+
+fn resolve_next(cursor: u32) -> u32 {
+    return storage_next(resolved, cursor);
+}
+
+fn resolve_read(cursor: u32) -> Packed {
+    return storage_read(resolved, cursor);
 }

@@ -14,17 +14,30 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         select_fragment(pixel, storage_read(pixel, cursor));
         cursor = storage_next(pixel, cursor);
     }
-    for (var slot = 0u; slot < selected_count; slot++) {
-        sort_gather(selected[slot]);
+    for (var slot = resolve_first(); slot != END; slot = resolve_next(slot)) {
+        sort_gather(resolve_read(slot));
     }
     sort_finish();
     if layer_count() == 0u {
-        if overflow_is_empty(pixel) {
+        // Where a pass serves some pixels only, the others have fragments and no layers.
+        if resolve_first() != END || overflow_is_empty(pixel) {
             discard;
         }
         return overflow_finish(pixel, vec4<f32>(0.0));
     }
     return overflow_finish(pixel, resolve_layers());
+}
+
+fn resolve_first() -> u32 {
+    return select(END, 0u, selected_count > 0u);
+}
+
+fn resolve_next(cursor: u32) -> u32 {
+    return select(END, cursor + 1u, cursor + 1u < selected_count);
+}
+
+fn resolve_read(cursor: u32) -> Packed {
+    return selected[cursor];
 }
 
 fn select_fragment(pixel: u32, entry: Packed) {

@@ -29,3 +29,21 @@ fn layers_append(entry: Packed) {
         layers[farthest] = entry;
     }
 }
+
+/// Puts one fragment into its place, nearest first. If there are more than fit, the farthest fall off the end.
+fn layers_insert(entry: Packed) {
+    if gathered == LAYERS {
+        count_loss(LAYERS_EXCEEDED);
+        if !nearer(entry, layers[LAYERS - 1u]) {
+            return;
+        }
+    } else {
+        gathered += 1u;
+    }
+    var place = gathered - 1u;
+    while place > 0u && nearer(entry, layers[place - 1u]) {
+        layers[place] = layers[place - 1u];
+        place -= 1u;
+    }
+    layers[place] = entry;
+}

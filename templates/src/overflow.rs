@@ -17,7 +17,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 .cleared(0),
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
-            requires: vec![Fact::Color, Fact::LosesWhole, Fact::FragmentAtomics],
+            requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve, Fact::FragmentAtomics],
             ..row(
                 "weighted_tail",
                 "it counts in a mean colour behind what is kept; the same for every order of arrival",

@@ -1,14 +1,24 @@
 //! Axis `resolve`: what is made of the kept fragments.
 
 use crate::Registry;
-use crate::vocabulary::{Fact, Row};
+use crate::vocabulary::{Fact, Parameter, Row, Takes};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("resolve/over")),
             requires: vec![Fact::Sorted, Fact::Color],
-            ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984")
+            parameters: vec![Parameter {
+                name: "opaque".into(),
+                constant: "OPAQUE_THOUSANDTHS".into(),
+                takes: Takes::Number,
+                default: "0".into(),
+                range: (0, 1000),
+                summary:
+                    "thousandths of the light behind, and of a channel's error: blending ends when fewer pass; 0: never"
+                        .into(),
+            }],
+            ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984; K15 §4.4")
         },
         Row {
             template: Some(template!("resolve/stream")),

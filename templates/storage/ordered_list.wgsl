@@ -16,8 +16,10 @@
 /// No node, as links are stored: plus one.
 const NO_NODE = 0u;
 
-/// Nodes that the resolve pass has read.
+/// Nodes that the resolve pass has read, since it began with the first.
 var<private> nodes_read: u32;
+/// Whether it has been at the end: a sort may read the list again, and what is lost is counted once.
+var<private> end_reached: bool;
 
 fn storage_insert(pixel: u32, entry: Packed) {
     // A helper lane's exchange has no effect: it would try to the end.
@@ -71,6 +73,10 @@ fn storage_next(pixel: u32, cursor: u32) -> u32 {
         nodes_read += 1u;
         return next - 1u;
     }
+    if end_reached {
+        return END;
+    }
+    end_reached = true;
     // Better fragments came after these were linked.
     for (var beyond = next; beyond != NO_NODE; beyond = links_load(beyond - 1u)) {
         on_lost(pixel, nodes_load(beyond - 1u), DISPLACED);

@@ -30,7 +30,7 @@ impl Symbols {
         match symbol {
             "width" => Some(self.width.into()),
             "height" => Some(self.rows.into()),
-            "pixels" => Some(self.pixels()),
+            "pixels" => plan.pixels().evaluate(&|symbol| self.value(plan, symbol)).ok(),
             "k" => self.k.map(u64::from),
             // Slots of a pixel where every pixel has as many: the room for fragments, shared out.
             "n" => self.counted(FRAGMENTS).map(|fragments| fragments.div_ceil(self.pixels().max(1))),
@@ -38,7 +38,7 @@ impl Symbols {
         }
     }
 
-    /// Pixels of a slice.
+    /// Pixels of a slice, its padding apart.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.rows)
     }

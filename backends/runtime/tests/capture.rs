@@ -97,7 +97,7 @@ fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn
 }
 
 /// Every case in every order, by the shaders of a target.
-fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
+pub fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
     let stage = stage::device();
     let mut renderer = renderer(&stage, &shaders(variant, target), settings).unwrap();
     prepare(&mut renderer);
@@ -199,6 +199,24 @@ fn the_fixed_array() {
 fn the_best_of_all_are_chosen_on_resolve() {
     for key in ["kb_ab_array", "kb_ab_ll", "kb_ab_sb"] {
         check(&technique(key, &[("k", "3")]), &settings(), &PLAIN, |_| {});
+    }
+}
+
+/// Of all ways to keep fragments one each; the words lie elsewhere, and are the same.
+#[test]
+fn every_addressing() {
+    for addressing in ["tiled", "morton"] {
+        for (key, k) in [
+            ("kplus_array", "4"),
+            ("mdt32_coplanar", "4"),
+            ("kb_ll", "4"),
+            ("kplus_ab_sb", "3"),
+            ("ab_array", "all"),
+            ("ab_ll", "all"),
+            ("ab_sb", "all"),
+        ] {
+            check(&technique(key, &[("k", k), ("addressing", addressing)]), &settings(), &PLAIN, |_| {});
+        }
     }
 }
 

@@ -8,7 +8,6 @@ use fragbuf_runtime::Renderer;
 use crate::oracle::Words;
 use crate::quads::SIZE;
 
-const PIXELS: usize = (SIZE * SIZE) as usize;
 const EMPTY: u32 = u32::MAX;
 
 /// A device after a frame.
@@ -46,15 +45,18 @@ impl Drawn for fragbuf_cpu::Device {
     }
 }
 
+const PIXELS: usize = (SIZE * SIZE) as usize;
+
 /// The kept fragments of every pixel, each pixel's in ascending order of their words. `buffers`: all words by resource.
 pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Vec<Words>> {
     let plan = renderer.plan();
     let storage = plan.selection.row("storage").unwrap().row.key.clone();
     let (words, beside) = (plan.layout.entry_words() as usize, plan.layout.beside_words() as usize);
     let k = renderer.k().unwrap_or(0) as usize;
+    let places = renderer.symbol("pixels").unwrap() as usize;
     let buffer = |name: &str| buffers.get(name).map_or(&[][..], Vec::as_slice);
     let slot = |slot: usize, pixel: usize| {
-        let at = slot * PIXELS + pixel;
+        let at = slot * places + pixel;
         let rest = &buffer("entries")[at * beside..][..beside];
         [&[buffer("keys")[at]], rest].concat()
     };
@@ -71,8 +73,8 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                 (k - filled..k).map(|index| slot(index, pixel)).collect()
             }
             "cascade" => {
-                let tail = |index: usize| &buffer("tails")[(index * PIXELS + pixel) * beside..][..beside];
-                let slots = (0..k).map(|index| [&[buffer("keys")[index * PIXELS + pixel]], tail(index)].concat());
+                let tail = |index: usize| &buffer("tails")[(index * places + pixel) * beside..][..beside];
+                let slots = (0..k).map(|index| [&[buffer("keys")[index * places + pixel]], tail(index)].concat());
                 let kept: Vec<Words> = slots.filter(|words| words[0] != EMPTY).collect();
                 assert!(kept.is_sorted(), "pixel {pixel} is not in order: {kept:?}");
                 kept
@@ -86,7 +88,7 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
                 kept
             }
             "wide_cascade" => {
-                let wide = |index: usize| &buffer("slots")[2 * (index * PIXELS + pixel)..][..2];
+                let wide = |index: usize| &buffer("slots")[2 * (index * places + pixel)..][..2];
                 let slots = (0..k).map(wide).take_while(|wide| wide[1] != EMPTY);
                 // Without a word beside the key the lower one is nobody's.
                 let kept: Vec<Words> = slots.map(|wide| [wide[1], wide[0]][..words].to_vec()).collect();
@@ -164,7 +166,7 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
             }
             "fixed_array" => {
                 let slots = (buffer("counts")[pixel] as usize).min(renderer.symbol("n").unwrap() as usize);
-                (0..slots).map(|index| entry("entries", index * PIXELS + pixel)).collect()
+                (0..slots).map(|index| entry("entries", index * places + pixel)).collect()
             }
             "sorted_array" => {
                 let kept: Vec<Words> =
@@ -228,8 +230,10 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
             other => panic!("this test cannot read `{other}`"),
         }
     };
-    let pixels = (0..PIXELS).map(|pixel| {
-        let mut kept = of_pixel(pixel);
+    let by_place: Vec<Vec<Words>> = (0..places).map(of_pixel).collect();
+    let addressing = plan.selection.row("addressing").unwrap().row.key.clone();
+    let pixels = (0..SIZE * SIZE).map(|pixel| {
+        let mut kept = by_place[place(&addressing, pixel % SIZE, pixel / SIZE)].clone();
         kept.sort();
         kept
     });
@@ -240,4 +244,18 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
 fn parameter(plan: &Plan, constant: &str) -> usize {
     let found = plan.constants.iter().find(|(name, _)| name == constant);
     found.unwrap_or_else(|| panic!("no parameter `{constant}`")).1 as usize
+}
+
+/// Where the words of a pixel lie, as the heads of the templates describe it. `SIZE` is a multiple of every tile.
+fn place(addressing: &str, x: u32, y: u32) -> usize {
+    let tile = |width: u32, height: u32| ((y / height * (SIZE / width) + x / width) * width * height) as usize;
+    match addressing {
+        "linear" => (y * SIZE + x) as usize,
+        "tiled" => tile(2, 8) + (y % 8 * 2 + x % 2) as usize,
+        "morton" => {
+            let bit = |number: u32, bit: u32| (number >> bit & 1) as usize;
+            tile(8, 8) + (0..3).map(|at| bit(x, at) << (2 * at) | bit(y, at) << (2 * at + 1)).sum::<usize>()
+        }
+        other => panic!("this test cannot address `{other}`"),
+    }
 }

@@ -88,6 +88,38 @@ fn slices_make_the_same_picture() {
     }
 }
 
+/// A slice is a picture of its own: it need not end where a tile does.
+#[test]
+fn slices_through_tiles_make_the_same_picture() {
+    let stage = device();
+    let quads: Vec<Quad> = scattered(12, 80);
+    for (key, k) in [("kplus_array", "4"), ("ab_ll", "all"), ("ab_sb", "all")] {
+        let see = |addressing: &str, slice: Option<u32>| {
+            let shaders = shaders(&technique(key, &[("k", k), ("addressing", addressing)]), "wgsl");
+            let mut renderer = renderer(&stage, &shaders, &Settings { slice, ..settings() }).unwrap();
+            let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
+            draw_over(&stage, &mut renderer, &quads, &offscreen).unwrap();
+            (offscreen.colors(&stage.device, &stage.queue).unwrap(), renderer.symbol("pixels"))
+        };
+        let (whole, _) = see("linear", None);
+        for (addressing, places) in [("tiled", 8 * 16), ("morton", 8 * 16)] {
+            assert!(see(addressing, None) == (whole.clone(), Some(16 * 16)), "{key}, {addressing}");
+            assert!(see(addressing, Some(5)) == (whole.clone(), Some(places)), "{key}, {addressing} in slices");
+        }
+    }
+}
+
+/// As many rows fit as tiles do.
+#[test]
+fn slices_that_follow_from_limits_end_with_a_tile() {
+    let stage = device();
+    let shaders = shaders(&technique("kplus_array", &[("k", "1024"), ("addressing", "tiled")]), "wgsl");
+    let renderer = renderer(&stage, &shaders, &Settings { width: 1023, height: 3000, ..settings() }).unwrap();
+    let rows = renderer.symbol("height").unwrap();
+    assert!(renderer.slices() > 1 && rows.is_multiple_of(8), "{rows} rows");
+    assert_eq!(renderer.symbol("pixels"), Some(1024 * rows));
+}
+
 #[test]
 fn what_no_buffer_can_hold_is_sliced_unasked() {
     let stage = device();

@@ -54,6 +54,8 @@ pub fn vertices(quads: &[Quad], inputs: &VertexInputs) -> Vec<u8> {
                 match input.name.as_str() {
                     "position" => push(&mut bytes, &[x, y, quad.depth]),
                     "color" => push(&mut bytes, &quad.rgba()),
+                    // Towards the eye.
+                    "normal" => push(&mut bytes, &[0.0, 0.0, 1.0]),
                     "id" => bytes.extend(quad.id.to_le_bytes()),
                     other => panic!("no value for the attribute `{other}`"),
                 }

@@ -32,13 +32,34 @@ fn the_hairball_has_over_two_million_triangles() {
     assert!(made.triangles() > 2_000_000, "{}", made.triangles());
 }
 
+/// Every needle goes through most of the scene's depth, and they are parallel but for some degrees.
+#[test]
+fn needles_are_long_thin_and_nearly_parallel() {
+    let made = scene("needles,n=50");
+    assert_eq!((made.objects.len(), made.triangles()), (50, 150));
+    let way = |object: &fragbuf_scene::Object| {
+        let [blunt, _, tip] = object.triangles[0].map(|corner| object.positions[corner as usize]);
+        [0, 1, 2].map(|axis| tip[axis] - blunt[axis])
+    };
+    let dot = |a: [f32; 3], b: [f32; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f32>();
+    let first = way(&made.objects[0]);
+    for object in &made.objects {
+        let way = way(object);
+        assert!((dot(way, way).sqrt() - 2.4).abs() < 0.05 && way[2].abs() > 1.5, "{way:?}");
+        assert!(dot(way, first).abs() / (dot(way, way) * dot(first, first)).sqrt() > 0.95, "{way:?}");
+    }
+}
+
 #[test]
 fn what_there_is_not_is_listed() {
     let refused = |name: &str| match open(name, [1.0; 4]) {
         Err(Error::Unknown(message)) => message,
         other => format!("{other:?}"),
     };
-    assert_eq!(refused("builtin:bunny"), "no scene `builtin:bunny`: there are cubes, slabs, marbles, hairball");
+    assert_eq!(
+        refused("builtin:bunny"),
+        "no scene `builtin:bunny`: there are cubes, slabs, marbles, hairball, needles"
+    );
     assert_eq!(refused("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: it takes n (16), seed (1)");
     assert_eq!(refused("builtin:slabs,n=0"), "`n=0`: give `n` from 1 to 65536");
     assert_eq!(refused("builtin:slabs,n"), "`n`: give `n` from 1 to 65536");
@@ -52,7 +73,7 @@ fn project(matrix: &[f32; 16], [x, y, z]: [f32; 3]) -> [f32; 3] {
 
 #[test]
 fn the_framing_camera_sees_everything_and_is_near() {
-    for name in ["cubes", "slabs", "marbles", "hairball,strands=9"] {
+    for name in ["cubes", "slabs", "marbles", "hairball,strands=9", "needles,n=40"] {
         for aspect in [0.3, 1.0, 2.5] {
             let made = scene(name);
             let camera = Camera::framing(&made, aspect);

@@ -14,8 +14,10 @@ use crate::{Linking, Plan};
 /// The generated sources of one pass. `atomics` are the atomic accessors that its templates mention; other
 /// declarations that nothing reaches are dropped by the linker.
 pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> Vec<Source> {
-    let mut sources =
-        vec![Source::generated("constants", constants(plan)), Source::generated("fragment", fragment::text(plan))];
+    let mut sources = vec![
+        Source::generated("constants", constants(plan, pass)),
+        Source::generated("fragment", fragment::text(plan)),
+    ];
     if pass.kind == Kind::Geometry {
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }
@@ -32,6 +34,9 @@ fn closures(plan: &Plan) -> impl Iterator<Item = &fragbuf_model::UserFunction> {
     variant.criterion.iter().chain(&variant.constraints).chain(&variant.resolve)
 }
 
-fn constants(plan: &Plan) -> String {
-    plan.constants.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect()
+/// The plan's constants, but for those of which the pass has its own.
+fn constants(plan: &Plan, pass: &Pass) -> String {
+    let is_own = |name: &String| pass.constants.iter().any(|(own, _)| own == name);
+    let others = plan.constants.iter().filter(|(name, _)| !is_own(name));
+    others.chain(&pass.constants).map(|(name, value)| format!("const {name} = {value}u;\n")).collect()
 }

@@ -27,12 +27,14 @@ pub(crate) struct Source {
     text: Cow<'static, str>,
     /// Where each line comes from, if not from the line of that number in this source.
     origins: Option<Vec<LineOrigin>>,
+    /// Names that it leaves to other sources.
+    left: Vec<&'static str>,
 }
 
 impl Source {
     /// Text made for this program.
     pub(crate) fn generated(name: &str, text: String) -> Self {
-        Source { name: format!("generated/{name}").into(), text: text.into(), origins: None }
+        Source { name: format!("generated/{name}").into(), text: text.into(), origins: None, left: Vec::new() }
     }
 
     /// A template, renamed for its instance.
@@ -42,14 +44,29 @@ impl Source {
             Cow::Owned(text) => Cow::Owned(renames.apply(text).into_owned()),
         };
         let origins = template.own.as_deref().map(|file| own_lines(&template.text, file));
-        Source { name: template.path.as_ref().into(), text, origins }
+        Source { name: template.path.as_ref().into(), text, origins, left: Vec::new() }
+    }
+
+    /// The same without the declarations that others make.
+    pub(crate) fn leaving(self, left: Vec<&'static str>) -> Self {
+        Source { left, ..self }
+    }
+
+    /// Whether it declares the name.
+    pub(crate) fn declares(&self, name: &str) -> bool {
+        self.items().is_ok_and(|items| items.as_slice().iter().any(|item| item.name == name))
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
     /// lies.
     pub(crate) fn user(function: &UserFunction) -> Self {
         let origins = function.lines.iter().cloned().map(LineOrigin::User).collect();
-        Source { name: "description".into(), text: function.wgsl.clone().into(), origins: Some(origins) }
+        Source {
+            name: "description".into(),
+            text: function.wgsl.clone().into(),
+            origins: Some(origins),
+            left: Vec::new(),
+        }
     }
 
     /// Whether these words stand anywhere in it.
@@ -182,6 +199,7 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         .iter()
         .enumerate()
         .flat_map(|(source, list)| list.as_slice().iter().map(move |item| (source, item)))
+        .filter(|(source, item)| !sources[*source].left.contains(&item.name))
         .collect();
     let index = declarations(&items, sources)?;
     let reached = reach(&items, &index, exports)?;

@@ -22,6 +22,9 @@ impl Display for Plan {
         writeln!(f, "  entry      {} words: key ({key}) {}", self.layout.entry_words(), beside.join(" "))?;
         writeln!(f, "  axes       {}", self.selection.describe())?;
         writeln!(f, "  memory     {} words per pixel", self.words_per_pixel)?;
+        for definition in &self.defined {
+            writeln!(f, "  {:<10} {}", definition.symbol, definition.value)?;
+        }
         writeln!(f, "  geometry   {} passes", self.geometry_passes)?;
         writeln!(f, "  soundness  {}", word(&self.soundness))?;
         let requires: Vec<&str> = self.requires.iter().map(|fact| fact.meaning()).collect();
@@ -111,6 +114,10 @@ fn pass_lines(f: &mut Formatter<'_>, pass: &Pass, indent: &str) -> Result {
         .collect();
     if !roles.is_empty() {
         writeln!(f, "{indent}  roles {}", roles.join(" "))?;
+    }
+    let constants: Vec<String> = pass.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    if !constants.is_empty() {
+        writeln!(f, "{indent}  constants {}", constants.join(", "))?;
     }
     let uses: Vec<String> = pass
         .uses

@@ -1,9 +1,14 @@
 //! What rows of other axes change in a storage's steps.
 
-use fragbuf_templates::vocabulary::{Edit, Pass, Repeat, Resource, Step};
+use fragbuf_templates::vocabulary::{Classes, Edit, Pass, Repeat, Resource, Step};
 
-/// Applies one edit. `Err`: it names an anchor that the steps do not have.
-pub(super) fn apply(edit: &Edit, steps: &mut Vec<Step>, resources: &mut Vec<Resource>) -> Result<(), String> {
+/// Applies one edit. `Err`: it names an anchor that the steps do not have, or a constant that there is not.
+pub(super) fn apply(
+    edit: &Edit,
+    steps: &mut Vec<Step>,
+    resources: &mut Vec<Resource>,
+    constants: &[(String, u32)],
+) -> Result<(), String> {
     match edit {
         Edit::Before(anchor, new) => insert(steps, anchor, new, 0),
         Edit::After(anchor, new) => insert(steps, anchor, new, 1),
@@ -22,7 +27,35 @@ pub(super) fn apply(edit: &Edit, steps: &mut Vec<Step>, resources: &mut Vec<Reso
             resources.push(resource.clone());
             Ok(())
         }
+        Edit::Classes(classes) => {
+            let constant = constants.iter().find(|(name, _)| *name == classes.constant);
+            let (_, most) = constant.ok_or_else(|| format!("an edit names the constant `{}`", classes.constant))?;
+            split(steps, classes, *most)
+        }
     }
+}
+
+/// One pass for each class, in place of the one.
+fn split(steps: &mut Vec<Step>, classes: &Classes, most: u32) -> Result<(), String> {
+    let Some(index) = position(steps, &classes.anchor) else {
+        return in_some_loop(steps, &classes.anchor, &mut |body| split(body, classes, most));
+    };
+    let Step::Pass(pass) = steps.remove(index) else { return Err(unknown(&classes.anchor)) };
+    let smaller = std::iter::successors(Some(classes.least), |size| size.checked_mul(2));
+    let sizes: Vec<u32> = smaller.take_while(|size| *size < most).chain([most]).collect();
+    for (number, size) in sizes.iter().enumerate() {
+        let is_last = number + 1 == sizes.len();
+        let mut one = Pass { anchor: format!("{}_{size}", pass.anchor), ..pass.clone() };
+        one.constants.push((classes.constant.clone(), *size));
+        one.constants.push(("CLASS_ABOVE".to_owned(), number.checked_sub(1).map_or(0, |before| sizes[before])));
+        one.constants.push(("CLASS_MOST".to_owned(), if is_last { u32::MAX } else { *size }));
+        if !is_last {
+            one.roles.retain(|role| classes.before_last.iter().all(|other| other.contract != role.contract));
+            one.roles.extend(classes.before_last.iter().cloned());
+        }
+        steps.insert(index + number, Step::Pass(one));
+    }
+    Ok(())
 }
 
 fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> Result<(), String> {

@@ -26,10 +26,10 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     if let Some(k) = keep {
         least::check(draft, &choices, k, &mut diagnostics);
     }
-    let mut offered = payload::facts(&attributes);
+    let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
+    let mut offered = payload::facts(&attributes, criterion);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {
-        let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
         offered.extend(criterion.is_none().then_some(Fact::DepthKey));
         offered.extend(keep.is_some().then_some(Fact::Limited));
         offered.extend((keep == Some(1)).then_some(Fact::LimitedToOne));
@@ -43,7 +43,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         attributes,
         uniforms: draft.uniforms.clone(),
         keep,
-        criterion: draft.keep.as_ref().and_then(|keep| keep.criterion.clone()),
+        criterion: criterion.cloned(),
         constraints: draft.constraints.clone(),
         resolve: draft.resolve.clone(),
         helpers: draft.helpers.clone(),

@@ -103,7 +103,7 @@ pub(super) fn wide_cascade() -> Row {
         ],
         calls: vec!["overflow"],
         offers: [row.offers.as_slice(), &[Fact::LosesWhole]].concat(),
-        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::DepthKey, Fact::OneWordBesideDepth],
+        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::OneWordBesideKey],
         ..row
     }
 }

@@ -55,6 +55,7 @@ facts! {
     Streams "a storage that hands fragments on in order, two neighbours at a time";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
+    OneResolve "one resolve pass that serves every pixel";
     StableSort "a sort that leaves fragments of equal depth as the storage gives them";
     // What they are worth.
     ValuesPairs "a value for two neighbouring fragments";
@@ -66,6 +67,7 @@ facts! {
     Color "an attribute `color` of format rgba8, rgba16 or vec4";
     OneWordBesideDepth "at most one word beside depth in the payload";
     WordPerTarget "at most eight words in the payload: there are eight targets";
+    OneWordBesideKey "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone";
     // What a target offers.
     FragmentAtomics "atomic operations in fragment shaders";
     Fences "memory fences in fragment shaders";

@@ -3,7 +3,8 @@
 //! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
 //! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`, and parameters of the chosen
 //! rows by their constants, such as `PAGE_ENTRIES`), allocation (`width height
-//! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned.
+//! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned. `pixels` is `width * height`
+//! unless the addressing pads rows or columns: pixels of the frame and of its padding.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -3,6 +3,7 @@
 //! Rows are data: a pass, a resource or a legality rule that cannot be said in these words is a reason to widen the words,
 //! never to compare a key in code.
 
+mod classes;
 mod effect;
 mod fact;
 mod formula;
@@ -14,6 +15,7 @@ mod technique;
 /// A text that a row includes, or that a user's file gave.
 pub type Text = std::borrow::Cow<'static, str>;
 
+pub use classes::Classes;
 pub use effect::Effect;
 pub use fact::Fact;
 pub use formula::{Expression, Formula, FormulaError, Polynomial};
@@ -22,5 +24,5 @@ pub use pass::{
     Role, Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
 };
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
-pub use row::{Axis, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
+pub use row::{Axis, Definition, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
 pub use technique::{KeepDefault, Technique};

@@ -1,6 +1,6 @@
 //! What a technique does: passes and the steps around them.
 
-use super::{Formula, Resource};
+use super::{Classes, Formula, Resource};
 
 /// One step of a frame, in order.
 #[allow(clippy::large_enum_variant, reason = "a plan has a dozen steps, and most are passes")]
@@ -74,6 +74,8 @@ pub struct Pass {
     pub skeleton: String,
     /// Contracts bound otherwise than by the variant's own choice on the axis of that name.
     pub roles: Vec<Role>,
+    /// Generated constants whose value is this pass's own.
+    pub constants: Vec<(String, u32)>,
     /// The resources it touches, and how.
     pub uses: Vec<Use>,
     /// Fixed-function state.
@@ -314,6 +316,8 @@ pub enum Edit {
     AddUse(String, Use),
     /// The technique keeps one resource more.
     AddResource(Resource),
+    /// A pass is repeated for classes of pixels.
+    Classes(Classes),
 }
 
 impl Pass {
@@ -338,6 +342,7 @@ impl Pass {
             kind,
             skeleton: skeleton.to_owned(),
             roles: Vec::new(),
+            constants: Vec::new(),
             uses: Vec::new(),
             state: State::default(),
             objects: Objects::All,
@@ -374,6 +379,14 @@ impl Pass {
     pub fn target(mut self, resource: &str, blend: Blend) -> Self {
         self.state.targets.push(Target { resource: resource.to_owned(), blend });
         self
+    }
+}
+
+impl Role {
+    /// `contract`, fulfilled by the row `row` of the axis of that name.
+    pub fn of(contract: &str, row: &str) -> Self {
+        let instance = Instance { row: row.to_owned(), name: contract.to_owned(), memory: Memory::Own };
+        Role { contract: contract.to_owned(), instance }
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Row {
     pub parameters: Vec<Parameter>,
     /// The least that an option may be for what is kept, as (option, formula over `k`). Defaults must meet it.
     pub least: Vec<(Text, Formula)>,
+    /// Symbols of formulas that it gives a value.
+    pub defines: Vec<Definition>,
     /// What can go wrong by design.
     pub hazards: Vec<Hazard>,
     /// What its safety under concurrency rests on.
@@ -93,6 +95,15 @@ pub struct Parameter {
     pub range: (u32, u32),
     /// What it does.
     pub summary: Text,
+}
+
+/// A symbol of formulas that a row gives a value, over the symbols of allocation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// The symbol.
+    pub symbol: Text,
+    /// Its value.
+    pub value: Formula,
 }
 
 /// What can go wrong by design, and is kept.
@@ -169,6 +180,7 @@ impl Row {
             defaults: Vec::new(),
             parameters: Vec::new(),
             least: Vec::new(),
+            defines: Vec::new(),
             hazards: Vec::new(),
             soundness: Soundness::Atomics,
             order: None,

@@ -3,6 +3,7 @@
 mod cubes;
 mod hairball;
 mod marbles;
+mod needles;
 mod random;
 mod slabs;
 
@@ -30,7 +31,7 @@ pub struct Parameter {
 }
 
 /// Every generated scene: name, what it shows, parameters.
-pub const BUILTIN: [Row; 4] = [cubes::ROW, slabs::ROW, marbles::ROW, hairball::ROW];
+pub const BUILTIN: [Row; 5] = [cubes::ROW, slabs::ROW, marbles::ROW, hairball::ROW, needles::ROW];
 
 /// One generated scene's name, meaning and parameters.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +64,7 @@ impl FromStr for Builtin {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 4] = BUILTIN;
+        static ROWS: [Row; 5] = BUILTIN;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {

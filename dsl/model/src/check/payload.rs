@@ -2,7 +2,7 @@
 
 use fragbuf_templates::vocabulary::Fact;
 
-use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, codes};
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
 
 /// Targets of one word that every WebGPU device has: eight, of 32 bytes a pixel together.
 const TARGETS: u32 = 8;
@@ -31,8 +31,8 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     draft.attributes.clone()
 }
 
-/// What a payload offers.
-pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
+/// What a payload offers. A criterion is a word of its own, where depth alone is the key already.
+pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>) -> Vec<Fact> {
     let mut facts = Vec::new();
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
     if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)) {
@@ -44,6 +44,9 @@ pub(super) fn facts(attributes: &[Attribute]) -> Vec<Fact> {
     }
     if words <= TARGETS {
         facts.push(Fact::WordPerTarget);
+    }
+    if words + u32::from(criterion.is_some()) <= 2 {
+        facts.push(Fact::OneWordBesideKey);
     }
     facts
 }

@@ -2,7 +2,8 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Takes, Use,
+    Access, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Takes,
+    Use,
 };
 
 use super::line::Line;
@@ -10,7 +11,7 @@ use super::reader::{Read, Reader, Stop};
 use crate::near;
 
 /// The words that begin a line.
-const WORDS: [&str; 12] = [
+const WORDS: [&str; 13] = [
     "paper",
     "buffer",
     "pass",
@@ -21,6 +22,7 @@ const WORDS: [&str; 12] = [
     "implies",
     "suits",
     "parameter",
+    "defines",
     "hazard",
     "soundness",
 ];
@@ -103,6 +105,7 @@ impl Statements {
             "implies" => return self.implies(line),
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
+            "defines" => return self.defines(line),
             "hazard" => return self.hazard(line),
             "soundness" => return self.soundness(line),
             // The first line, when the row has no axis: that has been said.
@@ -301,6 +304,18 @@ impl Statements {
             summary: summary(line).into(),
         });
         self.own.places.parameters.push(constant.origin);
+        Ok(())
+    }
+
+    /// `defines pixels = ceil_div(width, 4) * 4 * height`
+    fn defines(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`defines pixels = ceil_div(width, 4) * 4 * height`";
+        let symbol = self.reader.word(line, "a symbol", SHAPE)?;
+        let symbol = self.reader.one_of(&symbol, &[("pixels", "pixels")], "no symbol that a row defines")?;
+        self.reader.sign(line, '=', SHAPE)?;
+        let value = line.until(&[]);
+        self.reader.formula(&value, &["width", "height"])?;
+        self.own.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
         Ok(())
     }
 

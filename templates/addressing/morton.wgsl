@@ -1,0 +1,41 @@
+// Morton order (1966) in blocks of 8 x 8 pixels, row after row of blocks: inside a block, bits of column and row
+// alternate, so that every aligned square of a power of two lies together. One curve over the whole frame would pad
+// it to a square; blocks pad columns and rows to 8. A slice of a picture begins at `first_row`, and its blocks with it.
+
+const BLOCK_SIDE = 8u;
+
+fn pixel_index(position: vec2<f32>) -> u32 {
+    let at = vec2<u32>(position) - vec2<u32>(0u, frame.first_row);
+    let block = at.y / BLOCK_SIDE * morton_blocks(frame.width) + at.x / BLOCK_SIDE;
+    let inside = morton_spread(at % vec2<u32>(BLOCK_SIDE));
+    return block * BLOCK_SIDE * BLOCK_SIDE + (inside.x | (inside.y << 1u));
+}
+
+/// The texel of a pixel in textures as large as the frame.
+fn pixel_texel(pixel: u32) -> vec2<u32> {
+    let block = pixel / (BLOCK_SIDE * BLOCK_SIDE);
+    let corner = BLOCK_SIDE * vec2<u32>(block % morton_blocks(frame.width), block / morton_blocks(frame.width));
+    let inside = morton_gather(vec2<u32>(pixel, pixel >> 1u));
+    return corner + inside + vec2<u32>(0u, frame.first_row);
+}
+
+fn pixel_count() -> u32 {
+    return morton_blocks(frame.width) * morton_blocks(frame.height) * BLOCK_SIDE * BLOCK_SIDE;
+}
+
+fn morton_blocks(length: u32) -> u32 {
+    return (length + BLOCK_SIDE - 1u) / BLOCK_SIDE;
+}
+
+/// The three bits of each number with a zero bit before each of them.
+fn morton_spread(numbers: vec2<u32>) -> vec2<u32> {
+    let twos = (numbers | (numbers << vec2<u32>(2u))) & vec2<u32>(0x13u);
+    return (twos | (twos << vec2<u32>(1u))) & vec2<u32>(0x15u);
+}
+
+/// Takes the zero bits out again.
+fn morton_gather(numbers: vec2<u32>) -> vec2<u32> {
+    let spread = numbers & vec2<u32>(0x15u);
+    let twos = (spread | (spread >> vec2<u32>(1u))) & vec2<u32>(0x13u);
+    return (twos | (twos >> vec2<u32>(2u))) & vec2<u32>(0x7u);
+}
