@@ -1,5 +1,7 @@
-//! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. A
-//! covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by definition.
+//! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. Rows of an
+//! axis that state the same facts are interchangeable to the rules, so one combination of each kind is decided, and of
+//! some kinds another, drawn by chance. A covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by
+//! definition.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -20,19 +22,50 @@ fn descriptions() -> Vec<Draft> {
     vec![Draft::from_technique("kb", &Origin::new("case", 1, 1)), parsed(CUSTOM), parsed(DEPTH_ONLY), parsed(RESERVED)]
 }
 
-/// Every choice of one row per axis.
-fn combinations(registry: &Registry) -> Vec<Vec<(String, String)>> {
-    let mut all: Vec<Vec<(String, String)>> = vec![Vec::new()];
-    for axis in registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS) {
-        let values: Vec<String> = registry.rows_of(axis.key).map(|row| row.key.clone()).collect();
-        all = all
-            .into_iter()
-            .flat_map(|choices| {
-                values.iter().map(move |value| [choices.clone(), vec![(axis.key.to_owned(), value.clone())]].concat())
-            })
-            .collect();
+/// The rows of an axis, those together that state the same facts: the rules see nothing else of a row.
+fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
+    let facts = |row: &Row| (row.offers.clone(), row.implies.clone(), row.requires.clone(), row.least.clone());
+    let mut classes: Vec<Vec<&Row>> = Vec::new();
+    for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
+        match classes.iter_mut().find(|class| facts(class[0]) == facts(row)) {
+            Some(class) => class.push(row),
+            None => classes.push(vec![row]),
+        }
     }
-    all
+    classes
+}
+
+/// A class per axis.
+struct Combination {
+    /// The first row of each.
+    choices: Vec<(String, String)>,
+    /// For some, one of each drawn by chance: so that every two rows meet that may.
+    drawn: Option<Vec<(String, String)>>,
+    /// Every combination of the same classes: the rules decide on all of them alike.
+    alike: usize,
+}
+
+/// One combination in so many is tried with rows drawn by chance too.
+const DRAWN_OF: usize = 12;
+
+/// Every choice of one class per axis.
+fn combinations(registry: &Registry) -> Vec<Combination> {
+    let axes = registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS);
+    let axes: Vec<(&str, Vec<Vec<&Row>>)> = axes.map(|axis| (axis.key, classes(registry, axis.key))).collect();
+    let mut random = Random(5);
+    let count = axes.iter().map(|(_, classes)| classes.len()).product();
+    let combination = |mut number: usize| {
+        let (mut choices, mut drawn, mut alike) = (Vec::new(), Vec::new(), 1);
+        for (axis, classes) in &axes {
+            let class = &classes[number % classes.len()];
+            number /= classes.len();
+            alike *= class.len();
+            choices.push(((*axis).to_owned(), class[0].key.clone()));
+            drawn.push(((*axis).to_owned(), random.pick(class).key.clone()));
+        }
+        Combination { choices, drawn: (random.below(DRAWN_OF) == 0).then_some(drawn), alike }
+    };
+    (0..count).map(combination).collect()
 }
 
 fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft {
@@ -55,30 +88,19 @@ fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft
 fn every_combination_generates_or_is_refused_with_a_way_out() {
     let registry = Registry::builtin();
     let combinations = combinations(&registry);
-    let (mut accepted, mut refused): (Vec<Accepted>, usize) = (Vec::new(), 0);
-    for (payload, description) in descriptions().iter().enumerate() {
-        for choices in &combinations {
-            for keep in [KeepCount::AtMost(8), KeepCount::All] {
-                let with = |keep: KeepCount| check(&chosen(description, choices, keep), &registry);
-                // What keeps one alone says so, and is tried with one.
-                let checked = match with(keep) {
-                    Err(faults) if faults.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
-                    checked => checked,
-                };
-                match checked {
-                    Err(faults) => {
-                        refused += 1;
-                        assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
-                    }
-                    Ok(variant) => accepted.push(Accepted { payload, choices, variant }),
-                }
-            }
-        }
-    }
-    assert!(accepted.len() > 100 && refused > accepted.len(), "{} accepted, {refused} refused", accepted.len());
+    let descriptions = descriptions();
+    let decided = decided(&registry, &descriptions, &combinations);
+    let number = |decided: &[(usize, Option<Accepted<'_>>)]| decided.iter().map(|(alike, _)| alike).sum::<usize>();
+    let (accepted, refused): (Vec<_>, Vec<_>) = decided.into_iter().partition(|(_, variant)| variant.is_some());
+    let counts = (number(&accepted), number(&refused));
+    let accepted: Vec<Accepted<'_>> = accepted.into_iter().filter_map(|(_, variant)| variant).collect();
+    assert!(accepted.len() > 1000 && counts.1 > counts.0, "{counts:?} combinations accepted and refused");
     let (seen, planned) = (Mutex::new(BTreeSet::new()), Mutex::new(BTreeSet::new()));
     let made = AtomicUsize::new(0);
-    let queue = Mutex::new(accepted.iter());
+    // All of the papers' payload; of the others enough that every two rows meet.
+    let (papers, others): (Vec<_>, Vec<_>) = accepted.iter().partition(|one| one.payload == 0);
+    let others = covering(&others);
+    let queue = Mutex::new(papers.iter().chain(&others));
     let work = || {
         while let Some(one) = { queue.lock().unwrap().next() } {
             let texts = texts(one, &registry, &planned);
@@ -92,17 +114,58 @@ fn every_combination_generates_or_is_refused_with_a_way_out() {
         scope.spawn(work);
     });
     let covering: Vec<File> =
-        covering(&accepted).into_iter().flat_map(|accepted| generated(&accepted.variant).files).collect();
+        covering(&papers).into_iter().flat_map(|accepted| generated(&accepted.variant).files).collect();
     let external = validate(covering.iter());
     assert!(external > 100);
     println!(
-        "product: {} combinations, {} accepted, {refused} refused; {} distinct passes in {} files through naga and the \
-         printers; {external} of a covering set through glslang and spirv-val",
-        accepted.len() + refused,
+        "product: {} combinations, {} accepted, {} refused, in {} and {} kinds; {} distinct passes in {} files through \
+         naga and the printers; {external} of a covering set through glslang and spirv-val",
+        counts.0 + counts.1,
+        counts.0,
+        counts.1,
         accepted.len(),
+        refused.len(),
         seen.into_inner().unwrap().len(),
         made.into_inner(),
     );
+}
+
+/// What the rules say of every combination with every description: how many are alike, and the variant if it is accepted.
+fn decided<'a>(
+    registry: &Registry,
+    descriptions: &[Draft],
+    combinations: &'a [Combination],
+) -> Vec<(usize, Option<Accepted<'a>>)> {
+    let decide = |combination: &'a Combination| {
+        let mut decided = Vec::new();
+        let drawn = combination.drawn.iter().map(|choices| (0, choices));
+        let tried: Vec<_> = std::iter::once((combination.alike, &combination.choices)).chain(drawn).collect();
+        let keeps = [KeepCount::AtMost(8), KeepCount::All];
+        for (payload, description) in descriptions.iter().enumerate() {
+            for ((alike, choices), keep) in tried.iter().flat_map(|tried| keeps.map(|keep| (*tried, keep))) {
+                let with = |keep: KeepCount| check(&chosen(description, choices, keep), registry);
+                // What keeps one alone says so, and is tried with one.
+                let checked = match with(keep) {
+                    Err(faults) if faults.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
+                    checked => checked,
+                };
+                if let Err(faults) = &checked {
+                    assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
+                }
+                let variant = checked.ok();
+                let accepted = variant.map(|variant| Accepted { payload, choices, variant });
+                decided.push((alike, accepted));
+            }
+        }
+        decided
+    };
+    let (first, second) = combinations.split_at(combinations.len() / 2);
+    std::thread::scope(|scope| {
+        let other = scope.spawn(|| second.iter().flat_map(decide).collect::<Vec<_>>());
+        let mut all: Vec<_> = first.iter().flat_map(decide).collect();
+        all.extend(other.join().unwrap());
+        all
+    })
 }
 
 /// What tells each pass of a variant from every other, on each profile: its text but for comments, and what printers are told
@@ -156,8 +219,8 @@ struct Accepted<'a> {
 
 /// Few of them, in which every two values of two axes stand together with every payload that they are accepted with. They
 /// are gone through in a shuffled order: neighbours have almost everything in common.
-fn covering<'a, 'b>(accepted: &'b [Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
-    let mut order: Vec<&Accepted<'_>> = accepted.iter().collect();
+fn covering<'a, 'b>(accepted: &[&'b Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
+    let mut order = accepted.to_vec();
     let mut random = Random(11);
     for index in (1..order.len()).rev() {
         order.swap(index, random.below(index + 1));
