@@ -80,7 +80,9 @@ impl<'s> Frame<'s> {
                 }
                 Turn::Again { from, word, at_most } => {
                     let is_over = self.memory[FIRST_BINDING as usize + word].first().is_none_or(|word| *word == 0);
-                    let goes_on = !is_over && self.round + 1 < *at_most;
+                    let rounds = self.symbols.evaluate(&subject.plan, at_most, "the rounds of a loop");
+                    let rounds = rounds.map_err(|error| error.to_string())?;
+                    let goes_on = !is_over && u64::from(self.round) + 1 < rounds;
                     self.round = if goes_on { self.round + 1 } else { 0 };
                     number = if goes_on { *from } else { number + 1 };
                 }

@@ -38,6 +38,7 @@ mod report;
 mod room;
 mod shader;
 mod state;
+mod stream;
 mod subject;
 mod trial;
 mod turns;

@@ -132,8 +132,10 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
         (true, false) => (total, total.min(asking.k.unwrap_or(u32::MAX))),
     };
     let mut rooms = vec![room(total)?];
-    if !has_exact_room(subject, &rooms[0])? {
-        return Ok(rooms);
+    let page = page(subject, &rooms[0])?;
+    if page > 1 {
+        // Who finds that another has made room leaks what it has taken.
+        return Ok(vec![room(total + page * asking.new.len() as u32)?]);
     }
     if most < total && !asking.may_give_up {
         rooms.push(Room { what: "room for those that ask", ..room(most)? });
@@ -144,13 +146,25 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
     Ok(rooms)
 }
 
-/// Whether there is room for exactly as many fragments as is said: none for none. Pages have more.
-fn has_exact_room(subject: &Subject, room: &Room) -> Result<bool, String> {
-    let mut none = room.symbols.clone();
-    none.set("fragments", 0);
-    let mut pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
-    pooled.try_fold(true, |exact, planned| {
-        let words = none.evaluate(&subject.plan, &planned.words, &planned.resource.name);
-        Ok(exact && words.map_err(|error| error.to_string())? == 0)
-    })
+/// Fragments of the pieces in which room is given: 1 where there is none for none.
+fn page(subject: &Subject, room: &Room) -> Result<u32, String> {
+    let mut symbols = room.symbols.clone();
+    let mut words = |fragments: u32| {
+        symbols.set("fragments", fragments.into());
+        let pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
+        let words = pooled.map(|planned| symbols.evaluate(&subject.plan, &planned.words, &planned.resource.name));
+        words.sum::<Result<u64, _>>().map_err(|error| error.to_string())
+    };
+    let least = words(0)?;
+    if least == 0 {
+        return Ok(1);
+    }
+    for fragments in 1..=LARGEST_PAGE {
+        if words(fragments)? > least {
+            return Ok(fragments.max(2));
+        }
+    }
+    Err("the storage gives room in pieces of too many fragments".to_owned())
 }
+
+const LARGEST_PAGE: u32 = 1 << 10;

@@ -25,6 +25,10 @@ pub(crate) struct Ground<'p> {
     pub(crate) has_fences: bool,
     /// A helper invocation: nothing that it writes has any effect, and what its atomic operations give is anything.
     pub(crate) helper: Option<usize>,
+    /// Whether the interlock lets fragments in by number, the order of submission.
+    pub(crate) by_submission: bool,
+    /// Whether a fragment that has begun runs to its end before another does anything.
+    pub(crate) one_by_one: bool,
 }
 
 /// Where a buffer lies.
@@ -44,6 +48,10 @@ pub(crate) struct State {
     pub(crate) fragments: Vec<Status>,
     /// Who is inside the interlock.
     pub(crate) inside: Option<usize>,
+    /// Who has left it, a bit each, where it lets fragments in by number.
+    left: u32,
+    /// Who runs, where fragments run one by one.
+    alone: Option<usize>,
     pub(crate) late: Option<Box<Late>>,
 }
 
@@ -144,7 +152,7 @@ impl Ground<'_> {
             let wide = self.each_ordered(|buffer| buffer.is_wide);
             Box::new(Late::new(&words[..self.ordered], machines.len(), private, &wide))
         });
-        let mut state = State { words, fragments: Vec::new(), inside: None, late };
+        let mut state = State { words, fragments: Vec::new(), inside: None, left: 0, alone: None, late };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
             let status = self.run(&mut machine, fragment, None, &mut state.words)?;
             state.fragments.push(status);
@@ -178,6 +186,15 @@ impl Ground<'_> {
         }
     }
 
+    /// The fragments that have not ended and may go on.
+    pub(crate) fn running(&self, state: &State) -> Vec<usize> {
+        let has_ended = |at: &usize| state.fragments[*at] == Status::Ended;
+        match state.alone {
+            Some(fragment) => vec![fragment],
+            None => (0..state.fragments.len()).filter(|at| !has_ended(at)).collect(),
+        }
+    }
+
     /// In how many ways a fragment's event can happen; 0: it has ended, or must wait for the interlock.
     pub(crate) fn choices(&self, state: &State, fragment: usize) -> u32 {
         let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
@@ -185,12 +202,18 @@ impl Ground<'_> {
             (Event::Access(access), _) if self.helper == Some(fragment) && access.writes() => 2,
             // The interlock does not wait for helper invocations, and what they read is what stands there.
             _ if self.helper == Some(fragment) => 1,
-            (Event::CriticalBegin, _) => u32::from(state.inside.is_none()),
+            (Event::CriticalBegin, _) => u32::from(state.inside.is_none() && self.is_next(state, fragment)),
             (Event::Access(access), Some(late)) => {
                 self.word(access.place).map_or(1, |word| late.choices(fragment, word, access))
             }
             _ => 1,
         }
+    }
+
+    /// Whether nobody comes before a fragment who is yet to leave the interlock, if it has an order.
+    fn is_next(&self, state: &State, fragment: usize) -> bool {
+        let has_left = |other: usize| state.left >> other & 1 == 1 || state.fragments[other] == Status::Ended;
+        !self.by_submission || (0..fragment).all(has_left)
     }
 
     /// The state after a fragment's event has happened in the way of this number, and what the event saw.
@@ -206,6 +229,7 @@ impl Ground<'_> {
         let old = self.perform(&mut next, fragment, event, choice);
         machine.load(saved);
         next.fragments[fragment] = self.run(machine, fragment, Some(old), &mut next.words)?;
+        next.alone = Some(fragment).filter(|at| self.one_by_one && next.fragments[*at] != Status::Ended);
         if let Some(late) = &mut next.late {
             let running: Vec<bool> = next.fragments.iter().map(|status| *status != Status::Ended).collect();
             late.forget(&running);
@@ -219,7 +243,10 @@ impl Ground<'_> {
         }
         match event {
             Event::CriticalBegin => state.inside = Some(fragment),
-            Event::CriticalEnd => state.inside = None,
+            Event::CriticalEnd => {
+                state.inside = None;
+                state.left |= u32::from(self.by_submission) << fragment;
+            }
             _ => {}
         }
         let Event::Access(access) = event else {

@@ -16,6 +16,7 @@ mod mutation;
 mod regressions;
 mod repairs;
 mod repeated;
+mod scratch;
 mod subjects;
 mod survivors;
 mod verdicts;
