@@ -20,8 +20,9 @@ pub(crate) const WIDTH: u32 = 2;
 /// Fragments that a walk over a pixel reads before it is said to have no end.
 const LONGEST: usize = 256;
 
-/// What memory holds before anybody has written to it: neither zero nor a sentinel, and a better key than any.
-pub(crate) const STALE: u32 = 17;
+/// What memory holds before anybody has written to it: neither zero nor a sentinel, a better key than any, and, as key and as
+/// what stands beside it, an entry whose checksum is right.
+pub(crate) const STALE: u32 = 20;
 
 /// A frame on its way.
 #[derive(Clone, Debug)]

@@ -32,6 +32,7 @@ mod explore;
 mod fragments;
 mod frame;
 mod model;
+mod pausing;
 mod policy;
 mod promise;
 mod report;

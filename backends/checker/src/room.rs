@@ -132,10 +132,13 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
         (true, false) => (total, total.min(asking.k.unwrap_or(u32::MAX))),
     };
     let mut rooms = vec![room(total)?];
-    let page = page(subject, &rooms[0])?;
-    if page > 1 {
+    if let Some(page) = page(subject, &rooms[0])? {
         // Who finds that another has made room leaks what it has taken.
-        return Ok(vec![room(total + page * asking.new.len() as u32)?]);
+        let ample = room(total + page * asking.new.len() as u32)?;
+        let short = total.saturating_sub(page);
+        let what = "no room but each pixel's own";
+        let none = enough(subject, asking.k, Sizing::Reserve(Reserve::Fragments(0)))?;
+        return Ok(vec![ample, Room { short: short..=short, what, ..none }]);
     }
     if most < total && !asking.may_give_up {
         rooms.push(Room { what: "room for those that ask", ..room(most)? });
@@ -146,8 +149,8 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
     Ok(rooms)
 }
 
-/// Fragments of the pieces in which room is given: 1 where there is none for none.
-fn page(subject: &Subject, room: &Room) -> Result<u32, String> {
+/// Fragments of the pieces in which room is given, where every pixel has one of its own even if there is room for none.
+fn page(subject: &Subject, room: &Room) -> Result<Option<u32>, String> {
     let mut symbols = room.symbols.clone();
     let mut words = |fragments: u32| {
         symbols.set("fragments", fragments.into());
@@ -157,11 +160,11 @@ fn page(subject: &Subject, room: &Room) -> Result<u32, String> {
     };
     let least = words(0)?;
     if least == 0 {
-        return Ok(1);
+        return Ok(None);
     }
     for fragments in 1..=LARGEST_PAGE {
         if words(fragments)? > least {
-            return Ok(fragments.max(2));
+            return Ok(Some(fragments));
         }
     }
     Err("the storage gives room in pieces of too many fragments".to_owned())

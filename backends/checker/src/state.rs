@@ -5,9 +5,10 @@
 
 use std::hash::{Hash, Hasher};
 
-use fragbuf_interpreter::{Access, Buffer, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
+use fragbuf_interpreter::{Access, Buffer, Event, Exit, Machine, Operation, Place, Program};
 
 use crate::model::{Late, Model};
+use crate::pausing::{Pausing, apply};
 use crate::subject::Subject;
 
 /// What every state of a search shares.
@@ -338,63 +339,9 @@ fn is_same_but_one(one: &Status, other: &Status) -> bool {
     }
 }
 
-fn joined(words: &[u32], count: u8) -> u64 {
+pub(crate) fn joined(words: &[u32], count: u8) -> u64 {
     let low = u64::from(words[0]);
     if count == 2 { low | u64::from(words[1]) << 32 } else { low }
-}
-
-/// Lets an access happen at once; the old value.
-fn apply(access: &Access, words: &mut [u32]) -> u64 {
-    let old = joined(words, access.words);
-    if access.writes() {
-        let new = access.new_value(old);
-        words[0] = new as u32;
-        if access.words == 2 {
-            words[1] = (new >> 32) as u32;
-        }
-    }
-    old
-}
-
-/// Answers one event, then stops. What commutes happens at once: no order of it can be told from another.
-struct Pausing<'a, 'p> {
-    ground: &'a Ground<'p>,
-    reply: Option<u64>,
-    words: &'a mut [u32],
-    is_idle: bool,
-}
-
-impl Shared for Pausing<'_, '_> {
-    fn length(&self, buffer: u16) -> u32 {
-        match self.ground.homes[usize::from(buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].len() as u32,
-            Home::Moving { words, .. } => words as u32,
-        }
-    }
-
-    fn constant(&self, place: Place) -> u32 {
-        match self.ground.homes[usize::from(place.buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].get(place.word as usize).copied().unwrap_or(0),
-            Home::Moving { first, .. } => self.words.get(first + place.word as usize).copied().unwrap_or(0),
-        }
-    }
-
-    fn event(&mut self, event: &Event) -> Reply {
-        match event {
-            Event::Access(access) => {
-                if let Home::Moving { first, commutes: true, .. } = self.ground.homes[usize::from(access.place.buffer)]
-                {
-                    if self.is_idle {
-                        return Reply::Done(0);
-                    }
-                    return Reply::Done(apply(access, &mut self.words[first + access.place.word as usize..]));
-                }
-            }
-            Event::Fence if !self.ground.has_fences => return Reply::Done(0),
-            _ => {}
-        }
-        self.reply.take().map_or(Reply::Stop, Reply::Done)
-    }
 }
 
 /// Whether two accesses that are about to happen are a data race: the same word, one of them writes, not both atomic.

@@ -16,7 +16,7 @@ mod mutation;
 mod regressions;
 mod repairs;
 mod repeated;
-mod scratch;
 mod subjects;
 mod survivors;
+mod survivors_of_races;
 mod verdicts;

@@ -35,7 +35,7 @@ const PAGES_OF_ONE: &[(&str, &str)] = &[("storage.page", "1")];
 const PAGES_OF_TWO: &[(&str, &str)] = &[("storage.page", "2")];
 /// Racing writers that try again have too many orders.
 const TWO_LOOKS: &[(&str, &str)] = &[("storage.retries", "1"), ("k", "2")];
-const ONE_LOOK: &[(&str, &str)] = &[("storage.retries", "0")];
+const ONE_LOOK: &[(&str, &str)] = &[("storage.retries", "0"), ("k", "2")];
 const SUBMITTED: &[(&str, &str)] = &[("sync", "interlock_ordered"), ("ties", "submission")];
 const INTERLOCK: &[(&str, &str)] = &[("sync", "interlock")];
 
