@@ -4,6 +4,7 @@
 //! after the remaining steps of the frame have been done. Where a loop brings the frame back to the pass under test, every
 //! end of one round is the beginning of a search of the next.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use fragbuf_codegen::FIRST_BINDING;
@@ -280,10 +281,10 @@ impl<'s> EndJudge<'_, 's> {
         };
         let mut memory = frame.memory.clone();
         let gone = count("spin_exhausted") as usize;
-        if !self.left.contains_key(&gone) {
+        if let Entry::Vacant(place) = self.left.entry(gone) {
             let stream = Stream { programs, promise: &trial.policy.promise, most };
             let fragments = trial.policy.fragments.split_at(trial.case.prior.len());
-            self.left.insert(gone, stream.left(fragments, gone, &mut memory)?);
+            place.insert(stream.left(fragments, gone, &mut memory)?);
         }
         let mut machine = Machine::new(&programs.streamed);
         machine.set_input(0, &[trial.case.pixel]);

@@ -226,10 +226,13 @@ fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
     Outcome::Survived
 }
 
+/// A registry, and how far it is tried.
+type Tried = (Registry, fn(Model) -> Limits);
+
 /// The registry with a changed row; and more, with more fragments, where the row as it is tells less.
-fn registries(registry: &Registry, row: Row) -> Vec<(Registry, fn(Model) -> Limits)> {
+fn registries(registry: &Registry, row: Row) -> Vec<Tried> {
     let two = |model| limits(2, model);
-    let mut all: Vec<(Registry, fn(Model) -> Limits)> = Vec::new();
+    let mut all: Vec<Tried> = Vec::new();
     // Rounds are too few for some races: with enough of them there is no such excuse.
     if is_repeated(&row) {
         let three = |model| Limits { fragments: vec![3], entries: vec![2], ..limits(3, model) };

@@ -56,6 +56,13 @@ pub(super) fn checked_array() -> Row {
                 unless: Some(Fact::Critical),
             },
             Hazard {
+                name: "stale".into(),
+                what:
+                    "a key is seen before what stands beside it, and what stood there before the frame passes the check"
+                        .into(),
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
                 name: "counted-twice".into(),
                 what: "a fragment that races displaced more than once is counted each time".into(),
                 unless: Some(Fact::Critical),
