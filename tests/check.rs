@@ -33,7 +33,7 @@ fn the_guide_shows_what_is_printed() {
         real += &format!("```text\n{}```{after}", text(&fragbuf(&arguments).stdout));
         shown += 1;
     }
-    assert_eq!(shown, 6);
+    assert_eq!(shown, 7);
     if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         std::fs::write("src/guide/check.md", &real).unwrap();
     }
@@ -46,6 +46,7 @@ fn the_guide_shows_what_is_printed() {
 fn the_exit_code_is_the_verdict() {
     for (arguments, code) in [
         (&["check", "ab_ll", "--fragments", "2"][..], 0),
+        (&["check", "z_buffer"], 0),
         (&["check", "kb", "--fragments", "2"], 1),
         (&["check", "no_such_thing"], 1),
         (&["check", "kplus_array", "--set", "sync=interlock", "--target", "wgsl"], 1),

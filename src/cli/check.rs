@@ -1,4 +1,5 @@
-//! `fragbuf check`: every interleaving of the fragments of one pixel. 0: no failure found; 1: a failure, with its schedule.
+//! `fragbuf check`: every interleaving of the fragments of one pixel. 0: no failure found, or nothing to try; 1: a failure,
+//! with its schedule.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -76,7 +77,7 @@ impl Check {
         let shader = Shader { file: &name, text: &text, entry, fill: &self.fill };
         let limits = self.limits();
         let report = check_shader(&shader, &limits).map_err(|error| match error {
-            Error::Unable(text) => Failure::Input(text),
+            Error::Unable(text) | Error::NothingToTry(text) => Failure::Input(text),
             Error::Description(faults) => Failure::Description(faults, vec![(name.clone(), text.clone())]),
         })?;
         self.tell(&name, entry, &limits, &report)
@@ -91,11 +92,12 @@ impl Check {
         let mut told = Progress::new();
         let checked = check_variant(&variant, target, &registry, &limits, &mut |what| told.say(what));
         told.end();
-        let report = checked.map_err(|error| match error {
-            Error::Description(faults) => input.failure(faults),
-            Error::Unable(text) => Failure::Input(text),
-        })?;
-        self.tell(description, target.name, &limits, &report)
+        match checked {
+            Ok(report) => self.tell(description, target.name, &limits, &report),
+            Err(Error::NothingToTry(why)) => self.tell_nothing(description, target.name, &why),
+            Err(Error::Description(faults)) => Err(input.failure(faults)),
+            Err(Error::Unable(text)) => Err(Failure::Input(text)),
+        }
     }
 
     fn tell(&self, what: &str, on: &str, limits: &Limits, report: &Report) -> Result<ExitCode, Failure> {
@@ -106,6 +108,18 @@ impl Check {
         };
         output::print(&text)?;
         Ok(ExitCode::from(u8::from(report.failure.is_some())))
+    }
+
+    /// Nothing is wrong, and nothing was tried.
+    fn tell_nothing(&self, what: &str, on: &str, why: &str) -> Result<ExitCode, Failure> {
+        let text = match self.json {
+            true => output::json(
+                &json!({ "description": what, "on": on, "holds": null, "cases": 0, "nothing_to_try": why }),
+            ),
+            false => format!("{what} on {on}: nothing to try: {why}\n"),
+        };
+        output::print(&text)?;
+        Ok(ExitCode::SUCCESS)
     }
 
     fn limits(&self) -> Limits {

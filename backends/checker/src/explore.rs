@@ -160,8 +160,7 @@ impl Search<'_, '_> {
             return fail(self, What::Race(one, other));
         }
         let mut is_stuck = true;
-        let running: Vec<usize> =
-            (0..state.fragments.len()).filter(|fragment| state.fragments[*fragment] != Status::Ended).collect();
+        let running = self.ground.running(state);
         if running.is_empty() {
             self.ends.push(number);
             let parents = &self.parents;

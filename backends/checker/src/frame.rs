@@ -20,8 +20,9 @@ pub(crate) const WIDTH: u32 = 2;
 /// Fragments that a walk over a pixel reads before it is said to have no end.
 const LONGEST: usize = 256;
 
-/// What memory holds before anybody has written to it: neither zero nor a sentinel, and a better key than any.
-pub(crate) const STALE: u32 = 17;
+/// What memory holds before anybody has written to it: neither zero nor a sentinel, a better key than any, and, as key and as
+/// what stands beside it, an entry whose checksum is right.
+pub(crate) const STALE: u32 = 20;
 
 /// A frame on its way.
 #[derive(Clone, Debug)]
@@ -80,7 +81,9 @@ impl<'s> Frame<'s> {
                 }
                 Turn::Again { from, word, at_most } => {
                     let is_over = self.memory[FIRST_BINDING as usize + word].first().is_none_or(|word| *word == 0);
-                    let goes_on = !is_over && self.round + 1 < *at_most;
+                    let rounds = self.symbols.evaluate(&subject.plan, at_most, "the rounds of a loop");
+                    let rounds = rounds.map_err(|error| error.to_string())?;
+                    let goes_on = !is_over && u64::from(self.round) + 1 < rounds;
                     self.round = if goes_on { self.round + 1 } else { 0 };
                     number = if goes_on { *from } else { number + 1 };
                 }

@@ -50,6 +50,7 @@ struct Counts {
     lost: u32,
     given_up: u32,
     no_room: u32,
+    unsettled: u32,
 }
 
 impl Counts {
@@ -73,7 +74,7 @@ impl Policy {
 
     /// What is wrong whatever the rows state: fragments were given up, or found no room, that should not.
     fn miscarried(&self, counts: Counts) -> Option<String> {
-        if counts.given_up > 0 && !self.may_give_up {
+        if counts.given_up > 0 && !self.may_give_up && !self.effects.contains(&Effect::GivenUp) {
             return Some(format!("{} fragments gave up waiting for the lock", counts.given_up));
         }
         // Who gives up has not asked for room.
@@ -131,6 +132,9 @@ impl Policy {
 
     /// The same multiset. Where only the key decides, ties at the edge may fall either way.
     fn agrees(&self, kept: &[Vec<u32>], wanted: &[Vec<u32>]) -> bool {
+        if self.promise.is_exact() {
+            return kept == wanted;
+        }
         let deciding = self.promise.deciding;
         prefixes(kept, deciding) == prefixes(wanted, deciding)
             && kept.iter().all(|entry| times(kept, entry) <= times(&self.fragments, entry))
@@ -178,6 +182,10 @@ impl Policy {
     /// Whether what is wrong is no more than the stated hazards allow.
     fn is_stated(&self, kept: &[Vec<u32>], counts: Counts) -> bool {
         let may = |effect| self.effects.contains(&effect);
+        if may(Effect::Unsettled) && counts.unsettled > 0 {
+            let has_room = self.promise.most().is_none_or(|most| kept.len() <= most);
+            return has_room && kept.iter().all(|entry| self.has_known_words(entry));
+        }
         let is_ordered = may(Effect::Unsorted) || self.promise.is_in_order(kept);
         let is_all = may(Effect::Lost) || self.choices(counts.gone()).any(|left| self.is_complete(kept, left));
         let is_known = kept.iter().all(|entry| self.is_someones(entry)) && self.is_often_enough(kept);
@@ -189,14 +197,21 @@ impl Policy {
         let may = |effect| self.effects.contains(&effect);
         let loosely = may(Effect::Torn) || may(Effect::TornEquals) || may(Effect::EqualKeys);
         let deciding = if loosely { 1 } else { self.promise.deciding };
-        let wanted = match may(Effect::EqualKeys) {
-            true => self.promise.best_of_distinct(left),
-            false => self.promise.best_of(left),
-        };
+        let wanted = self.best_of(left);
         let (kept, wanted) = (prefixes(kept, deciding), prefixes(&wanted, deciding));
         match may(Effect::Duplicate) {
             true => wanted.iter().all(|entry| times(&wanted, entry) <= times(&kept, entry)),
             false => kept == wanted,
+        }
+    }
+
+    /// What stays of these fragments, of those that are alike as many as are stated to.
+    fn best_of(&self, left: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+        let may = |effect| self.effects.contains(&effect);
+        match (may(Effect::EqualKeys), may(Effect::EqualFragments)) {
+            (true, _) => self.promise.best_of_distinct(left, 1),
+            (false, true) => self.promise.best_of_distinct(left, self.promise.deciding),
+            (false, false) => self.promise.best_of(left),
         }
     }
 
@@ -212,12 +227,22 @@ impl Policy {
             || entry.iter().enumerate().all(|(at, word)| has_word(at, *word))
     }
 
+    /// Whether every word of an entry is that word of some fragment.
+    fn has_known_words(&self, entry: &[u32]) -> bool {
+        let is_known = |at: usize, word: &u32| self.fragments.iter().any(|fragment| fragment[at] == *word);
+        entry.iter().enumerate().all(|(at, word)| is_known(at, word))
+    }
+
     /// Whether nothing stands there more often than it may, and no more than there is room for.
     fn is_often_enough(&self, kept: &[Vec<u32>]) -> bool {
         let may = |effect| self.effects.contains(&effect);
-        let words = if may(Effect::Torn) || may(Effect::TornEquals) { 1 } else { usize::MAX };
-        let (held, sent) = (prefixes(kept, words), prefixes(&self.fragments, words));
-        let least = |entry: &Vec<u32>| if may(Effect::EqualKeys) { 1 } else { times(&sent, entry) };
+        // Torn entries are nobody's, and words of theirs may stand elsewhere too.
+        let whole: Vec<Vec<u32>> = kept.iter().filter(|entry| self.fragments.contains(entry)).cloned().collect();
+        let whole = if may(Effect::Torn) { &whole[..] } else { kept };
+        let words = if may(Effect::TornEquals) { 1 } else { usize::MAX };
+        let (held, sent) = (prefixes(whole, words), prefixes(&self.fragments, words));
+        let is_one = may(Effect::EqualKeys) || may(Effect::EqualFragments);
+        let least = |entry: &Vec<u32>| if is_one { 1 } else { times(&sent, entry) };
         let keys = prefixes(kept, 1);
         self.promise.most().is_none_or(|most| kept.len() <= most)
             && (may(Effect::Duplicate) || held.iter().all(|entry| times(&held, entry) <= least(entry)))
@@ -233,6 +258,9 @@ impl Policy {
         if may(Effect::Uncounted) {
             return kept + counts.lost <= total;
         }
+        if may(Effect::CountedTwice) {
+            return may(Effect::Lost) || self.culls || kept + counted >= total;
+        }
         match (may(Effect::Lost), may(Effect::Duplicate)) {
             (false, false) => self.miscounted(kept, counts).is_none(),
             (is_lossy, is_doubling) => {
@@ -245,10 +273,7 @@ impl Policy {
 
     /// The least bound that turns away none of the fragments that stay.
     pub(crate) fn least_bound(&self) -> u32 {
-        let best = match self.effects.contains(&Effect::EqualKeys) {
-            true => self.promise.best_of_distinct(self.fragments.clone()),
-            false => self.promise.best_of(self.fragments.clone()),
-        };
+        let best = self.best_of(self.fragments.clone());
         best.last().map_or(0, |entry| entry[0])
     }
 
@@ -264,6 +289,7 @@ impl Policy {
                 "emitted" => counts.emitted = *count,
                 "spin_exhausted" => counts.given_up = *count,
                 "pool_exhausted" => counts.no_room = *count,
+                "unsettled" => counts.unsettled = *count,
                 _ => {}
             }
         }

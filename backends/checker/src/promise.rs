@@ -14,12 +14,16 @@ pub(crate) struct Promise {
     /// Words of an entry that decide which is better, from the first on.
     pub(crate) deciding: usize,
     is_sorted: bool,
+    /// Of fragments with equal keys those that came first are better.
+    is_by_arrival: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Keeps {
     All,
     Best(usize),
+    /// The farthest: the nearest leave, in a stream.
+    Last(usize),
     PerRange(Ranges),
     Unknown,
 }
@@ -41,12 +45,19 @@ impl Promise {
             Keeps::All
         } else if offers.contains(&Fact::KeepsBest) {
             Keeps::Best(k)
+        } else if offers.contains(&Fact::Streams) {
+            Keeps::Last(k)
         } else if effects(subject).contains(&Effect::OnePerRange) {
             ranges(subject, k).map_or(Keeps::Unknown, Keeps::PerRange)
         } else {
             Keeps::Unknown
         };
-        Promise { keeps, deciding: deciding_words(subject), is_sorted: is_sorted(subject) }
+        Promise {
+            keeps,
+            deciding: deciding_words(subject),
+            is_sorted: is_sorted(subject),
+            is_by_arrival: order(subject) == Some(Order::Submission),
+        }
     }
 
     /// Whether it is not known what stays.
@@ -57,33 +68,52 @@ impl Promise {
     /// The most entries that a pixel holds, where there is a limit.
     pub(crate) fn most(&self) -> Option<usize> {
         match self.keeps {
-            Keeps::Best(k) => Some(k),
+            Keeps::Best(k) | Keeps::Last(k) => Some(k),
             Keeps::PerRange(ranges) => Some(ranges.count as usize),
             Keeps::All | Keeps::Unknown => None,
         }
     }
 
-    /// What stays of these fragments, best first.
+    /// Whether fragments stay and stand in one order, which arrival decides where keys do not.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.is_by_arrival && self.is_sorted
+    }
+
+    /// Whether what leaves is composited.
+    pub(crate) fn streams(&self) -> Option<usize> {
+        match self.keeps {
+            Keeps::Last(k) => Some(k),
+            _ => None,
+        }
+    }
+
+    /// What stays of these fragments, in the order in which they came; best first.
     pub(crate) fn best_of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
-        fragments.sort();
+        match self.is_by_arrival {
+            true => fragments.sort_by_key(|fragment| fragment[0]),
+            false => fragments.sort(),
+        }
         match self.keeps {
             Keeps::Best(k) => fragments.truncate(k),
+            Keeps::Last(k) => drop(fragments.drain(..fragments.len().saturating_sub(k))),
             Keeps::PerRange(ranges) => fragments.dedup_by_key(|fragment| ranges.of(fragment[0])),
             Keeps::All | Keeps::Unknown => {}
         }
         fragments
     }
 
-    /// What stays where of fragments with equal keys one does.
-    pub(crate) fn best_of_distinct(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+    /// What stays where of fragments whose first words are equal one does.
+    pub(crate) fn best_of_distinct(&self, mut fragments: Vec<Vec<u32>>, words: usize) -> Vec<Vec<u32>> {
         fragments.sort();
-        fragments.dedup_by_key(|fragment| fragment[0]);
+        fragments.dedup_by(|one, other| one.iter().zip(other.iter()).take(words).all(|(one, other)| one == other));
         self.best_of(fragments)
     }
 
     /// Whether entries are read in the order of what decides, if that is promised.
     pub(crate) fn is_in_order(&self, entries: &[Vec<u32>]) -> bool {
-        let decides = |entry: &Vec<u32>| entry[..self.deciding.min(entry.len())].to_vec();
+        // Where arrival decides, sequences are compared elsewhere.
+        let deciding = if self.is_by_arrival { 1 } else { self.deciding };
+        let decides = |entry: &Vec<u32>| entry[..deciding.min(entry.len())].to_vec();
         !self.is_sorted || entries.is_sorted_by_key(decides)
     }
 }
@@ -105,11 +135,16 @@ pub(crate) fn effects(subject: &Subject) -> Vec<Effect> {
 
 /// The words that decide which fragment is better, from the first on.
 pub(crate) fn deciding_words(subject: &Subject) -> usize {
-    let order = subject.plan.selection.rows.iter().find_map(|selected| selected.row.order);
-    match order {
-        Some(Order::Unordered | Order::Submission) => 1,
-        Some(Order::Payload | Order::Attribute) | None => subject.plan.layout.entry_words() as usize,
+    match order(subject) {
+        Some(Order::Unordered) => 1,
+        Some(Order::Payload | Order::Attribute | Order::Submission) | None => {
+            subject.plan.layout.entry_words() as usize
+        }
     }
+}
+
+fn order(subject: &Subject) -> Option<Order> {
+    subject.plan.selection.rows.iter().find_map(|selected| selected.row.order)
 }
 
 fn ranges(subject: &Subject, k: usize) -> Option<Ranges> {

@@ -132,8 +132,13 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
         (true, false) => (total, total.min(asking.k.unwrap_or(u32::MAX))),
     };
     let mut rooms = vec![room(total)?];
-    if !has_exact_room(subject, &rooms[0])? {
-        return Ok(rooms);
+    if let Some(page) = page(subject, &rooms[0])? {
+        // Who finds that another has made room leaks what it has taken.
+        let ample = room(total + page * asking.new.len() as u32)?;
+        let short = total.saturating_sub(page);
+        let what = "no room but each pixel's own";
+        let none = enough(subject, asking.k, Sizing::Reserve(Reserve::Fragments(0)))?;
+        return Ok(vec![ample, Room { short: short..=short, what, ..none }]);
     }
     if most < total && !asking.may_give_up {
         rooms.push(Room { what: "room for those that ask", ..room(most)? });
@@ -144,13 +149,25 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
     Ok(rooms)
 }
 
-/// Whether there is room for exactly as many fragments as is said: none for none. Pages have more.
-fn has_exact_room(subject: &Subject, room: &Room) -> Result<bool, String> {
-    let mut none = room.symbols.clone();
-    none.set("fragments", 0);
-    let mut pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
-    pooled.try_fold(true, |exact, planned| {
-        let words = none.evaluate(&subject.plan, &planned.words, &planned.resource.name);
-        Ok(exact && words.map_err(|error| error.to_string())? == 0)
-    })
+/// Fragments of the pieces in which room is given, where every pixel has one of its own even if there is room for none.
+fn page(subject: &Subject, room: &Room) -> Result<Option<u32>, String> {
+    let mut symbols = room.symbols.clone();
+    let mut words = |fragments: u32| {
+        symbols.set("fragments", fragments.into());
+        let pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
+        let words = pooled.map(|planned| symbols.evaluate(&subject.plan, &planned.words, &planned.resource.name));
+        words.sum::<Result<u64, _>>().map_err(|error| error.to_string())
+    };
+    let least = words(0)?;
+    if least == 0 {
+        return Ok(None);
+    }
+    for fragments in 1..=LARGEST_PAGE {
+        if words(fragments)? > least {
+            return Ok(Some(fragments));
+        }
+    }
+    Err("the storage gives room in pieces of too many fragments".to_owned())
 }
+
+const LARGEST_PAGE: u32 = 1 << 10;

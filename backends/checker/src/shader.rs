@@ -151,7 +151,9 @@ fn memory(programs: &[Option<&Program>], shader: &Shader<'_>) -> Memory {
 fn ground<'p>(program: &'p Program, memory: &Memory, model: Model) -> (Ground<'p>, Vec<u32>) {
     let (homes, words, ordered) = Ground::lay_out(program, memory);
     let has_fences = model == Model::Late;
-    (Ground { program, homes, fixed: memory.clone(), ordered, model, has_fences, helper: None }, words)
+    let fixed = memory.clone();
+    let (helper, by_submission, one_by_one) = (None, false, false);
+    (Ground { program, homes, fixed, ordered, model, has_fences, helper, by_submission, one_by_one }, words)
 }
 
 /// An invocation with inputs of its own.

@@ -5,9 +5,10 @@
 
 use std::hash::{Hash, Hasher};
 
-use fragbuf_interpreter::{Access, Buffer, Event, Exit, Machine, Operation, Place, Program, Reply, Shared};
+use fragbuf_interpreter::{Access, Buffer, Event, Exit, Machine, Operation, Place, Program};
 
 use crate::model::{Late, Model};
+use crate::pausing::{Pausing, apply};
 use crate::subject::Subject;
 
 /// What every state of a search shares.
@@ -25,6 +26,10 @@ pub(crate) struct Ground<'p> {
     pub(crate) has_fences: bool,
     /// A helper invocation: nothing that it writes has any effect, and what its atomic operations give is anything.
     pub(crate) helper: Option<usize>,
+    /// Whether the interlock lets fragments in by number, the order of submission.
+    pub(crate) by_submission: bool,
+    /// Whether a fragment that has begun runs to its end before another does anything.
+    pub(crate) one_by_one: bool,
 }
 
 /// Where a buffer lies.
@@ -44,6 +49,10 @@ pub(crate) struct State {
     pub(crate) fragments: Vec<Status>,
     /// Who is inside the interlock.
     pub(crate) inside: Option<usize>,
+    /// Who has left it, a bit each, where it lets fragments in by number.
+    left: u32,
+    /// Who runs, where fragments run one by one.
+    alone: Option<usize>,
     pub(crate) late: Option<Box<Late>>,
 }
 
@@ -144,7 +153,7 @@ impl Ground<'_> {
             let wide = self.each_ordered(|buffer| buffer.is_wide);
             Box::new(Late::new(&words[..self.ordered], machines.len(), private, &wide))
         });
-        let mut state = State { words, fragments: Vec::new(), inside: None, late };
+        let mut state = State { words, fragments: Vec::new(), inside: None, left: 0, alone: None, late };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
             let status = self.run(&mut machine, fragment, None, &mut state.words)?;
             state.fragments.push(status);
@@ -178,6 +187,15 @@ impl Ground<'_> {
         }
     }
 
+    /// The fragments that have not ended and may go on.
+    pub(crate) fn running(&self, state: &State) -> Vec<usize> {
+        let has_ended = |at: &usize| state.fragments[*at] == Status::Ended;
+        match state.alone {
+            Some(fragment) => vec![fragment],
+            None => (0..state.fragments.len()).filter(|at| !has_ended(at)).collect(),
+        }
+    }
+
     /// In how many ways a fragment's event can happen; 0: it has ended, or must wait for the interlock.
     pub(crate) fn choices(&self, state: &State, fragment: usize) -> u32 {
         let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
@@ -185,12 +203,18 @@ impl Ground<'_> {
             (Event::Access(access), _) if self.helper == Some(fragment) && access.writes() => 2,
             // The interlock does not wait for helper invocations, and what they read is what stands there.
             _ if self.helper == Some(fragment) => 1,
-            (Event::CriticalBegin, _) => u32::from(state.inside.is_none()),
+            (Event::CriticalBegin, _) => u32::from(state.inside.is_none() && self.is_next(state, fragment)),
             (Event::Access(access), Some(late)) => {
                 self.word(access.place).map_or(1, |word| late.choices(fragment, word, access))
             }
             _ => 1,
         }
+    }
+
+    /// Whether nobody comes before a fragment who is yet to leave the interlock, if it has an order.
+    fn is_next(&self, state: &State, fragment: usize) -> bool {
+        let has_left = |other: usize| state.left >> other & 1 == 1 || state.fragments[other] == Status::Ended;
+        !self.by_submission || (0..fragment).all(has_left)
     }
 
     /// The state after a fragment's event has happened in the way of this number, and what the event saw.
@@ -206,6 +230,7 @@ impl Ground<'_> {
         let old = self.perform(&mut next, fragment, event, choice);
         machine.load(saved);
         next.fragments[fragment] = self.run(machine, fragment, Some(old), &mut next.words)?;
+        next.alone = Some(fragment).filter(|at| self.one_by_one && next.fragments[*at] != Status::Ended);
         if let Some(late) = &mut next.late {
             let running: Vec<bool> = next.fragments.iter().map(|status| *status != Status::Ended).collect();
             late.forget(&running);
@@ -219,7 +244,10 @@ impl Ground<'_> {
         }
         match event {
             Event::CriticalBegin => state.inside = Some(fragment),
-            Event::CriticalEnd => state.inside = None,
+            Event::CriticalEnd => {
+                state.inside = None;
+                state.left |= u32::from(self.by_submission) << fragment;
+            }
             _ => {}
         }
         let Event::Access(access) = event else {
@@ -311,63 +339,9 @@ fn is_same_but_one(one: &Status, other: &Status) -> bool {
     }
 }
 
-fn joined(words: &[u32], count: u8) -> u64 {
+pub(crate) fn joined(words: &[u32], count: u8) -> u64 {
     let low = u64::from(words[0]);
     if count == 2 { low | u64::from(words[1]) << 32 } else { low }
-}
-
-/// Lets an access happen at once; the old value.
-fn apply(access: &Access, words: &mut [u32]) -> u64 {
-    let old = joined(words, access.words);
-    if access.writes() {
-        let new = access.new_value(old);
-        words[0] = new as u32;
-        if access.words == 2 {
-            words[1] = (new >> 32) as u32;
-        }
-    }
-    old
-}
-
-/// Answers one event, then stops. What commutes happens at once: no order of it can be told from another.
-struct Pausing<'a, 'p> {
-    ground: &'a Ground<'p>,
-    reply: Option<u64>,
-    words: &'a mut [u32],
-    is_idle: bool,
-}
-
-impl Shared for Pausing<'_, '_> {
-    fn length(&self, buffer: u16) -> u32 {
-        match self.ground.homes[usize::from(buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].len() as u32,
-            Home::Moving { words, .. } => words as u32,
-        }
-    }
-
-    fn constant(&self, place: Place) -> u32 {
-        match self.ground.homes[usize::from(place.buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].get(place.word as usize).copied().unwrap_or(0),
-            Home::Moving { first, .. } => self.words.get(first + place.word as usize).copied().unwrap_or(0),
-        }
-    }
-
-    fn event(&mut self, event: &Event) -> Reply {
-        match event {
-            Event::Access(access) => {
-                if let Home::Moving { first, commutes: true, .. } = self.ground.homes[usize::from(access.place.buffer)]
-                {
-                    if self.is_idle {
-                        return Reply::Done(0);
-                    }
-                    return Reply::Done(apply(access, &mut self.words[first + access.place.word as usize..]));
-                }
-            }
-            Event::Fence if !self.ground.has_fences => return Reply::Done(0),
-            _ => {}
-        }
-        self.reply.take().map_or(Reply::Stop, Reply::Done)
-    }
 }
 
 /// Whether two accesses that are about to happen are a data race: the same word, one of them writes, not both atomic.

@@ -10,6 +10,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
 
+use crate::stream::StreamPrograms;
 use crate::turns::{Turn, turns};
 
 /// `templates/shared/markers.wgsl`.
@@ -23,6 +24,7 @@ pub(crate) const MARKERS: [(&str, Marker); 4] = [
 /// Names of the passes that are added to a plan to ask questions.
 const READ_OUT: &str = "read_out";
 const READ_BOUND: &str = "read_bound";
+const READ_STREAM: &str = "read_stream";
 
 /// From a fragment to the words that are stored.
 const PACK: &str = "fragment_pack";
@@ -47,7 +49,11 @@ pub(crate) struct Subject {
     pub(crate) read: Program,
     /// The bound of the storage, where a cull rests on it.
     pub(crate) bound: Option<Program>,
+    /// What has left, where the storage hands fragments on.
+    pub(crate) stream: Option<StreamPrograms>,
     pub(crate) has_fences: bool,
+    /// Whether an interlock lets fragments in by the order of submission.
+    pub(crate) has_ordered_interlock: bool,
 }
 
 /// A pass that computes or draws.
@@ -103,13 +109,16 @@ impl Subject {
         let registry = registry
             .clone()
             .with(row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
-            .with(row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"));
+            .with(row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"))
+            .with(row(READ_STREAM, include_str!("read_stream.wgsl"), "checker/read_stream.wgsl"));
         let plan = plan(variant, &selection, &registry)?;
         let wants_bound = selection.rows.iter().any(|row| row.row.requires.contains(&Fact::BoundAnyInstant));
+        let streams = selection.offers().contains(&Fact::Streams);
         let mut asking = plan.clone();
-        asking.steps.push(Step::Pass(question(&plan, READ_OUT)));
-        if wants_bound {
-            asking.steps.push(Step::Pass(question(&plan, READ_BOUND)));
+        for (anchor, is_asked) in [(READ_OUT, true), (READ_BOUND, wants_bound), (READ_STREAM, streams)] {
+            if is_asked {
+                asking.steps.push(Step::Pass(question(&plan, anchor)));
+            }
         }
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let origin = &variant.name.origin;
@@ -122,7 +131,7 @@ impl Subject {
         for (text, pass) in link(&asking, &linking, &registry)?.passes.into_iter().zip(asking.passes()) {
             let checked = check(text, target.profile, origin)?;
             match pass.anchor.as_str() {
-                READ_OUT | READ_BOUND => asked.push(checked),
+                READ_OUT | READ_BOUND | READ_STREAM => asked.push(checked),
                 _ if pass.kind == Kind::Fullscreen => {}
                 _ => {
                     for (turn, round) in turns.iter().enumerate().filter_map(|(at, turn)| round_of(at, turn, pass)) {
@@ -133,17 +142,27 @@ impl Subject {
             }
         }
         passes.sort_by_key(|runnable| runnable.turn);
-        let ask = |number: usize, name: &str| {
-            let checked: &Checked = &asked[number];
+        let ask = |anchor: &str, name: &str| {
+            let checked = asked.iter().find(|checked| checked.pass().anchor == anchor);
+            let checked: &Checked = checked.unwrap_or(&asked[0]);
             Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
                 .map_err(|faults| refused(checked, &faults, origin))
         };
+        let stream = match streams {
+            true => Some(StreamPrograms {
+                streamed: ask(READ_STREAM, "storage_streamed")?,
+                composite: ask(READ_STREAM, "stream_composite")?,
+            }),
+            false => None,
+        };
         Ok(Some(Subject {
             passes,
-            walk: ask(0, "walk_to")?,
-            read: ask(0, "storage_read")?,
-            bound: if wants_bound { Some(ask(1, "storage_bound")?) } else { None },
+            walk: ask(READ_OUT, "walk_to")?,
+            read: ask(READ_OUT, "storage_read")?,
+            bound: if wants_bound { Some(ask(READ_BOUND, "storage_bound")?) } else { None },
+            stream,
             has_fences: target.offers.contains(&Fact::Fences),
+            has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
             turns,
             plan,
         }))

@@ -4,11 +4,13 @@
 //! after the remaining steps of the frame have been done. Where a loop brings the frame back to the pass under test, every
 //! end of one round is the beginning of a search of the next.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
 use fragbuf_interpreter::{Exit, Machine, Program};
+use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Fact;
 
 use crate::case::Case;
@@ -19,6 +21,7 @@ use crate::model::Model;
 use crate::policy::{Finding, Policy};
 use crate::promise::{Promise, effects};
 use crate::state::{Ground, Home, Mishap, State};
+use crate::stream::{Left, Stream};
 use crate::subject::{Runnable, Subject};
 use crate::walk::walk;
 
@@ -30,6 +33,15 @@ pub(crate) struct Search {
     pub(crate) seeds: Option<u32>,
     pub(crate) limit: usize,
     pub(crate) may_give_up: bool,
+    /// Whether fragments come one after the other, in every order, so that no race excuses anything.
+    pub(crate) one_by_one: bool,
+}
+
+impl Search {
+    /// The same without races.
+    pub(crate) fn without_races(self) -> Search {
+        Search { model: Model::Sequential, one_by_one: true, ..self }
+    }
 }
 
 /// A case that is set up.
@@ -73,7 +85,7 @@ impl<'s> Trial<'s> {
         let fragments = case.prior.iter().chain(&case.new[..real]).map(|fragment| fragment.words.clone()).collect();
         let policy = Policy {
             promise: Promise::new(subject, case.k),
-            effects: effects(subject),
+            effects: effects(subject).into_iter().filter(|effect| !search.one_by_one || !effect.is_a_races()).collect(),
             short: case.room.short.clone(),
             may_give_up: search.may_give_up,
             culls: subject.turns_away(),
@@ -88,7 +100,7 @@ impl<'s> Trial<'s> {
         let turn = trial.runnable().turn;
         let seen = trial.case.new.len() - usize::from(trial.case.room.has_unseen || trial.case.has_helper);
         frame.advance(0, turn, &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))?;
-        trial.begin(frame, None, search.model)?;
+        trial.begin(frame, None, search)?;
         Ok(trial)
     }
 
@@ -105,13 +117,20 @@ impl<'s> Trial<'s> {
     }
 
     /// Sets the fragments off where the frame stands before the pass under test.
-    fn begin(&mut self, mut frame: Frame<'s>, before: Option<(usize, Vec<Step>)>, model: Model) -> Result<(), String> {
+    fn begin(
+        &mut self,
+        mut frame: Frame<'s>,
+        before: Option<(usize, Vec<Step>)>,
+        search: &Search,
+    ) -> Result<(), String> {
+        let (model, one_by_one) = (search.model, search.one_by_one);
         let runnable = self.runnable();
         frame.enter(runnable.round)?;
         for inputs in self.inputs(runnable, &[]) {
             frame.insert(runnable, &inputs)?;
         }
         let (mut ground, words) = ground(self.subject, &runnable.program, &frame.memory, model);
+        ground.one_by_one = one_by_one;
         ground.helper = self.case.has_helper.then(|| self.case.new.len() - 1);
         let new = self.case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, self.case.pixel));
         let machines = new.map(|fragment| machine(&runnable.program, &fragment.inputs)).collect();
@@ -135,7 +154,7 @@ impl<'s> Trial<'s> {
                 let Some(frame) = frames.get(&words).filter(|frame| known.insert(frame.memory.clone())) else {
                     continue;
                 };
-                self.begin(frame.clone(), Some((at, steps)), search.model)?;
+                self.begin(frame.clone(), Some((at, steps)), search)?;
             }
             at += 1;
         }
@@ -160,6 +179,7 @@ impl<'s> Trial<'s> {
             homes,
             is_racy: self.subject.is_racy(),
             known: HashMap::new(),
+            left: HashMap::new(),
             goes_on: HashMap::new(),
         };
         let found = match search.seeds {
@@ -180,7 +200,10 @@ fn machine<'p>(program: &'p Program, inputs: &[Vec<u32>]) -> Machine<'p> {
 fn ground<'s>(subject: &Subject, program: &'s Program, memory: &Memory, model: Model) -> (Ground<'s>, Vec<u32>) {
     let (homes, words, ordered) = Ground::lay_out(program, memory);
     let has_fences = subject.has_fences && model == Model::Late;
-    (Ground { program, homes, fixed: memory.clone(), ordered, model, has_fences, helper: None }, words)
+    let by_submission = subject.has_ordered_interlock;
+    let fixed = memory.clone();
+    let (helper, one_by_one) = (None, false);
+    (Ground { program, homes, fixed, ordered, model, has_fences, helper, by_submission, one_by_one }, words)
 }
 
 /// (memory, first moving word, words) for every buffer that moves.
@@ -200,6 +223,8 @@ struct EndJudge<'t, 's> {
     homes: Vec<(usize, usize, usize)>,
     is_racy: bool,
     known: HashMap<Vec<u32>, End>,
+    /// What may have left the pixel, by how many were given up.
+    left: HashMap<usize, Vec<Left>>,
     /// Where the frame stands when it has come back to the pass, by the words of the end.
     goes_on: HashMap<Vec<u32>, Frame<'s>>,
 }
@@ -239,10 +264,42 @@ impl<'s> EndJudge<'_, 's> {
         let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);
         let counters = counters.map_or(&[][..], |at| &frame.memory[FIRST_BINDING as usize + at]);
         Ok(match trial.policy.finding(&kept, counters) {
-            Finding::Right => End::Right,
+            Finding::Right => self.streamed(&frame, counters)?.map_or(End::Right, End::Wrong),
             Finding::Stated(text) => End::Stated(text),
             Finding::Wrong(text) => End::Wrong(text),
         })
+    }
+
+    /// What is wrong with what has left a pixel, where the storage hands fragments on.
+    fn streamed(&mut self, frame: &Frame<'s>, counters: &[u32]) -> Result<Option<String>, String> {
+        let trial = self.trial;
+        let (Some(programs), Some(most)) = (&trial.subject.stream, trial.policy.promise.streams()) else {
+            return Ok(None);
+        };
+        let count = |wanted: &str| {
+            let mut known = COUNTERS.iter().zip(counters);
+            known.find(|((name, _, _), _)| *name == wanted).map_or(0, |(_, count)| *count)
+        };
+        let mut memory = frame.memory.clone();
+        let gone = count("spin_exhausted") as usize;
+        if let Entry::Vacant(place) = self.left.entry(gone) {
+            let stream = Stream { programs, promise: &trial.policy.promise, most };
+            let fragments = trial.policy.fragments.split_at(trial.case.prior.len());
+            place.insert(stream.left(fragments, gone, &mut memory)?);
+        }
+        let mut machine = Machine::new(&programs.streamed);
+        machine.set_input(0, &[trial.case.pixel]);
+        if run_alone(&mut machine, &mut memory)? != Exit::Ended {
+            return Err("the colour of what has left cannot be read".to_owned());
+        }
+        let (late, color) = (count("out_of_order"), machine.result());
+        let is_right = |left: &Left| left.late == late && left.color.as_ref().is_none_or(|known| known == color);
+        let is_known = self.left.get(&gone).is_some_and(|known| known.iter().any(is_right));
+        Ok((!is_known).then(|| {
+            format!(
+                "in no order of the fragments {late} come out of order and {color:08x?} is the colour that they leave"
+            )
+        }))
     }
 }
 

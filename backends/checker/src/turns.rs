@@ -4,8 +4,8 @@
 //! Other loops are refused.
 
 use fragbuf_codegen::Plan;
-use fragbuf_frame::{resource, rounds, unrolled, unsupported};
-use fragbuf_templates::vocabulary::{Step, Until};
+use fragbuf_frame::{resource, unrolled, unsupported};
+use fragbuf_templates::vocabulary::{Formula, Step, Until};
 
 /// What is done at one turn.
 #[allow(clippy::large_enum_variant, reason = "nearly all turns are steps")]
@@ -13,8 +13,8 @@ use fragbuf_templates::vocabulary::{Step, Until};
 pub(crate) enum Turn {
     /// A step, in this round of the loop that has been written out around it; 0 outside of any.
     Step { step: Step, round: u32 },
-    /// Back to the turn `from`, until the first word of a resource of the plan is zero.
-    Again { from: usize, word: usize, at_most: u32 },
+    /// Back to the turn `from`, until the first word of a resource of the plan is zero. How often may rest on the frame.
+    Again { from: usize, word: usize, at_most: Formula },
 }
 
 /// The turns of a plan.
@@ -35,7 +35,7 @@ pub(crate) fn turns(plan: &Plan) -> Result<Vec<Turn>, fragbuf_frame::Error> {
             }
             turns.push(Turn::Step { step: step.clone(), round: 0 });
         }
-        turns.push(Turn::Again { from, word: resource(plan, name)?, at_most: rounds(plan, repeat)? });
+        turns.push(Turn::Again { from, word: resource(plan, name)?, at_most: repeat.at_most.clone() });
     }
     Ok(turns)
 }

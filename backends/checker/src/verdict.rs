@@ -5,17 +5,17 @@
 use fragbuf_backends::Target;
 use fragbuf_model::{Diagnostics, Selection, Variant};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Kind};
+use fragbuf_templates::vocabulary::{Effect, Fact, Kind};
 
 use crate::case::{Case, cases};
 use crate::fragments::Candidates;
 use crate::frame::Frame;
 use crate::model::Model;
-use crate::promise::Promise;
+use crate::promise::{Promise, effects};
 use crate::report::{Schedule, schedule};
 use crate::room::plenty;
 use crate::subject::{Subject, Tries};
-use crate::trial::{Search, Trial};
+use crate::trial::{Outcome, Search, Trial};
 
 /// How far to go.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,6 +72,8 @@ pub enum Error {
     Description(Diagnostics),
     /// The checker cannot run it, in words.
     Unable(String),
+    /// There is nothing to interleave, and why: not a failure.
+    NothingToTry(String),
 }
 
 impl From<Diagnostics> for Error {
@@ -93,7 +95,27 @@ impl Report {
             is_judged: true,
         }
     }
+
+    /// Takes note of what a trial found; whether it is a failure that no row states.
+    fn takes_in(&mut self, trial: &Trial<'_>, found: Outcome) -> bool {
+        self.states += found.states;
+        self.is_whole &= found.is_whole;
+        if let Some((round, failure)) = found.failure {
+            self.is_stated = false;
+            self.failure = Some(schedule(trial, round, &failure));
+            return true;
+        }
+        // What is stated is shown, and the search for what is not goes on.
+        if let (None, Some((round, failure))) = (&self.failure, found.stated) {
+            self.is_stated = true;
+            self.failure = Some(schedule(trial, round, &failure));
+        }
+        false
+    }
 }
+
+const LEFT_TO_TESTS: &str = "depth test, stencil and blending decide what stays, in the order of submission, and they are the \
+    device's: no shader that stores touches memory that fragments share";
 
 /// Checks a variant on a target. `progress` is told what is being tried.
 pub fn check_variant(
@@ -105,8 +127,7 @@ pub fn check_variant(
 ) -> Result<Report, Error> {
     let mut report = Report::new(limits);
     if Selection::first(variant).offers().contains(&Fact::FixedFunction) {
-        let why = "depth test, stencil and targets keep fragments apart, not accesses to memory: there is nothing to interleave";
-        return Err(Error::Unable(why.to_owned()));
+        return Err(Error::NothingToTry(LEFT_TO_TESTS.to_owned()));
     }
     for tries in [Tries::AsStated, Tries::Least] {
         let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
@@ -130,8 +151,15 @@ fn try_all(
 ) -> Result<(), String> {
     let mut frame = Frame::new(subject, plenty(subject)?)?;
     let candidates = Candidates::new(subject, &mut frame.memory)?;
-    let search =
-        Search { model: limits.model, seeds: limits.seeds, limit: limits.states, may_give_up: tries == Tries::Least };
+    let search = Search {
+        model: limits.model,
+        seeds: limits.seeds,
+        limit: limits.states,
+        may_give_up: tries == Tries::Least,
+        one_by_one: false,
+    };
+    let races = effects(subject).into_iter().any(Effect::is_a_races);
+    let searches = [Some(search), races.then(|| search.without_races())];
     let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();
     if drawn == 0 {
         return Err("no pass of the plan draws the scene".to_owned());
@@ -147,20 +175,13 @@ fn try_all(
                 let k = k.map_or(String::new(), |k| format!("k = {k}, "));
                 progress(&format!("{k}{}", case.what));
                 let case = Case { what: format!("{k}{}", case.what), ..case };
-                let mut trial = Trial::new(subject, case, &candidates.ranked[11], &search)?;
-                let found = trial.run(&search)?;
                 report.cases += 1;
-                report.states += found.states;
-                report.is_whole &= found.is_whole;
-                if let Some((round, failure)) = found.failure {
-                    report.is_stated = false;
-                    report.failure = Some(schedule(&trial, round, &failure));
-                    return Ok(());
-                }
-                // What is stated is shown, and the search for what is not goes on.
-                if let (None, Some((round, failure))) = (&report.failure, found.stated) {
-                    report.is_stated = true;
-                    report.failure = Some(schedule(&trial, round, &failure));
+                for search in searches.iter().flatten() {
+                    let mut trial = Trial::new(subject, case.clone(), &candidates.ranked[11], search)?;
+                    let found = trial.run(search)?;
+                    if report.takes_in(&trial, found) {
+                        return Ok(());
+                    }
                 }
             }
         }

@@ -6,7 +6,7 @@
 use fragbuf_interpreter::Machine;
 
 use crate::explore::{End, Failure, Found, Judge, Step, What, racing};
-use crate::state::{Ground, State, Status};
+use crate::state::{Ground, State};
 
 /// Steps that a walk takes at most.
 const LONGEST: usize = 100_000;
@@ -51,8 +51,7 @@ impl<'p> Walker<'_, 'p> {
             if let Some((one, other)) = racing(self.ground, &state) {
                 return Err(What::Race(one, other));
             }
-            let running: Vec<usize> =
-                (0..state.fragments.len()).filter(|at| state.fragments[*at] != Status::Ended).collect();
+            let running = self.ground.running(&state);
             if running.is_empty() {
                 return Ok(Some((judge.end(&state.words), state.words)));
             }

@@ -10,10 +10,12 @@ use crate::subjects::{limits, report};
 type Racy = (&'static str, &'static [(&'static str, &'static str)], &'static str);
 
 /// Every technique whose rows state hazards of races, so that each of them shows.
-const STATED: [Racy; 2] = [
+const STATED: [Racy; 4] = [
     ("kb", &[], "sorted_array"),
     // An entry of several words, so that it can be torn.
     ("kb_mdt32", &[("fragment.color", "vec4")], "distinct_cascade"),
+    ("kb_multi", &[("fragment.color", "vec4"), ("k", "2")], "repeated_array"),
+    ("kb_mha", &[("storage.retries", "0"), ("k", "2")], "checked_array"),
 ];
 
 fn checked((key, set, _): &Racy, model: Model, registry: &Registry) -> Report {

@@ -19,4 +19,5 @@ mod repairs;
 mod repeated;
 mod subjects;
 mod survivors;
+mod survivors_of_races;
 mod verdicts;

@@ -103,6 +103,7 @@ fn plain(line: &str) -> Option<(String, String)> {
         "sub" => "old - value",
         "exchange" => "value",
         "min" => "min(old, value)",
+        "max" => "max(old, value)",
         other => panic!("no plain form of {other}"),
     };
     let function = format!(

@@ -45,8 +45,21 @@ pub(super) fn checked_array() -> Row {
                 unless: Some(Fact::Critical),
             },
             Hazard {
+                name: "given-up".into(),
+                what: "a fragment that is written over every time it looks is given up after its last try, and counted"
+                    .into(),
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
                 name: "torn".into(),
                 what: "a slot of two fragments' words passes the check, one time in four that there is one".into(),
+                unless: Some(Fact::Critical),
+            },
+            Hazard {
+                name: "stale".into(),
+                what:
+                    "a key is seen before what stands beside it, and what stood there before the frame passes the check"
+                        .into(),
                 unless: Some(Fact::Critical),
             },
             Hazard {

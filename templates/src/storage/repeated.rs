@@ -45,12 +45,15 @@ fn hazards() -> Vec<Hazard> {
     let hazard = |name: &'static str, what: &'static str| Hazard { name: name.into(), what: what.into(), unless: None };
     vec![
         hazard("equal-keys", "of fragments with equal keys one is kept, the last to write"),
-        hazard("torn", "what stands beside a key comes from several fragments of that key, where it is several words"),
+        hazard(
+            "torn-equal-keys",
+            "what stands beside a key comes from several fragments of that key, where it is several words",
+        ),
         hazard(
             "unsettled",
             "where the last of the k + 1 rounds still changes a slot, entries are lost, double or torn; the fragments that \
              changed one are counted",
         ),
-        hazard("first-round", "losses are counted in the first round alone, as if its fragments had not raced"),
+        hazard("uncounted", "losses are counted in the first round alone, as if its fragments had not raced"),
     ]
 }

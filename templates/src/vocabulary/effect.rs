@@ -18,25 +18,37 @@ pub enum Effect {
     Unsorted,
     /// Of fragments with equal keys one is kept, and the others are counted.
     EqualKeys,
+    /// Of fragments that nothing tells apart one is kept, and the others are counted.
+    EqualFragments,
     /// Every word of an entry is that word of some fragment with its key, but not all of one.
     TornEquals,
     /// Fragments that are not kept, as they should not be, are counted nowhere.
     Uncounted,
+    /// A fragment that is not kept is counted several times.
+    CountedTwice,
+    /// A fragment is given up after its tries, and counted, though nobody waits for a lock.
+    GivenUp,
+    /// Where the counter `unsettled` is not 0, entries are lost, double or torn.
+    Unsettled,
     /// Of the fragments in one of k equal ranges of depth the best is kept, and the others are counted. The ranges go from
     /// `NEAR_MILLIONTHS` to `FAR_MILLIONTHS`, constants of the row; what lies outside belongs to the first or the last.
     OnePerRange,
 }
 
 /// Every name that says an effect.
-const NAMES: [(&str, Effect); 9] = [
+const NAMES: [(&str, Effect); 13] = [
     ("lost-update", Effect::Lost),
     ("duplicate", Effect::Duplicate),
     ("torn", Effect::Torn),
     ("stale", Effect::Stale),
     ("unsorted", Effect::Unsorted),
     ("equal-keys", Effect::EqualKeys),
+    ("equal-fragments", Effect::EqualFragments),
     ("torn-equal-keys", Effect::TornEquals),
     ("uncounted", Effect::Uncounted),
+    ("counted-twice", Effect::CountedTwice),
+    ("given-up", Effect::GivenUp),
+    ("unsettled", Effect::Unsettled),
     ("one-per-range", Effect::OnePerRange),
 ];
 
@@ -44,5 +56,10 @@ impl Effect {
     /// The effect of a hazard of this name; `None`: the name says nothing that can be checked.
     pub fn of(name: &str) -> Option<Self> {
         NAMES.iter().find(|(known, _)| *known == name).map(|(_, effect)| *effect)
+    }
+
+    /// Whether it comes of a race: fragments that come one after the other never show it.
+    pub fn is_a_races(self) -> bool {
+        !matches!(self, Effect::EqualKeys | Effect::EqualFragments | Effect::OnePerRange)
     }
 }
