@@ -148,6 +148,8 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
 fn placed(subject: &Subject, comers: &Comers, cases: &mut Vec<Case>) -> Result<(), String> {
     let Comers { k, prior, new, may_give_up, .. } = comers;
     let drawn = subject.passes.iter().enumerate().filter(|(_, pass)| pass.pass.kind == Kind::Geometry);
+    // Of several passes over the scene the last stores what those before have counted.
+    let last = drawn.clone().count() - 1;
     for (number, (pass, runnable)) in drawn.enumerate() {
         let case = |room: Room, pixel: u32, has_helper: bool| {
             let place = if pixel > 0 { "the last pixel" } else { "" };
@@ -157,13 +159,13 @@ fn placed(subject: &Subject, comers: &Comers, cases: &mut Vec<Case>) -> Result<(
             Case { k: *k, prior: prior.clone(), new: new.clone(), pass, room, pixel, has_helper, what }
         };
         let asking = |new, pixel| Asking { prior, new, k: *k, may_give_up: *may_give_up, pixel };
-        for room in rooms(subject, &asking(new, 0), number > 0)? {
+        for room in rooms(subject, &asking(new, 0), number > 0 && number == last)? {
             cases.push(case(room, 0, false));
         }
         if !comers.what.contains("between") {
             continue;
         }
-        for room in rooms(subject, &asking(new, 1), number > 0)? {
+        for room in rooms(subject, &asking(new, 1), number > 0 && number == last)? {
             cases.push(case(room, 1, false));
         }
         // A helper invocation takes no room.

@@ -67,12 +67,20 @@ pub(crate) fn rooms(subject: &Subject, asking: &Asking<'_>, is_behind: bool) -> 
     let is_counted = subject.plan.steps.iter().any(|step| matches!(step, Step::Host(_)));
     let has_slots = subject.plan.frame.iter().any(|field| field == "n");
     let is_pooled = subject.plan.frame.iter().any(|field| field == "fragments") && !is_counted;
-    match (is_counted, has_slots, is_pooled) {
+    let mut rooms = match (is_counted, has_slots, is_pooled) {
         (true, _, _) => counted(subject, asking, is_behind),
         (_, true, _) => slots(subject, asking),
         (_, _, true) => pool(subject, asking),
         _ => Ok(vec![enough(subject, asking.k, Sizing::Exact)?]),
+    }?;
+    if subject.is_handed_the_best() {
+        // Those beyond the k best may be turned away before they ask for room.
+        let beyond = asking.total().saturating_sub(asking.k.unwrap_or(u32::MAX));
+        for room in &mut rooms {
+            room.short = room.short.start().saturating_sub(beyond)..=*room.short.end();
+        }
     }
+    Ok(rooms)
 }
 
 /// Room for fragments that are not there, such as are asked for the words that they become.

@@ -104,6 +104,7 @@ fn plain(line: &str) -> Option<(String, String)> {
         "exchange" => "value",
         "min" => "min(old, value)",
         "max" => "max(old, value)",
+        "or" => "old | value",
         other => panic!("no plain form of {other}"),
     };
     let function = format!(

@@ -252,4 +252,17 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "links_store(node, heads_atomic_exchange(bucket_lists_bucket(pixel, entry.key), pixel, node + 1u)); nodes_store(node, entry);",
         "nobody reads a list before the pass has ended",
     ),
+    (
+        "storage/checked_array",
+        "entries_store(slot, pixel, sealed); keys_store(slot, pixel, sealed.key);",
+        "keys_store(slot, pixel, sealed.key); entries_store(slot, pixel, sealed);",
+        "whoever reads between the two sees a torn slot either way, and its checksum says so",
+    ),
+    (
+        "storage/ordered_list",
+        "end_reached = true;",
+        "",
+        "a pixel is read out once here; sorts that read it again meet it in the runtime's tests",
+    ),
+    ("storage/ordered_list", "return END;", "", "the same: it ends the second reading only"),
 ];
