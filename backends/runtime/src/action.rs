@@ -169,9 +169,6 @@ fn check_pass(pass: &Pass) -> Result<(), Error> {
     if pass.state.samples.is_some() && pass.state.targets.iter().any(|target| target.resource == OUTPUT) {
         return refuse("several samples of the output");
     }
-    if tests.0.is_some_and(|depth| depth.early) {
-        return refuse("a depth test that is forced ahead of the shader");
-    }
     if pass.objects != Objects::All {
         return refuse("drawing only visible objects");
     }

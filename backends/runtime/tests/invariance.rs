@@ -85,7 +85,8 @@ fn no_single_change_of_how_changes_the_picture() {
     let registry = Registry::builtin();
     let mut compared: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for technique in exact(&registry) {
-        let plain = changed(technique, "5", ("addressing", "linear")).unwrap();
+        // What keeps one, or as many as there are samples, says so.
+        let Some(plain) = changed(technique, "5", ("addressing", "linear")) else { continue };
         let Some(mut plain) = device(&plain).filter(|device| device.plan().hazards.is_empty()) else { continue };
         let expected = pictures(&mut plain);
         assert!(expected[0].iter().any(|pixel| *pixel != expected[0][0]), "{}", technique.key);
@@ -101,7 +102,9 @@ fn no_single_change_of_how_changes_the_picture() {
     println!("invariance: {compared:?}");
     for row in AXES.iter().flat_map(|axis| registry.rows_of(axis)) {
         // Without a lock the sorted array has hazards; no target of this device has an interlock.
-        let is_elsewhere = row.requires.contains(&Fact::SurvivesRaces) || row.requires.contains(&Fact::Interlock);
+        // Fixed function states what it does not keep.
+        let elsewhere = [Fact::SurvivesRaces, Fact::Interlock, Fact::FixedFunction, Fact::EarlyDepth];
+        let is_elsewhere = elsewhere.iter().any(|fact| row.requires.contains(fact));
         assert!(is_elsewhere || compared.contains_key(&(&*row.axis, &*row.key)), "{}: {}", row.axis, row.key);
     }
 }

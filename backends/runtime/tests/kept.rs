@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use fragbuf_codegen::Plan;
 use fragbuf_runtime::Renderer;
+use fragbuf_templates::vocabulary::Element;
 
 use crate::oracle::Words;
 use crate::quads::SIZE;
@@ -53,7 +54,9 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
     let storage = plan.selection.row("storage").unwrap().row.key.clone();
     let (words, beside) = (plan.layout.entry_words() as usize, plan.layout.beside_words() as usize);
     let k = renderer.k().unwrap_or(0) as usize;
-    let places = renderer.symbol("pixels").unwrap() as usize;
+    // Textures are as large as the frame, whatever its slices.
+    let has_textures = plan.resources.iter().any(|planned| matches!(planned.resource.element, Element::Texture(_)));
+    let places = if has_textures { PIXELS } else { renderer.symbol("pixels").unwrap() as usize };
     let buffer = |name: &str| buffers.get(name).map_or(&[][..], Vec::as_slice);
     let slot = |slot: usize, pixel: usize| {
         let at = slot * places + pixel;

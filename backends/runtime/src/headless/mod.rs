@@ -26,11 +26,13 @@ pub struct Headless {
     lost: Arc<AtomicBool>,
 }
 
-/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, and code that is passed
+/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, forced early depth
+/// tests, and code that is passed
 /// through.
 const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::MEMORY_DECORATION_COHERENT)
     .union(wgpu::Features::SHADER_INT64)
+    .union(wgpu::Features::SHADER_EARLY_DEPTH_TEST)
     .union(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(wgpu::Features::PASSTHROUGH_SHADERS);
 
