@@ -94,9 +94,6 @@ fn pictures_differ_from_the_drivers_at_edges_and_ties_alone() {
     }
 }
 
-/// Techniques in textures that a shader reads: merged later.
-const NOT_YET: [&str; 2] = ["z_buffer", "kb_sr"];
-
 /// The hazards of B06, Fig. 3, as a picture; and none where writers take turns or need not.
 #[test]
 fn interleaved_fragments_change_a_racy_picture_alone() {
@@ -104,9 +101,6 @@ fn interleaved_fragments_change_a_racy_picture_alone() {
     let registry = Registry::builtin();
     for technique in registry.techniques() {
         let key = technique.key.as_str();
-        if NOT_YET.contains(&key) {
-            continue;
-        }
         let draw = |order: &str| {
             let out = folder.join(format!("{key}.png"));
             picture(&out, &[key, "--scene", "builtin:marbles", "--device", "cpu", "--order", order])
