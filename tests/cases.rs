@@ -106,6 +106,11 @@ pub fn named() -> Vec<Case> {
             text(CUSTOM),
             vec![("ties", "attribute"), ("ties.by", "id"), ("k", "3"), ("storage", "max_heap")],
         ),
+        (
+            "multisample",
+            technique("kplus_array"),
+            vec![("samples", "coverage"), ("overflow", "weighted_tail"), ("cull", "none")],
+        ),
         ("weighted_tail", technique("kb_ab_ll"), vec![("overflow", "weighted_tail"), ("k", "4")]),
         ("fail", technique("ab_array"), vec![("overflow", "fail")]),
         ("lplus", technique("ab_ll"), vec![("sort", "lplus"), ("resolve.opaque", "4")]),

@@ -74,6 +74,16 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from kplus_array {\n    keep 8 least |f| f.depth - f.color.w;\n    cull: occupancy_early;\n}",
         &[("unmet", 3, 11, "`cull: occupancy`")],
     ),
+    ("buffer B from z_buffer {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
+    ("buffer B from kb_sr {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
+    ("buffer B from kb_stream {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
+    // The mask is a third word.
+    ("buffer B from kb_mdt64 {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`storage: cascade`")]),
+    ("buffer B from ab_ll {\n    samples: coverage { count: 3 };\n}", &[("bad-option", 2, 32, "every device")]),
+    (
+        "buffer B from kplus_array {\n    samples: coverage;\n    cull: occupancy_early;\n}",
+        &[("unmet", 3, 11, "`cull: occupancy`")],
+    ),
     (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
         &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],

@@ -17,6 +17,7 @@ mod diagnostics;
 mod examples;
 mod fuzz;
 mod instances;
+mod multisample;
 mod names;
 mod oracle;
 mod own;

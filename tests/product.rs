@@ -11,7 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fragbuf::vocabulary::{Fact, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::{Linking, Profile, link, plan, verify};
-use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned};
+use fragbuf_model::{
+    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned, is_target_fact,
+};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
 use crate::validators::validate;
@@ -43,29 +45,86 @@ struct Combination {
     drawn: Option<Vec<(String, String)>>,
     /// Every combination of the same classes: the rules decide on all of them alike.
     alike: usize,
+    outlook: Outlook,
+}
+
+/// What is known of a combination before the rules are asked.
+#[derive(Clone, Copy, PartialEq)]
+enum Outlook {
+    Open,
+    /// Some row requires what no row of a later axis offers: whatever is chosen there, it is refused.
+    Hopeless,
 }
 
 /// One combination in so many is tried with rows drawn by chance too.
 const DRAWN_OF: usize = 12;
 
-/// Every choice of one class per axis.
+/// What a description gives, and rows may offer too.
+const GIVEN: [Fact; 10] = [
+    Fact::KeepsAll,
+    Fact::KeepsBest,
+    Fact::Limited,
+    Fact::LimitedToOne,
+    Fact::SampleCount,
+    Fact::DepthKey,
+    Fact::Color,
+    Fact::OneWordBesideDepth,
+    Fact::WordPerTarget,
+    Fact::OneWordBesideKey,
+];
+
+/// Choices of one class per axis: all, but for those that begin with what nothing later can make legal. Of them there is one.
 fn combinations(registry: &Registry) -> Vec<Combination> {
     let axes = registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS);
     let axes: Vec<(&str, Vec<Vec<&Row>>)> = axes.map(|axis| (axis.key, classes(registry, axis.key))).collect();
-    let mut random = Random(5);
-    let count = axes.iter().map(|(_, classes)| classes.len()).product();
-    let combination = |mut number: usize| {
-        let (mut choices, mut drawn, mut alike) = (Vec::new(), Vec::new(), 1);
-        for (axis, classes) in &axes {
-            let class = &classes[number % classes.len()];
-            number /= classes.len();
-            alike *= class.len();
-            choices.push(((*axis).to_owned(), class[0].key.clone()));
-            drawn.push(((*axis).to_owned(), random.pick(class).key.clone()));
+    let mut found = Vec::new();
+    complete(&axes, &mut Vec::new(), &mut Random(5), &mut found);
+    found
+}
+
+type Classes<'r> = (&'r str, Vec<Vec<&'r Row>>);
+
+fn complete<'a>(
+    axes: &'a [Classes<'a>],
+    begin: &mut Vec<&'a Vec<&'a Row>>,
+    random: &mut Random,
+    found: &mut Vec<Combination>,
+) {
+    let later = &axes[begin.len()..];
+    let outlook = outlook(begin, later);
+    if outlook == Outlook::Open && !later.is_empty() {
+        for class in &later[0].1 {
+            begin.push(class);
+            complete(axes, begin, random, found);
+            begin.pop();
         }
-        Combination { choices, drawn: (random.below(DRAWN_OF) == 0).then_some(drawn), alike }
+        return;
+    }
+    let all: Vec<&Vec<&Row>> = begin.iter().copied().chain(later.iter().map(|(_, classes)| &classes[0])).collect();
+    let named = |rows: Vec<&Row>| -> Vec<(String, String)> {
+        axes.iter().zip(rows).map(|((axis, _), row)| ((*axis).to_owned(), row.key.clone())).collect()
     };
-    (0..count).map(combination).collect()
+    let is_drawn = outlook == Outlook::Open && random.below(DRAWN_OF) == 0;
+    let rows_of = |(_, classes): &Classes<'_>| classes.iter().map(Vec::len).sum::<usize>();
+    found.push(Combination {
+        choices: named(all.iter().map(|class| class[0]).collect()),
+        drawn: is_drawn.then(|| named(all.iter().map(|class| *random.pick(class)).collect())),
+        alike: begin.iter().map(|class| class.len()).chain(later.iter().map(rows_of)).product(),
+        outlook,
+    });
+}
+
+/// Whether the rows chosen so far may become legal, whatever the description gives.
+fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
+    let rows = || begin.iter().map(|class| class[0]);
+    let offers =
+        |row: &Row, fact: Fact| row.offers.contains(&fact) || row.implies.iter().any(|(_, then)| *then == fact);
+    let may_be = |fact: Fact| {
+        let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
+        GIVEN.contains(&fact) || is_target_fact(fact) || rows().chain(later()).any(|row| offers(row, fact))
+    };
+    let all = rows().all(|row| row.requires.iter().all(|fact| may_be(*fact)));
+    if all { Outlook::Open } else { Outlook::Hopeless }
 }
 
 fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft {
@@ -153,6 +212,7 @@ fn decided<'a>(
                     assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
                 }
                 let variant = checked.ok();
+                assert!(variant.is_none() || combination.outlook == Outlook::Open, "{choices:?} is legal after all");
                 let accepted = variant.map(|variant| Accepted { payload, choices, variant });
                 decided.push((alike, accepted));
             }

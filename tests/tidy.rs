@@ -80,6 +80,8 @@ fn no_code_compares_a_key() {
         ("attribute", "what a payload is made of"),
         ("submission", "an order of the command line"),
         ("fail", "a field of a stencil test in the manifest"),
+        ("coverage", "a field of a pass's samples in the manifest"),
+        ("one", "a blend factor"),
         ("early", "a field of a depth test in the manifest"),
     ];
     let registry = Registry::builtin();

@@ -91,6 +91,7 @@ const GLSL_FACTS: &[Fact] = &[
     Fact::U64Atomics,
     Fact::EarlyDepth,
     Fact::SampleMask,
+    Fact::Coverage,
     Fact::Linkable,
 ];
 
@@ -100,7 +101,7 @@ pub const TARGETS: &[Target] = &[
         name: "wgsl",
         summary: "the WGSL standard: browsers and every wgpu back end",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics, Fact::SampleMask, Fact::Linkable],
+        offers: &[Fact::FragmentAtomics, Fact::SampleMask, Fact::Coverage, Fact::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -113,6 +114,7 @@ pub const TARGETS: &[Target] = &[
             Fact::U64Atomics,
             Fact::EarlyDepth,
             Fact::SampleMask,
+            Fact::Coverage,
             Fact::Linkable,
         ],
         emit: wgsl::emit,
@@ -151,6 +153,7 @@ pub const TARGETS: &[Target] = &[
             Fact::U64Atomics,
             Fact::EarlyDepth,
             Fact::SampleMask,
+            Fact::Coverage,
         ],
         emit: spirv::emit,
     },
@@ -158,14 +161,21 @@ pub const TARGETS: &[Target] = &[
         name: "hlsl",
         summary: "HLSL, shader model 6.0",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::SampleMask, Fact::Linkable],
+        offers: &[
+            Fact::FragmentAtomics,
+            Fact::Fences,
+            Fact::Coherent,
+            Fact::SampleMask,
+            Fact::Coverage,
+            Fact::Linkable,
+        ],
         emit: hlsl::emit,
     },
     Target {
         name: "msl",
         summary: "Metal Shading Language 2.4",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics],
+        offers: &[Fact::FragmentAtomics, Fact::Coverage],
         emit: msl::emit,
     },
 ];

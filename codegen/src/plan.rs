@@ -97,7 +97,7 @@ pub fn bucket(keep: Option<u32>) -> u32 {
 
 /// Plans one selection of a variant's rows.
 pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Result<Plan, Diagnostics> {
-    let layout = Layout::of(variant);
+    let layout = Layout::of(variant, selection);
     let fault = |problem: String| {
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))

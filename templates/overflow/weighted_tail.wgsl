@@ -20,7 +20,8 @@ fn on_culled(pixel: u32, lost: Packed) {
 }
 
 fn tail_add(pixel: u32, lost: Packed) {
-    let color = clamp(fragment_unpack(lost).color, vec4<f32>(0.0), vec4<f32>(1.0));
+    var color = clamp(fragment_unpack(lost).color, vec4<f32>(0.0), vec4<f32>(1.0));
+    color.a *= samples_share(lost);
     let weighted = vec4<u32>(round(TAIL_STEPS * vec4<f32>(color.rgb * color.a, color.a)));
     let opacity = min(-log2(1.0 - color.a), 24.0);
     tail_atomic_add(0u, pixel, weighted.x);

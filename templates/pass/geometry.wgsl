@@ -2,6 +2,6 @@
 // the same fragments.
 
 @vertex
-fn geometry(vertex: Vertex) -> Varyings {
-    return vertex_varyings(vertex);
+fn geometry(vertex: Vertex) -> Placed {
+    return vertex_placed(vertex);
 }

@@ -10,14 +10,14 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         sort_gather(resolve_read(cursor));
     }
     sort_finish();
-    if layer_count() == 0u {
+    if sorted_count() == 0u {
         // Where a pass serves some pixels only, the others have fragments and no layers.
         if resolve_first() != END || overflow_is_empty(resolved) {
             discard;
         }
         return overflow_finish(resolved, vec4<f32>(0.0));
     }
-    return overflow_finish(resolved, resolve_layers());
+    return overflow_finish(resolved, samples_resolve());
 }
 
 fn resolve_first() -> u32 {

@@ -3,11 +3,11 @@
 var<private> layers: array<Packed, LAYERS>;
 var<private> gathered: u32;
 
-fn layer_count() -> u32 {
+fn sorted_count() -> u32 {
     return gathered;
 }
 
-fn layer(index: u32) -> Fragment {
+fn sorted_layer(index: u32) -> Fragment {
     return fragment_unpack(layers[min(index, LAYERS - 1u)]);
 }
 

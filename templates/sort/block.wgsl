@@ -36,11 +36,11 @@ fn sort_finish() {
     }
 }
 
-fn layer_count() -> u32 {
+fn sorted_count() -> u32 {
     return gathered;
 }
 
-fn layer(index: u32) -> Fragment {
+fn sorted_layer(index: u32) -> Fragment {
     // A helper lane, whose pixel has no fragment, may ask for one all the same.
     let wanted = min(index, max(gathered, 1u) - 1u);
     if wanted + 1u < block_merged {

@@ -22,11 +22,11 @@ fn sort_gather(entry: Packed) {
 
 fn sort_finish() {}
 
-fn layer_count() -> u32 {
+fn sorted_count() -> u32 {
     return lplus_count;
 }
 
-fn layer(index: u32) -> Fragment {
+fn sorted_layer(index: u32) -> Fragment {
     // A helper lane, whose pixel has no fragment, may ask for one all the same.
     let wanted = min(index, max(lplus_count, 1u) - 1u);
     if wanted < lplus_begin {

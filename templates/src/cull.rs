@@ -56,6 +56,7 @@ fn occupancy_early() -> Row {
             Fact::DepthKey,
             Fact::EarlyDepth,
             Fact::OwnEntryPoints,
+            Fact::OneSample,
         ],
         edits: vec![before_store(limit), Edit::SetState("store".to_owned(), test(Compare::LessEqual, false, true))],
         ..row

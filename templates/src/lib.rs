@@ -24,6 +24,7 @@ mod overflow;
 mod pass;
 mod registry;
 mod resolve;
+mod samples;
 mod select;
 mod shared;
 mod sort;

@@ -17,6 +17,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 .cleared(0),
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
+            calls: vec!["counters", "samples"],
             requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve, Fact::FragmentAtomics],
             ..row(
                 "weighted_tail",

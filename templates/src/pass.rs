@@ -58,13 +58,13 @@ pub(crate) fn rows() -> Vec<Row> {
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),
-            vec!["addressing", "storage", "overflow", "sort", "resolve"],
+            vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
         row(
             "resolve_selected",
             "chooses the k best of each pixel's fragments and makes one colour of them",
             template!("pass/resolve_selected"),
-            vec!["addressing", "storage", "overflow", "sort", "resolve"],
+            vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
         row(
             "resolve_stream",

@@ -3,7 +3,7 @@
 
 use crate::vocabulary::{Axis, Fact, Row, Technique, Template};
 use crate::{
-    addressing, counters, cull, overflow, pass, resolve, select, shared, sort, storage, sync, technique, ties,
+    addressing, counters, cull, overflow, pass, resolve, samples, select, shared, sort, storage, sync, technique, ties,
 };
 
 /// Rows by axis, techniques, and shared texts.
@@ -16,7 +16,7 @@ pub struct Registry {
 }
 
 /// The axes, in the order in which their edits apply.
-const AXES: [Axis; 12] = [
+const AXES: [Axis; 13] = [
     axis("storage", "where the fragments of a pixel are kept", None),
     axis("sync", "how writers of the same pixel are kept apart", Some("none")),
     axis("cull", "which fragments are turned away before they reach the storage", Some("none")),
@@ -25,6 +25,11 @@ const AXES: [Axis; 12] = [
     axis("ties", "which of two fragments with equal keys is better", Some("payload")),
     axis("addressing", "where a pixel's words lie in memory", Some("linear")),
     axis("counters", "what is counted while the passes run", Some("losses")),
+    axis(
+        "samples",
+        "how many samples a pixel has, and what is kept of a fragment that covers some of them",
+        Some("one"),
+    ),
     axis("sort", "how the kept fragments are put in the order of depth", Some("insertion")),
     axis("resolve", "what is made of the kept fragments", Some("over")),
     Axis { key: "pass", summary: "the entry points of a pass", default: None, chosen: false },
@@ -53,6 +58,7 @@ impl Registry {
             ties::rows(),
             addressing::rows(),
             counters::rows(),
+            samples::rows(),
             sort::rows(),
             resolve::rows(),
             pass::rows(),

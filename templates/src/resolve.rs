@@ -7,6 +7,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("resolve/over")),
+            calls: vec!["samples"],
             requires: vec![Fact::Sorted, Fact::Color],
             parameters: vec![Parameter {
                 name: "opaque".into(),
@@ -31,6 +32,9 @@ pub(crate) fn rows() -> Vec<Row> {
                 "B06 §4.3; Porter & Duff 1984",
             )
         },
-        Row::new("resolve", Registry::CLOSURE, "the description's own `resolve |fragments, u| { … }`", ""),
+        Row {
+            calls: vec!["samples"],
+            ..Row::new("resolve", Registry::CLOSURE, "the description's own `resolve |fragments, u| { … }`", "")
+        },
     ]
 }

@@ -162,6 +162,18 @@ fn submission_decides_ties_only_where_it_decides_who_enters() {
     assert_eq!(checked(&registry, "payload"), Holds);
 }
 
+/// A mask of samples is a word like any other: it is neither lost nor mixed up with another fragment's.
+#[test]
+fn masks_of_samples_stay_with_their_fragments() {
+    let registry = Registry::builtin();
+    for (key, target) in [("kplus_array", "spirv"), ("mdt32_coplanar", "wgsl"), ("ab_ll", "wgsl"), ("kb_ll", "spirv")] {
+        let report = report(key, &[("samples", "coverage")], target, &limits(2, Model::Late), &registry).unwrap();
+        assert_eq!(found(&report), Holds, "{key}: {:#?}", report.failure);
+    }
+    let racy = report("kb", &[("samples", "coverage")], "wgsl", &limits(2, Model::Sequential), &registry).unwrap();
+    assert!(found(&racy) == AsStated && !racy.hazards.is_empty());
+}
+
 #[test]
 fn losses_by_design_are_said_to_be_stated_and_others_are_not() {
     let registry = Registry::builtin();

@@ -40,6 +40,7 @@ const OFFERS: &[Fact] = &[
     Fact::EarlyDepth,
     Fact::MinMaxBlend,
     Fact::SampleMask,
+    Fact::Coverage,
     Fact::OwnEntryPoints,
     Fact::PrimitiveIndex,
 ];

@@ -62,7 +62,7 @@ impl Attachments {
             // WebGPU refuses a pass without attachments.
             let ops =
                 wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Discard };
-            colors.push(Some((renderer.sized.dummy.clone(), ops)));
+            colors.push(renderer.sized.dummy(renderer.plan(), pass).map(|view| (view, ops)));
         }
         Attachments { colors, depth_stencil }
     }

@@ -82,7 +82,14 @@ fn stencil_state(state: &StencilState) -> wgpu::StencilState {
     wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
 }
 
-fn multisample(plan: &Plan, samples: Option<&Samples>, round: u32) -> Result<wgpu::MultisampleState, Error> {
+/// Samples of a pixel in a pass.
+pub(crate) fn sample_count(plan: &Plan, pass: &Pass) -> Result<u32, Error> {
+    let count = pass.state.samples.as_ref().map(|samples| &samples.count);
+    count.map_or(Ok(1), |count| at_most(plan, count, None, "the samples of a pass"))
+}
+
+/// The samples of a pass in one round of a loop.
+pub(crate) fn multisample(plan: &Plan, samples: Option<&Samples>, round: u32) -> Result<wgpu::MultisampleState, Error> {
     let Some(samples) = samples else { return Ok(wgpu::MultisampleState::default()) };
     let value = |formula: &Formula, what: &str| at_most(plan, formula, Some(round), what);
     Ok(wgpu::MultisampleState {

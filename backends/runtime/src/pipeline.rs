@@ -61,7 +61,8 @@ impl Maker<'_> {
         let mut pipelines = Vec::new();
         for fixed in fixed_functions(&self.shaders.plan, pass, self.settings.target, self.rounds)? {
             let make = || self.render(pass, &layout, (&vertex, &fragment), &fixed);
-            pipelines.push(scoped(self.device, &what, 0, make).await?);
+            let made = scoped(self.device, &what, 0, make).await;
+            pipelines.push(made.map_err(|error| unusual_samples(error, pass, fixed.multisample.count))?);
         }
         Ok(Pipeline::Render(pipelines))
     }
@@ -165,6 +166,20 @@ impl Maker<'_> {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// What a refusal is about where a pass has another number of samples than every device has.
+fn unusual_samples(error: Error, pass: &Pass, samples: u32) -> Error {
+    match error {
+        Error::Validation { .. } if ![1, 4].contains(&samples) => Error::Unsupported {
+            what: format!("{samples} samples per pixel on this device, in the pass `{}`", pass.anchor),
+            hint:
+                "every device has 4; other numbers need wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES and \
+                   hardware that has them, and the CPU device has 2, 4 and 8"
+                    .to_owned(),
+        },
+        error => error,
     }
 }
 

@@ -7,6 +7,7 @@ use fragbuf_codegen::Plan;
 use fragbuf_frame::{COUNTERS_RESOURCE, Counting, Symbols, reserve, resource as index, set, symbols, zeros};
 
 use crate::blocks::{Blocks, IDENTITY};
+use crate::fixed_function::multisample;
 use crate::pipeline::no_target;
 use crate::pipelines::Made;
 use crate::room::rows;
@@ -214,6 +215,14 @@ impl Renderer {
     /// The bind group layout of the pass `anchor`, for a pipeline of the caller's own around its shader functions.
     pub fn bind_group_layout(&self, anchor: &str) -> Option<&wgpu::BindGroupLayout> {
         self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
+    }
+
+    /// The samples that a pipeline of the caller's own must have in the pass `anchor`; one where the plan says nothing, or has
+    /// no such pass.
+    pub fn multisample(&self, anchor: &str) -> wgpu::MultisampleState {
+        let pass = self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor);
+        let samples = pass.and_then(|prepared| multisample(self.plan(), prepared.pass.state.samples.as_ref(), 0).ok());
+        samples.unwrap_or_default()
     }
 
     /// The colour target that a pipeline of the caller's own must have in a geometry pass: nothing is written to it.

@@ -2,10 +2,13 @@
 //! passes without a target.
 //! It is made whole and replaced as one, so that a failure leaves the old one standing.
 
+use fragbuf_codegen::Plan;
 use fragbuf_frame::{COUNTERS_RESOURCE, Symbols, resource as index};
+use fragbuf_templates::vocabulary::Pass;
 
 use crate::Error;
 use crate::blocks::{Blocks, block};
+use crate::fixed_function::sample_count;
 use crate::layout::Slot;
 use crate::memory::Memory;
 use crate::pipeline::DUMMY_FORMAT;
@@ -20,11 +23,19 @@ pub(crate) struct Sized {
     pub(crate) memory: Memory,
     /// By slice and round.
     pub(crate) slices: Vec<Vec<Round>>,
-    /// The attachment of passes without a target.
-    pub(crate) dummy: wgpu::TextureView,
+    /// The attachments of passes without a target.
+    dummies: Vec<Dummy>,
     pub(crate) timing: Option<Timing>,
     /// The counters of every slice, one after the other; `None` where one slice is the frame, or nothing counts.
     pub(crate) tally: Option<wgpu::Buffer>,
+}
+
+/// An attachment of passes without a target.
+#[derive(Clone)]
+struct Dummy {
+    /// Per pixel.
+    samples: u32,
+    view: wgpu::TextureView,
 }
 
 /// What passes see in one round of a slice.
@@ -66,12 +77,9 @@ impl Sized {
         let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
         let slices = scoped(device, "the bind groups", 0, slices).await?;
         let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
-        let dummy = match same {
-            Some(old) => old.dummy.clone(),
-            None => {
-                let bytes = u64::from(symbols.width) * u64::from(symbols.height);
-                scoped(device, "the attachment of geometry passes", bytes, || dummy(device, &symbols)).await?
-            }
+        let dummies = match same {
+            Some(old) => old.dummies.clone(),
+            None => dummies(device, made, &symbols).await?,
         };
         // What earlier slices of a frame that was cut have counted and taken must not be lost.
         let same = old.filter(|old| old.symbols.slices() == symbols.slices());
@@ -85,7 +93,13 @@ impl Sized {
                 (timing, tally(device, made, &memory, symbols.slices()).await?)
             }
         };
-        Ok(Sized { symbols, memory, slices, dummy, timing, tally })
+        Ok(Sized { symbols, memory, slices, dummies, timing, tally })
+    }
+
+    /// What a pass of the plan is attached to that has no target.
+    pub(crate) fn dummy(&self, plan: &Plan, pass: &Pass) -> Option<wgpu::TextureView> {
+        let samples = sample_count(plan, pass).ok()?;
+        self.dummies.iter().find(|dummy| dummy.samples == samples).map(|dummy| dummy.view.clone())
     }
 }
 
@@ -108,13 +122,28 @@ async fn tally(
     scoped(device, "the counters of all slices", descriptor.size, make).await.map(Some)
 }
 
+/// One attachment for every number of samples that a pass of the plan has.
+async fn dummies(device: &wgpu::Device, made: &Made, symbols: &Symbols) -> Result<Vec<Dummy>, Error> {
+    let mut dummies: Vec<Dummy> = Vec::new();
+    for prepared in &made.passes {
+        let samples = sample_count(&made.plan, &prepared.pass)?;
+        if dummies.iter().all(|dummy| dummy.samples != samples) {
+            let bytes = u64::from(samples) * u64::from(symbols.width) * u64::from(symbols.height);
+            let make = || dummy(device, symbols, samples);
+            let view = scoped(device, "the attachment of geometry passes", bytes, make).await?;
+            dummies.push(Dummy { samples, view });
+        }
+    }
+    Ok(dummies)
+}
+
 /// What passes without a target are attached to. Nothing is ever written to it, and tilers give it no memory.
-fn dummy(device: &wgpu::Device, symbols: &Symbols) -> wgpu::TextureView {
+fn dummy(device: &wgpu::Device, symbols: &Symbols, samples: u32) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("fragbuf no target"),
         size: wgpu::Extent3d { width: symbols.width, height: symbols.height, depth_or_array_layers: 1 },
         mip_level_count: 1,
-        sample_count: 1,
+        sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
         format: DUMMY_FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TRANSIENT_ATTACHMENT,

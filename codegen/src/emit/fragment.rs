@@ -3,11 +3,11 @@
 
 use std::fmt::Write;
 
-use fragbuf_model::{Format, mangled};
+use fragbuf_model::Format;
 use fragbuf_templates::vocabulary::Order;
 
 use crate::Plan;
-use crate::layout::{Key, Layout, Word};
+use crate::layout::{Key, Layout, Source, Word};
 
 pub(super) fn text(plan: &Plan) -> String {
     let mut text = String::new();
@@ -25,9 +25,8 @@ pub(super) fn text(plan: &Plan) -> String {
 
 fn structs(plan: &Plan, text: &mut String) {
     text.push_str("/// What a fragment carries.\nstruct Fragment {\n");
-    for attribute in &plan.variant.attributes {
-        let (name, format) = (mangled(&attribute.name.value), attribute.format.value);
-        let _ = writeln!(text, "    {name}: {},", format.wgsl_type());
+    for member in &plan.layout.members {
+        let _ = writeln!(text, "    {}: {},", member.name, member.format.wgsl_type());
     }
     text.push_str("}\n\n/// The same as words in memory. Fragments are ordered by `key`, the least is the best: ");
     text.push_str(match plan.layout.key {
@@ -61,11 +60,11 @@ pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> Str
 }
 
 fn packed(word: &Word) -> String {
-    let name = mangled(&word.attribute.name.value);
-    match (word.attribute.format.value, word.components) {
+    let name = &word.member.name;
+    match (word.member.format, word.components) {
         (Format::Rgba16, Some(pair)) => format!("pack2x16unorm(fragment.{name}.{pair})"),
         (_, Some(component)) => format!("bitcast<u32>(fragment.{name}.{component})"),
-        (Format::F32, None) if word.attribute.name.value == "depth" => "depth_bits(fragment.depth)".to_owned(),
+        (Format::F32, None) if word.member.source == Source::Depth => "depth_bits(fragment.depth)".to_owned(),
         (Format::U32, None) => format!("fragment.{name}"),
         (Format::Rgba8, None) => format!("pack4x8unorm(fragment.{name})"),
         (Format::Octahedral, None) => format!("octahedral_pack(fragment.{name})"),
@@ -74,15 +73,14 @@ fn packed(word: &Word) -> String {
 }
 
 fn unpack(plan: &Plan, text: &mut String) {
-    let fields = plan.variant.attributes.iter().map(|attribute| {
-        let name = &attribute.name.value;
-        let fields: Vec<String> = if plan.layout.key == Key::Depth && name == "depth" {
+    let fields = plan.layout.members.iter().map(|member| {
+        let fields: Vec<String> = if plan.layout.key == Key::Depth && member.source == Source::Depth {
             vec!["entry.key".to_owned()]
         } else {
-            let words = plan.layout.beside.iter().filter(|word| word.attribute.name.value == *name);
+            let words = plan.layout.beside.iter().filter(|word| word.member == *member);
             words.map(|word| format!("entry.{}", word.field)).collect()
         };
-        unpacked(attribute.format.value, &fields)
+        unpacked(member.format, &fields)
     });
     let _ = writeln!(text, "fn fragment_unpack(entry: Packed) -> Fragment {{");
     let _ = writeln!(text, "    return {};\n}}\n", construct("Fragment", fields));

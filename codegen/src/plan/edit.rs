@@ -1,6 +1,6 @@
 //! What rows of other axes change in a storage's steps.
 
-use fragbuf_templates::vocabulary::{Classes, Edit, Pass, Repeat, Resource, Step};
+use fragbuf_templates::vocabulary::{Classes, Edit, Kind, Pass, Repeat, Resource, Step};
 
 /// Applies one edit. `Err`: it names an anchor that the steps do not have, or a constant that there is not.
 pub(super) fn apply(
@@ -25,6 +25,14 @@ pub(super) fn apply(
         Edit::AddUse(anchor, usage) => change(steps, anchor, &|pass| pass.uses.push(usage.clone())),
         Edit::AddResource(resource) => {
             resources.push(resource.clone());
+            Ok(())
+        }
+        Edit::Samples(samples) => {
+            for_each_pass(steps, &mut |pass| {
+                if pass.kind == Kind::Geometry {
+                    pass.state.samples = Some(samples.clone());
+                }
+            });
             Ok(())
         }
         Edit::Classes(classes) => {

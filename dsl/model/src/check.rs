@@ -27,7 +27,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         least::check(draft, &choices, k, &mut diagnostics);
     }
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    let mut offered = payload::facts(&attributes, criterion);
+    let mut offered = payload::facts(&attributes, criterion, &choices);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {
         offered.extend(criterion.is_none().then_some(Fact::DepthKey));

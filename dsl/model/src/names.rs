@@ -32,7 +32,7 @@ fn is_taken(name: &str) -> bool {
 }
 
 /// Names of generated code and of templates.
-const GENERATED: &str = "CAPACITY Fragment Packed Targets Varyings Vertex frame main uniforms";
+const GENERATED: &str = "CAPACITY Fragment Packed Placed Targets Varyings Vertex coverage frame main uniforms";
 
 /// Beginnings of names of generated code and of templates.
 const PREFIXES: [&str; 6] = ["layer", "rust_", "sort_", "storage_", "sync_", "user_"];

@@ -131,6 +131,7 @@ const TARGET_FACTS: &[Fact] = &[
     Fact::EarlyDepth,
     Fact::MinMaxBlend,
     Fact::SampleMask,
+    Fact::Coverage,
     Fact::Linkable,
     Fact::OwnEntryPoints,
     Fact::PrimitiveIndex,

@@ -29,7 +29,7 @@ const TAKEN: &str = "
     reverseBits round saturate sign smoothstep sqrt step tan transpose trunc dpdx fwidth textureLoad atomicAdd
     atomicCompareExchangeWeak pack4x8unorm unpack2x16float storageBarrier workgroupBarrier workgroupUniformLoad
     subgroupAdd subgroupBallot quadSwapX
-    Fragment Packed Vertex Varyings uniforms frame CAPACITY user_weight storage_bound sync_begin sort_layers layer
+    Fragment Packed Placed Vertex Varyings coverage uniforms frame CAPACITY user_weight storage_bound sync_begin sort_layers layer
     layer_count layers rust_odd
 ";
 

@@ -260,6 +260,7 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
             if random.once_in(2) {
                 let number = match parameter.takes {
                     Takes::Number => OptionValue::Number(parameter.range.0 + random.below(3) as u32),
+                    Takes::PowerOfTwo => OptionValue::Number(parameter.range.0 << random.below(2)),
                     Takes::Attribute => OptionValue::from("depth"),
                 };
                 let option = if random.once_in(10) { OptionValue::from("many") } else { number };

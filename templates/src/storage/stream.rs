@@ -39,7 +39,15 @@ pub(super) fn stream_array() -> Row {
         ],
         calls: vec!["resolve", "counters"],
         offers: vec![Fact::Streams, Fact::CanReplace, Fact::Indexed, Fact::Sorted],
-        requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::ValuesPairs],
+        requires: vec![
+            Fact::FragmentAtomics,
+            Fact::Critical,
+            Fact::DepthKey,
+            Fact::Limited,
+            Fact::ValuesPairs,
+            // What leaves is composited for the whole pixel.
+            Fact::OneSample,
+        ],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),
             ("sort".into(), "none".into()),

@@ -56,6 +56,7 @@ facts! {
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
     OneResolve "one resolve pass that serves every pixel";
+    OneSample "one sample per pixel";
     StableSort "a sort that leaves fragments of equal depth as the storage gives them";
     // What they are worth.
     ValuesPairs "a value for two neighbouring fragments";
@@ -78,6 +79,7 @@ facts! {
     EarlyDepth "a forced early depth test";
     MinMaxBlend "blending by minimum and maximum";
     SampleMask "a fixed sample mask and several samples per pixel";
+    Coverage "which samples of its pixel a fragment covers, several samples per pixel";
     Linkable "functions that a caller's own shader can call";
     OwnEntryPoints "entry points of its own: `--form program`";
     PrimitiveIndex "the number of a fragment's triangle";

@@ -24,5 +24,5 @@ pub use pass::{
     Role, Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
 };
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
-pub use row::{Axis, Definition, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
+pub use row::{Axis, Carried, Definition, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
 pub use technique::{KeepDefault, Technique};

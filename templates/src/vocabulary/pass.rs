@@ -318,6 +318,8 @@ pub enum Edit {
     AddResource(Resource),
     /// A pass is repeated for classes of pixels.
     Classes(Classes),
+    /// Every pass over the scene has these samples.
+    Samples(Samples),
 }
 
 impl Pass {

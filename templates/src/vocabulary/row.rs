@@ -46,6 +46,8 @@ pub struct Row {
     pub edits: Vec<Edit>,
     /// Values on other axes that suit it, taken when nothing else is said.
     pub defaults: Vec<(Text, Text)>,
+    /// Words that every fragment carries beside the description's payload.
+    pub carries: Vec<Carried>,
     /// What a user can set on it.
     pub parameters: Vec<Parameter>,
     /// The least that an option may be for what is kept, as (option, formula over `k`). Defaults must meet it.
@@ -71,11 +73,22 @@ pub struct Template {
     pub own: Option<Text>,
 }
 
+/// A word that every fragment carries beside the description's payload: a member `u32` of `Fragment`, a word of an entry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Carried {
+    /// The member. No attribute of a user's is spelled so.
+    pub name: Text,
+    /// The WGSL built-in of fragment shaders that gives its value; a caller's own shader gives it in module form.
+    pub built_in: Text,
+}
+
 /// What is written as the value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Takes {
     /// A whole number.
     Number,
+    /// A power of two.
+    PowerOfTwo,
     /// The name of an attribute, which stands for its place among the attributes.
     Attribute,
 }
@@ -178,6 +191,7 @@ impl Row {
             requires: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),
+            carries: Vec::new(),
             parameters: Vec::new(),
             least: Vec::new(),
             defines: Vec::new(),

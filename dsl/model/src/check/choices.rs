@@ -242,6 +242,9 @@ fn option(
     };
     let number = match (&value.value, parameter.takes) {
         (OptionValue::Number(number), Takes::Number) => Some(*number).filter(|number| in_range(parameter, *number)),
+        (OptionValue::Number(number), Takes::PowerOfTwo) => {
+            Some(*number).filter(|number| number.is_power_of_two() && in_range(parameter, *number))
+        }
         (OptionValue::Word(word), Takes::Attribute) => {
             attributes.iter().position(|attribute| attribute.name.value == *word).map(|index| index as u32)
         }
@@ -262,6 +265,7 @@ fn bad_option(parameter: &Parameter, attributes: &[Attribute], origin: &Origin) 
     let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.value.as_str()).collect();
     let wanted = match parameter.takes {
         Takes::Number => format!("a whole number from {least} to {greatest}"),
+        Takes::PowerOfTwo => format!("a power of two from {least} to {greatest}"),
         Takes::Attribute => format!("an attribute of the payload: {}", listed(&names)),
     };
     Diagnostic::new(

@@ -2,6 +2,7 @@
 
 use fragbuf_templates::vocabulary::Fact;
 
+use crate::variant::Chosen;
 use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
 
 /// Targets of one word that every WebGPU device has: eight, of 32 bytes a pixel together.
@@ -31,14 +32,16 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     draft.attributes.clone()
 }
 
-/// What a payload offers. A criterion is a word of its own, where depth alone is the key already.
-pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>) -> Vec<Fact> {
+/// What a payload offers, with the words that rows add. A criterion is a word of its own, where depth alone is the key
+/// already.
+pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>, choices: &[Chosen]) -> Vec<Fact> {
     let mut facts = Vec::new();
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
     if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)) {
         facts.push(Fact::Color);
     }
     let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
+    let words = words + choices.iter().map(carried).sum::<u32>();
     if words <= 2 {
         facts.push(Fact::OneWordBesideDepth);
     }
@@ -49,4 +52,9 @@ pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>) 
         facts.push(Fact::OneWordBesideKey);
     }
     facts
+}
+
+/// The most words that a fragment carries for one axis.
+fn carried(chosen: &Chosen) -> u32 {
+    chosen.alternatives.iter().map(|selected| selected.row.carries.len() as u32).max().unwrap_or(0)
 }

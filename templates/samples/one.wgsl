@@ -1,0 +1,17 @@
+// One sample per pixel: effects see every fragment that was kept, in order.
+
+fn samples_resolve() -> vec4<f32> {
+    return resolve_layers();
+}
+
+fn samples_share(entry: Packed) -> f32 {
+    return 1.0;
+}
+
+fn layer_count() -> u32 {
+    return sorted_count();
+}
+
+fn layer(index: u32) -> Fragment {
+    return sorted_layer(index);
+}

@@ -1,0 +1,47 @@
+//! What several samples per pixel cost, and who can say them.
+
+use fragbuf::{Registry, TARGETS};
+use fragbuf_codegen::plan;
+use fragbuf_model::{Selection, Variant};
+
+use crate::cases::{checked, text};
+
+/// Every technique with an item, that the rules accept.
+fn with(item: &str) -> impl Iterator<Item = (String, Variant)> {
+    let registry = Registry::builtin();
+    let keys: Vec<String> = registry.techniques().iter().map(|technique| technique.key.clone()).collect();
+    keys.into_iter().filter_map(move |key| {
+        let description = text(&format!("buffer B from {key} {{ {item} }}"));
+        Some((key, checked(&description, &[]).ok()?))
+    })
+}
+
+fn words(variant: &Variant) -> String {
+    plan(variant, &Selection::first(variant), &Registry::builtin()).unwrap().words_per_pixel
+}
+
+#[test]
+fn a_mask_costs_what_an_attribute_of_one_word_costs() {
+    let masked: Vec<(String, String)> =
+        with("samples: coverage;").map(|(key, variant)| (key, words(&variant))).collect();
+    let wider = with("fragment { color: rgba8, depth: f32, more: u32 }").map(|(key, variant)| (key, words(&variant)));
+    let wider: Vec<(String, String)> = wider.filter(|(key, _)| masked.iter().any(|(other, _)| key == other)).collect();
+    assert!(masked.len() >= 18, "{masked:?}");
+    assert_eq!(masked, wider);
+    assert!(masked.contains(&("kplus_array".to_owned(), "3k+2".to_owned())), "{masked:?}");
+}
+
+/// OpenGL ES 3.1 has no input that says which samples are covered.
+#[test]
+fn targets_without_a_mask_refuse_with_the_reason() {
+    for (key, variant) in with("samples: coverage;") {
+        for target in TARGETS {
+            let refused = variant.select(target.offers).err();
+            let by_samples = refused.as_ref().is_some_and(|refusal| refusal.axis == "samples");
+            match target.name {
+                "glsl-es" => assert!(refused.is_some(), "{key}"),
+                name => assert!(!by_samples, "{key} on {name}: {refused:?}"),
+            }
+        }
+    }
+}
