@@ -10,6 +10,7 @@
 
 mod build_script;
 mod cases;
+mod catalogue;
 mod check;
 mod command_line;
 mod devices;

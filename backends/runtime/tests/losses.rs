@@ -42,8 +42,9 @@ fn each_frame(variant: &Variant, inspect: impl Fn(&Seen, &[Quad])) {
 /// One fragment for each of the k least keys, and it is one of those with that key; every other is counted.
 #[test]
 fn of_equal_depths_one_is_kept() {
-    for (key, k) in [1, 3, 8].into_iter().flat_map(|k| [("kb_mdt32", k), ("kb_multi", k)]) {
-        let variant = technique(key, &[("k", &k.to_string()), ("counters", "all")]);
+    let of_k = |k| [("kb_mdt32", "none", k), ("kb_mdt32", "occupancy", k), ("kb_multi", "none", k)];
+    for (key, cull, k) in [1, 3, 8].into_iter().flat_map(of_k) {
+        let variant = technique(key, &[("k", &k.to_string()), ("counters", "all"), ("cull", cull)]);
         each_frame(&variant, |seen, quads| {
             let (mut kept_in_all, mut equal) = (0, 0);
             for (kept, (x, y)) in seen.kept.iter().zip(oracle::pixels()) {

@@ -1,7 +1,12 @@
 //! Blending that ends when little light would pass: what is left out is within the bound that the parameter states, and a
 //! sort that reads on demand reads less.
 
-use fragbuf_runtime::{Room, Settings, Sizing};
+use fragbuf_backends::{Request, generate, target};
+use fragbuf_codegen::Form;
+use fragbuf_model::{Draft, Origin, check};
+use fragbuf_runtime::{Room, Settings, Shaders, Sizing};
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Template;
 
 use crate::order::Numbers;
 use crate::quads::{Quad, SIZE};
@@ -53,4 +58,45 @@ fn what_is_left_out_is_within_the_bound() {
             );
         }
     }
+}
+
+/// The linked list, whose reads are counted as fragments that are generated: the store pass counts one for each too.
+fn counting_reads() -> Registry {
+    let registry = Registry::builtin();
+    let mut list = registry.row("storage", "linked_list").unwrap().clone();
+    let text = list.template.as_ref().unwrap().text.replace(
+        "-> Packed {\n    return nodes_load(cursor);",
+        "-> Packed {\n    count_event(GENERATED);\n    return nodes_load(cursor);",
+    );
+    assert!(text.contains("count_event"));
+    list.template = Some(Template::new("counting.wgsl", text));
+    list.calls.push("counters");
+    registry.with(list)
+}
+
+#[test]
+fn what_is_not_seen_is_not_read() {
+    let stage = device();
+    let registry = counting_reads();
+    let roomy = Settings { sizing: Sizing::Reserve(Room::Fragments(64 * SIZE * SIZE)), ..settings() };
+    let reads = |opaque: &str, quads: &[Quad]| {
+        let origin = Origin::new("ab_ll", 1, 1);
+        let mut draft = Draft::from_technique("ab_ll", &origin);
+        for (name, value) in [("sort", "lplus"), ("sort.batch", "4"), ("counters", "all"), ("resolve.opaque", opaque)] {
+            draft.set(name, value, &origin).unwrap();
+        }
+        let variant = check(&draft, &registry).unwrap();
+        let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let generation = generate(&variant, &request, &registry).unwrap();
+        let shaders = Shaders::from_generation(&generation, "wgsl", 0).unwrap();
+        let mut renderer = renderer(&stage, &shaders, &roomy).unwrap();
+        let seen = see(&stage, &mut renderer, quads);
+        seen.counters.get("generated") / (SIZE * SIZE) - quads.len() as u32
+    };
+    // Of 32 layers the fifth from the front, in the second batch, lets 1/255 of the light through.
+    let layer = |id: u32| Quad::whole(id as f32 / 32.0, [0, 0, 255, if id == 4 { 254 } else { 10 }]).named(id);
+    let quads: Vec<Quad> = (0..32).map(layer).collect();
+    // Each of eight batches reads the list; with an end, two do.
+    assert_eq!(reads("0", &quads), 8 * 32);
+    assert_eq!(reads("10", &quads), 2 * 32);
 }
