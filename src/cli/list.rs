@@ -93,7 +93,7 @@ fn features(plan: &Plan) -> String {
 }
 
 /// Columns of the table, and the fields that they show.
-const HEADS: [&str; 11] = [
+const HEADS: [&str; 12] = [
     "key",
     "words/pixel",
     "bytes/pixel",
@@ -103,10 +103,11 @@ const HEADS: [&str; 11] = [
     "same every frame",
     "any order",
     "tiers",
+    "needs",
     "paper",
     "what",
 ];
-const FIELDS: [&str; 11] = [
+const FIELDS: [&str; 12] = [
     "key",
     "words_per_pixel",
     "bytes_per_pixel",
@@ -116,10 +117,11 @@ const FIELDS: [&str; 11] = [
     "deterministic",
     "order_independent",
     "tiers",
+    "features",
     "paper",
     "summary",
 ];
-const LAST: usize = 10;
+const LAST: usize = 11;
 
 /// The same as a table for people: one line per technique.
 fn table(rows: &[Value]) -> String {
