@@ -306,6 +306,8 @@ pub enum Edit {
     Around(String, String, Repeat),
     /// The fixed-function state of an anchor.
     SetState(String, State),
+    /// Every geometry pass tests the depth of its fragments so, whatever its anchor. Refused where one tests already.
+    TestDepth(DepthState),
     /// The skeleton of an anchor.
     SetSkeleton(String, String),
     /// Another form of the skeleton that an anchor has: (`store`, `ordered`) makes `x_ordered` of `x`.
