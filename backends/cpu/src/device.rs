@@ -5,7 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
-use fragbuf_frame::{Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, unsupported, zeros};
+use fragbuf_frame::{
+    Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, unsupported, zeros,
+};
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
 use crate::memory::{Memory, read};
