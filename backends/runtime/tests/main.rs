@@ -27,6 +27,7 @@ mod larger;
 mod losses;
 mod occupancy;
 mod opaque;
+mod opaque_depth;
 mod overflow;
 mod rasterisation;
 mod sizing;
