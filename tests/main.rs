@@ -18,6 +18,7 @@ mod examples;
 mod fuzz;
 mod instances;
 mod names;
+mod opaque;
 mod oracle;
 mod own;
 mod product;

@@ -12,7 +12,7 @@ use fragbuf::{Plan, Registry, Variant};
 use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PassTime};
 use fragbuf_scene::Scene;
 
-use self::opaque::{Opaque, TURNED_AWAY, put_before};
+use self::opaque::{Opaque, put_before, turned_away};
 use super::device::Picked;
 use super::input::Input;
 use super::output::{Failure, warn};
@@ -68,9 +68,10 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     let mut input = Input::read(wish.description, &registry)?;
     let opaque = wish.opaque.map(|stage| Opaque::new(stage, &registry)).transpose()?;
     let rounded = stage.exact && !in_255ths(&stage.scene);
-    let unless_said = [(wish.count_all, EVERYTHING), (opaque.is_some(), TURNED_AWAY), (rounded, UNROUNDED)];
+    let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
     let mut unless_said: Vec<(&str, &str)> =
         unless_said.into_iter().filter(|(wanted, _)| *wanted).map(|(_, set)| set).collect();
+    unless_said.extend(opaque.as_ref().and_then(|_| turned_away(&registry)));
     // A storage whose slots hold no more than the papers' payload rounds as the papers do.
     if rounded && input.variant_or(wish.set, &unless_said, &registry).is_err() {
         unless_said.retain(|set| *set != UNROUNDED);

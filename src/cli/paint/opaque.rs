@@ -2,6 +2,7 @@
 //!
 //! In: a staged scene, a device. Out: its picture, and its depths for the description that is drawn after it.
 
+use fragbuf::vocabulary::{Init, KeepDefault, Step, Technique};
 use fragbuf::{Plan, Registry, Variant};
 
 use super::{UNROUNDED, in_255ths};
@@ -9,11 +10,8 @@ use crate::cli::input::Input;
 use crate::cli::output::Failure;
 use crate::cli::view::Stage;
 
-/// The technique that opaque surfaces are drawn by.
-const TECHNIQUE: &str = "z_buffer";
-
-/// The choice that turns away what lies behind something opaque.
-pub(super) const TURNED_AWAY: (&str, &str) = ("opaque", "in_shader");
+/// The axis of what lies behind something opaque.
+const AXIS: &str = "opaque";
 
 /// Opaque surfaces, to be drawn first.
 pub(super) struct Opaque<'a> {
@@ -24,12 +22,32 @@ pub(super) struct Opaque<'a> {
 
 impl<'a> Opaque<'a> {
     pub(super) fn new(stage: &'a Stage, registry: &Registry) -> Result<Self, Failure> {
-        let mut input = Input::read(TECHNIQUE, registry)?;
+        let none = || Failure::Input("there is no technique that keeps the nearest by a depth test".to_owned());
+        let mut input = Input::read(nearest(registry).ok_or_else(none)?, registry)?;
         let rounded = stage.exact && !in_255ths(&stage.scene);
         let unless_said = if rounded { &[UNROUNDED][..] } else { &[] };
         let variant = input.variant_or(&[], unless_said, registry)?;
         Ok(Opaque { stage, variant, input })
     }
+}
+
+/// The choice that turns away what lies behind something opaque: the first that has its depths brought.
+pub(super) fn turned_away(registry: &Registry) -> Option<(&str, &str)> {
+    let mut rows = registry.rows_of(AXIS);
+    let row = rows.find(|row| row.resources.iter().any(|resource| resource.init == Init::Host))?;
+    Some((AXIS, &row.key))
+}
+
+/// The technique that keeps one fragment, by a depth test that writes.
+fn nearest(registry: &Registry) -> Option<&str> {
+    let writes =
+        |step: &Step| matches!(step, Step::Pass(pass) if pass.state.depth.as_ref().is_some_and(|test| test.write));
+    let is_tested = |technique: &&Technique| {
+        let storage = technique.choices.iter().find(|(axis, _)| *axis == "storage");
+        let row = storage.and_then(|(axis, key)| registry.row(axis, key));
+        technique.keep == KeepDefault::Best(1) && row.is_some_and(|row| row.steps.iter().any(writes))
+    };
+    registry.techniques().iter().find(is_tested).map(|technique| technique.key.as_str())
 }
 
 /// The texture that a plan leaves its depths in: the one that a pass tests and writes.
