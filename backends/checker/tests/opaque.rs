@@ -51,8 +51,10 @@ fn changed(axis: &str, key: &str, (before, after): (&str, &str)) -> Registry {
     registry.with(Row { template: Some(Template::new(template.path, text)), ..row })
 }
 
-/// The row, a change to it, and the technique that shows it.
-const WRONG: [(&str, &str, (&str, &str), &str, Set); 8] = [
+/// Axis and key of a row, a text in it and what it becomes, the technique that shows it.
+type Wrong = (&'static str, &'static str, (&'static str, &'static str), &'static str, Set);
+
+const WRONG: [Wrong; 8] = [
     ("opaque", "in_shader", ("depth > opaque", "depth >= opaque"), "kplus_array", IN_SHADER),
     ("opaque", "in_shader", ("depth > opaque", "depth < opaque"), "kplus_array", IN_SHADER),
     ("opaque", "in_shader", ("pixel_index(position)", "1u - pixel_index(position)"), "kplus_array", IN_SHADER),
