@@ -78,6 +78,8 @@ pub fn named() -> Vec<Case> {
         ("occupancy", technique("kplus_array"), vec![("cull", "occupancy")]),
         ("occupancy_early", technique("kb_ps"), vec![("cull", "occupancy_early else occupancy")]),
         ("occupancy_custom", text(CUSTOM), vec![("cull", "occupancy"), ("cull.words", "2"), ("counters", "all")]),
+        ("opaque_in_shader", technique("kplus_ab_sb"), vec![("opaque", "in_shader"), ("counters", "all")]),
+        ("opaque_early", technique("mdt32_coplanar"), vec![("opaque", "early else in_shader")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),
         ("reserved", text(RESERVED), vec![]),

@@ -84,6 +84,15 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from kplus_array {\n    samples: coverage;\n    cull: occupancy_early;\n}",
         &[("unmet", 3, 11, "`cull: occupancy`")],
     ),
+    ("buffer B from ab_ll {\n    opaque: in_shader;\n    samples: coverage;\n}", &[("unmet", 2, 13, "`opaque: none`")]),
+    // Depth test and stencil are taken: by the storage, by the cull.
+    ("buffer B from z_buffer {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: in_shader`")]),
+    ("buffer B from kb_sr {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: none`")]),
+    (
+        "buffer B from kplus_array {\n    cull: occupancy_early;\n    opaque: early;\n}",
+        &[("unmet", 3, 13, "`cull: occupancy`")],
+    ),
+    ("buffer B from ab_ll {\n    opaque: late;\n}", &[("unknown-value", 2, 13, "none, in_shader, early")]),
     (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
         &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],

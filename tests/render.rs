@@ -5,6 +5,7 @@ use std::process::{Command, Output};
 
 use fragbuf::Registry;
 use fragbuf::vocabulary::{Fact, KeepDefault, Technique};
+use fragbuf_templates::COUNTERS;
 use serde_json::Value;
 
 use crate::oracle::over;
@@ -324,7 +325,7 @@ fn figures_are_json_on_stdout_and_add_up() {
     assert_eq!(stored, kept as u64);
     assert_eq!(figures["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
     // 2k + 2 words per pixel, and the counters.
-    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + 12));
+    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + COUNTERS.len() as u64));
     assert!(figures["device"].is_string() && figures["ms"].is_object(), "{figures}");
 }
 

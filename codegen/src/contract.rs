@@ -60,6 +60,12 @@ pub const CONTRACTS: &[Contract] = &[
     row("sync", "sync_store", "(pixel: u32, entry: Packed)", "calls storage_insert as the sync promises, or on_lost"),
     row("cull", "cull_fragment", "(pixel: u32, entry: Packed) -> bool", "whether the fragment is turned away"),
     row(
+        "opaque",
+        "opaque_hides",
+        "(position: vec2<f32>, fragment: Fragment) -> bool",
+        "whether an opaque surface hides the fragment; `position` is the fragment's, in pixels",
+    ),
+    row(
         "overflow",
         "on_lost",
         "(pixel: u32, lost: Packed, reason: u32)",

@@ -69,6 +69,13 @@ pub struct Planned {
     pub part: Option<Part>,
 }
 
+impl Planned {
+    /// Whether the caller brings it, filled, and owns its memory: a texture that the host writes.
+    pub fn is_brought(&self) -> bool {
+        self.resource.init == Init::Host && matches!(self.resource.element, Element::Texture(_))
+    }
+}
+
 /// One word of what a row calls one resource, and a plan keeps in a texture for each word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {

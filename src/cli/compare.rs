@@ -43,7 +43,7 @@ impl Compare {
         let one = |description: &str, own: &[(String, String)]| {
             let set = [&self.set, own].concat();
             // The hit ratio needs every event.
-            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true };
+            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque: None };
             paint(&wish, view, &stage, &progress)
         };
         let (first, second) = (one(&self.first, &self.set_first)?, one(&self.second, &self.set_second)?);

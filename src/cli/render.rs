@@ -8,7 +8,7 @@ use super::output::{self, Failure};
 use super::paint::{Painted, Wish, paint};
 use super::picture;
 use super::progress::Progress;
-use super::view::{Stage, View, scenes};
+use super::view::{self, Stage, View, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -21,6 +21,10 @@ pub(crate) struct Render {
     /// A uniform of the description; those that are not given are 0
     #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = super::assignment)]
     uniforms: Vec<(String, String)>,
+    /// A scene that is drawn first, as if opaque: what lies behind it is turned away, its picture is behind the other. The camera
+    /// frames both. The description takes opaque=in_shader unless it says otherwise
+    #[arg(long, value_name = "PATH|builtin:NAME")]
+    opaque: Option<String>,
     #[command(flatten)]
     view: View,
 }
@@ -29,11 +33,20 @@ impl Render {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let view = &self.view;
         view.check()?;
+        self.opaque.iter().try_for_each(|scene| view::check(scene))?;
         let progress = Progress::new();
         progress.stage(format!("loading {}", view.scene));
-        let stage = view.stage()?;
-        let wish =
-            Wish { description: &self.description, set: &self.set, uniforms: &self.uniforms, count_all: view.json };
+        let (stage, opaque) = match &self.opaque {
+            Some(opaque) => view.stages(opaque).map(|(stage, opaque)| (stage, Some(opaque)))?,
+            None => (view.stage()?, None),
+        };
+        let wish = Wish {
+            description: &self.description,
+            set: &self.set,
+            uniforms: &self.uniforms,
+            count_all: view.json,
+            opaque: opaque.as_ref(),
+        };
         let painted = paint(&wish, view, &stage, &progress)?;
         progress.stage(format!("writing {}", view.out.display()));
         let pixels = picture::displayed(&painted.drawn.pixels, view.background, view.linear);
@@ -72,6 +85,7 @@ pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Va
             "generated": tally.as_ref().map(|tally| tally.generated),
             "stored": tally.as_ref().map(|tally| tally.stored),
             "culled": tally.as_ref().map(|tally| tally.culled),
+            "occluded": tally.as_ref().map(|tally| tally.occluded),
             "dropped": painted.drawn.counters.as_ref().map(|counters| counters.lost()),
         },
         "lost": losses,
@@ -107,6 +121,8 @@ fn payload(painted: &Painted) -> Value {
 pub(crate) struct Tally {
     generated: u64,
     culled: u64,
+    /// Behind something opaque, and not among the generated ones.
+    occluded: u64,
     stored: u64,
     /// Kept fragments over generated ones.
     pub(crate) hit_ratio: f64,
@@ -119,5 +135,6 @@ pub(crate) fn tally(painted: &Painted) -> Option<Tally> {
     let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
     let stored = generated.saturating_sub(culled + counters.lost());
     let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };
-    Some(Tally { generated, culled, stored, hit_ratio })
+    let occluded = u64::from(counters.get("occluded"));
+    Some(Tally { generated, culled, occluded, stored, hit_ratio })
 }

@@ -69,11 +69,30 @@ pub(crate) struct Stage {
 impl View {
     /// Loads or makes the scene.
     pub(crate) fn stage(&self) -> Result<Stage, Failure> {
-        let mut scene = fragbuf_scene::open(&self.scene, self.color)?;
-        let camera = match self.camera {
-            CameraArgument::Auto => Camera::framing(&scene, self.size.0 as f32 / self.size.1 as f32),
+        let scene = fragbuf_scene::open(&self.scene, self.color)?;
+        let camera = self.camera(&scene);
+        Ok(self.staged(scene, camera))
+    }
+
+    /// The same, and another scene that is opaque, whatever its alpha; the camera frames both.
+    pub(crate) fn stages(&self, opaque: &str) -> Result<(Stage, Stage), Failure> {
+        let scene = fragbuf_scene::open(&self.scene, self.color)?;
+        let mut opaque = fragbuf_scene::open(opaque, self.color)?;
+        let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
+        colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
+        let both = Scene { objects: scene.objects.iter().chain(&opaque.objects).cloned().collect() };
+        let camera = self.camera(&both);
+        Ok((self.staged(scene, camera), self.staged(opaque, camera)))
+    }
+
+    fn camera(&self, scene: &Scene) -> Camera {
+        match self.camera {
+            CameraArgument::Auto => Camera::framing(scene, self.size.0 as f32 / self.size.1 as f32),
             CameraArgument::Clip => Camera::clip(),
-        };
+        }
+    }
+
+    fn staged(&self, mut scene: Scene, camera: Camera) -> Stage {
         let exact = match self.shading {
             Shading::Flat => true,
             Shading::Lit => {
@@ -81,7 +100,7 @@ impl View {
                 false
             }
         };
-        Ok(Stage { scene, camera, exact })
+        Stage { scene, camera, exact }
     }
 
     /// What will draw.
@@ -91,11 +110,16 @@ impl View {
 
     /// What is wrong with the arguments and needs no work to see.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        if let Some(name) = self.scene.strip_prefix("builtin:") {
-            name.parse::<fragbuf_scene::Builtin>()?;
-        }
-        Ok(())
+        check(&self.scene)
     }
+}
+
+/// What is wrong with the name of a scene and needs no work to see.
+pub(crate) fn check(scene: &str) -> Result<(), Failure> {
+    if let Some(name) = scene.strip_prefix("builtin:") {
+        name.parse::<fragbuf_scene::Builtin>()?;
+    }
+    Ok(())
 }
 
 /// The generated scenes, for the help.

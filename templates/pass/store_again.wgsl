@@ -10,8 +10,12 @@ fn store_fragment(position: vec2<f32>, fragment: Fragment) {
     if !admit(fragment) {
         return;
     }
+    let is_hidden = opaque_hides(position, fragment);
     if frame.iteration == 0u {
-        count_event(GENERATED);
+        count_event(select(GENERATED, OCCLUDED, is_hidden));
+    }
+    if is_hidden {
+        return;
     }
     sync_store(pixel_index(position), fragment_pack(fragment));
 }

@@ -11,6 +11,10 @@ fn store_fragment(position: vec2<f32>, fragment: Fragment) {
     if !admit(fragment) {
         return;
     }
+    if opaque_hides(position, fragment) {
+        count_event(OCCLUDED);
+        return;
+    }
     count_event(GENERATED);
     let pixel = pixel_index(position);
     let entry = fragment_pack(fragment);

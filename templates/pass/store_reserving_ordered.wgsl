@@ -8,6 +8,10 @@ fn store(varyings: Varyings) {
     let pixel = pixel_index(varyings.position.xy);
     let entry = fragment_pack(fragment);
     var wanted = admit(fragment);
+    if wanted && opaque_hides(varyings.position.xy, fragment) {
+        count_event(OCCLUDED);
+        wanted = false;
+    }
     if wanted {
         count_event(GENERATED);
         if cull_fragment(pixel, entry) {

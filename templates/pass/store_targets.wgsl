@@ -6,6 +6,10 @@ fn store(varyings: Varyings) -> Targets {
     if !admit(fragment) {
         discard;
     }
+    if opaque_hides(varyings.position.xy, fragment) {
+        count_event(OCCLUDED);
+        discard;
+    }
     count_event(GENERATED);
     return fragment_targets(fragment_pack(fragment));
 }

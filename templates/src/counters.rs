@@ -4,8 +4,12 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 12] = [
-    ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
+pub const COUNTERS: [(&str, bool, &str); 13] = [
+    (
+        "generated",
+        false,
+        "fragments that reached a geometry pass's last stage, met the constraints and lay behind nothing opaque",
+    ),
     ("culled", false, "fragments turned away by the cull"),
     ("displaced", true, "fragments rejected or replaced because better ones were there"),
     ("pool_exhausted", true, "fragments that found no room in the storage"),
@@ -25,6 +29,7 @@ pub const COUNTERS: [(&str, bool, &str); 12] = [
         "fragments that still changed something in the last round of a loop: entries may be lost or double",
     ),
     ("samples_exhausted", true, "fragments that came when every sample of their pixel had one"),
+    ("occluded", false, "fragments that met the constraints, and were turned away behind something opaque"),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

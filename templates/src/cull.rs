@@ -7,10 +7,15 @@ use crate::vocabulary::{
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        Row { template: Some(template!("cull/none")), ..Row::new("cull", "none", "no fragment is turned away", "") },
+        Row {
+            template: Some(template!("cull/none")),
+            offers: vec![Fact::CullInShader],
+            ..Row::new("cull", "none", "no fragment is turned away", "")
+        },
         Row {
             template: Some(template!("cull/early")),
             calls: vec!["storage"],
+            offers: vec![Fact::CullInShader],
             requires: vec![Fact::BoundAnyInstant],
             ..Row::new("cull", "early", "fragments worse than the worst kept one, tested before the lock", "K15 §3.2")
         },
@@ -26,6 +31,7 @@ fn occupancy() -> Row {
     Row {
         template: Some(template!("cull/occupancy")),
         uses: vec![Use::new("occupancy", Access::Read)],
+        offers: vec![Fact::CullInShader],
         requires: vec![Fact::FragmentAtomics, Fact::BestSuffice],
         edits: vec![before_store(narrow)],
         ..by_occupancy("occupancy", "fragments beyond the k-th occupied bucket, which two passes before find")

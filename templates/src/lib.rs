@@ -20,6 +20,7 @@ macro_rules! template {
 mod addressing;
 mod counters;
 mod cull;
+mod opaque;
 mod overflow;
 mod pass;
 mod registry;

@@ -3,7 +3,7 @@
 use crate::vocabulary::{Row, Template};
 
 pub(crate) fn rows() -> Vec<Row> {
-    let geometry = vec!["addressing", "storage", "sync", "cull", "overflow", "counters"];
+    let geometry = vec!["opaque", "addressing", "storage", "sync", "cull", "overflow", "counters"];
     vec![
         row("geometry", "the vertex stage of every geometry pass", template!("pass/geometry"), vec![]),
         row("fullscreen", "the vertex stage of every fullscreen pass", template!("pass/fullscreen"), vec![]),
@@ -13,7 +13,12 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/reset"),
             vec!["addressing", "storage"],
         ),
-        row("count", "counts the fragments of each pixel", template!("pass/count"), vec!["addressing", "storage"]),
+        row(
+            "count",
+            "counts the fragments of each pixel",
+            template!("pass/count"),
+            vec!["opaque", "addressing", "storage"],
+        ),
         row(
             "scan_blocks",
             "prefix sums inside blocks of 1024 pixels",
@@ -33,26 +38,26 @@ pub(crate) fn rows() -> Vec<Row> {
             "store_reserving_ordered",
             "stores the scene's fragments, outside an interlock those that have a place of their own",
             template!("pass/store_reserving_ordered"),
-            vec!["addressing", "storage", "cull", "overflow", "counters"],
+            vec!["opaque", "addressing", "storage", "cull", "overflow", "counters"],
         ),
         row(
             "store_ordered",
             "stores the scene's fragments inside an interlock",
             template!("pass/store_ordered"),
-            vec!["addressing", "storage", "cull", "overflow", "counters"],
+            vec!["opaque", "addressing", "storage", "cull", "overflow", "counters"],
         ),
         row(
             "store_again",
             "stores the scene's fragments once more in every round of a loop",
             template!("pass/store_again"),
-            vec!["addressing", "storage", "sync", "counters"],
+            vec!["opaque", "addressing", "storage", "sync", "counters"],
         ),
         row("route", "sets the stencil of one sample of every pixel", template!("pass/route"), vec![]),
         row(
             "store_targets",
             "stores the scene's fragments in targets, by tests that are fixed function",
             template!("pass/store_targets"),
-            vec!["counters"],
+            vec!["opaque", "counters"],
         ),
         row(
             "resolve",
@@ -76,19 +81,19 @@ pub(crate) fn rows() -> Vec<Row> {
             "survey",
             "draws the scene ahead of the store pass, for a storage that must know what will come",
             template!("pass/survey"),
-            vec!["addressing", "storage"],
+            vec!["opaque", "addressing", "storage"],
         ),
         row(
             "measure",
             "draws the scene ahead of the store pass, for the range of each pixel's keys",
             template!("pass/measure"),
-            vec!["addressing", "cull"],
+            vec!["opaque", "addressing", "cull"],
         ),
         row(
             "occupy",
             "draws the scene ahead of the store pass, for where in their range each pixel's keys lie",
             template!("pass/occupy"),
-            vec!["addressing", "cull"],
+            vec!["opaque", "addressing", "cull"],
         ),
         row(
             "narrow",
@@ -106,7 +111,7 @@ pub(crate) fn rows() -> Vec<Row> {
             "settle",
             "draws the scene again for what a storage could not settle in one pass",
             template!("pass/settle"),
-            vec!["addressing", "storage"],
+            vec!["opaque", "addressing", "storage"],
         ),
     ]
 }

@@ -3,7 +3,8 @@
 
 use crate::vocabulary::{Axis, Fact, Row, Technique, Template};
 use crate::{
-    addressing, counters, cull, overflow, pass, resolve, samples, select, shared, sort, storage, sync, technique, ties,
+    addressing, counters, cull, opaque, overflow, pass, resolve, samples, select, shared, sort, storage, sync,
+    technique, ties,
 };
 
 /// Rows by axis, techniques, and shared texts.
@@ -16,10 +17,11 @@ pub struct Registry {
 }
 
 /// The axes, in the order in which their edits apply.
-const AXES: [Axis; 13] = [
+const AXES: [Axis; 14] = [
     axis("storage", "where the fragments of a pixel are kept", None),
     axis("sync", "how writers of the same pixel are kept apart", Some("none")),
     axis("cull", "which fragments are turned away before they reach the storage", Some("none")),
+    axis("opaque", "what becomes of fragments behind opaque surfaces", Some("none")),
     axis("select", "when the k best are chosen", Some("on_store")),
     axis("overflow", "what becomes of a fragment that finds no place", Some("drop")),
     axis("ties", "which of two fragments with equal keys is better", Some("payload")),
@@ -53,6 +55,7 @@ impl Registry {
             storage::rows(),
             sync::rows(),
             cull::rows(),
+            opaque::rows(),
             select::rows(),
             overflow::rows(),
             ties::rows(),

@@ -10,7 +10,7 @@ fn none() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
-        offers: vec![Fact::Race],
+        offers: vec![Fact::Race, Fact::LeftToShaders],
         requires: vec![Fact::SurvivesRaces],
         soundness: Soundness::Racy,
         ..Row::new("sync", "none", "not at all: the hazards of the storage are kept", "B06 §3.1")
@@ -21,6 +21,7 @@ fn slot_counter() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
+        offers: vec![Fact::LeftToShaders],
         requires: vec![Fact::OwnAtomics],
         soundness: Soundness::Atomics,
         ..Row::new(
@@ -51,7 +52,7 @@ fn spin_lock() -> Row {
         resources: vec![Resource::new("locks", Element::Word, "0: free, 1: taken").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("locks", Access::Atomic)],
         calls: vec!["storage", "overflow", "counters"],
-        offers: vec![Fact::Critical],
+        offers: vec![Fact::Critical, Fact::LeftToShaders],
         requires: vec![Fact::FragmentAtomics],
         parameters: vec![Parameter {
             name: "limit".into(),
@@ -70,7 +71,7 @@ fn spin_lock() -> Row {
 fn interlock_ordered() -> Row {
     let any = interlock();
     Row {
-        offers: vec![Fact::Critical, Fact::OrderedCritical],
+        offers: vec![Fact::Critical, Fact::OrderedCritical, Fact::LeftToShaders],
         requires: [any.requires.as_slice(), &[Fact::OrderedInterlock]].concat(),
         key: "interlock_ordered".to_owned(),
         summary: "by fragment shader interlock, in the order of submission".into(),
@@ -80,7 +81,7 @@ fn interlock_ordered() -> Row {
 
 fn interlock() -> Row {
     Row {
-        offers: vec![Fact::Critical],
+        offers: vec![Fact::Critical, Fact::LeftToShaders],
         requires: vec![Fact::Interlock, Fact::Coherent, Fact::FragmentAtomics, Fact::OwnEntryPoints],
         edits: vec![Edit::FormOfSkeleton("store".to_owned(), "ordered".to_owned())],
         soundness: Soundness::Interlock,

@@ -107,6 +107,19 @@ pub(crate) fn at_pixel(fragment: &Fragment, program: &Program, x: u32) -> Fragme
     moved
 }
 
+/// The greatest depth among fragments, and one that lies just behind it, whatever its key.
+pub(crate) fn farthest<'f>(
+    fragments: impl Iterator<Item = &'f Fragment>,
+    program: &Program,
+) -> Option<(f32, Fragment)> {
+    let position = program.inputs.iter().position(is_position)?;
+    let depth = |fragment: &Fragment| f32::from_bits(fragment.inputs[position][2]);
+    let last = fragments.max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+    let mut behind = last.clone();
+    behind.inputs[position][2] = depth(last).next_up().to_bits();
+    Some((depth(last), behind))
+}
+
 /// The fragment stage that packs, and its inputs.
 fn geometry(subject: &Subject) -> Result<(&Program, &crate::subject::FragmentPrograms), String> {
     let mut passes = subject.passes.iter();

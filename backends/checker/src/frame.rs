@@ -9,6 +9,7 @@ use fragbuf_interpreter::{Dispatch, Exit, Machine, Program, Sequential, Space, d
 use fragbuf_templates::vocabulary::{Host, Kind, Step};
 
 use crate::subject::{Runnable, Subject};
+use crate::texels::{Alone, textures};
 use crate::turns::Turn;
 
 /// One row of words per binding; what is not a buffer is empty.
@@ -23,6 +24,9 @@ const LONGEST: usize = 256;
 /// What memory holds before anybody has written to it: neither zero nor a sentinel, a better key than any, and, as key and as
 /// what stands beside it, an entry whose checksum is right.
 pub(crate) const STALE: u32 = 20;
+
+/// Depth of a pixel where nothing is opaque.
+const NOTHING_OPAQUE: u32 = 1f32.to_bits();
 
 /// A frame on its way.
 #[derive(Clone, Debug)]
@@ -59,9 +63,21 @@ impl<'s> Frame<'s> {
         let plan = &self.subject.plan;
         for (planned, words) in plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
             let size = self.symbols.evaluate(plan, &planned.words, &planned.resource.name);
-            words.resize((size.map_err(|error| error.to_string())? as usize).max(1), STALE);
+            // What the caller brings is filled: nothing is nearer than the far plane.
+            let value = if planned.is_brought() { NOTHING_OPAQUE } else { STALE };
+            words.resize((size.map_err(|error| error.to_string())? as usize).max(1), value);
         }
         self.enter(0)
+    }
+
+    /// Puts something opaque of this depth into a pixel, in all that the caller brings.
+    pub(crate) fn set_opaque(&mut self, pixel: u32, depth: f32) {
+        let resources = &self.subject.plan.resources;
+        for (planned, words) in resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
+            if let Some(word) = words.get_mut(pixel as usize).filter(|_| planned.is_brought()) {
+                *word = depth.to_bits();
+            }
+        }
     }
 
     /// Does turns, beginning with that of the number `from`, up to the turn `to`; whether it came to that, or to the end.
@@ -206,7 +222,10 @@ impl<'s> Frame<'s> {
 
 /// Runs a machine to its end, with memory to itself.
 pub(crate) fn run_alone(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<Exit, String> {
-    let exit = with_buffers(machine.program(), memory, |buffers| machine.run(&mut Sequential { buffers }));
+    let textures = textures(machine.program(), memory);
+    let exit = with_buffers(machine.program(), memory, |buffers| {
+        machine.run(&mut Alone { buffers: Sequential { buffers }, textures })
+    });
     match machine.fault.take() {
         Some(_) => Err("an index is out of bounds".to_owned()),
         None => Ok(exit),

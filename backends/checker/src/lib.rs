@@ -41,6 +41,7 @@ mod shader;
 mod state;
 mod stream;
 mod subject;
+mod texels;
 mod trial;
 mod turns;
 mod verdict;

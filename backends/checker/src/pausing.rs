@@ -5,7 +5,10 @@
 
 use fragbuf_interpreter::{Access, Event, Place, Reply, Shared};
 
+use crate::frame::WIDTH;
 use crate::state::{Ground, Home, joined};
+use crate::subject::Subject;
+use crate::texels::texel;
 
 /// Answers one event, then stops. What commutes happens at once: no order of it can be told from another.
 pub(crate) struct Pausing<'a, 'p> {
@@ -28,6 +31,15 @@ impl Shared for Pausing<'_, '_> {
             Home::Fixed(number) => self.ground.fixed[number].get(place.word as usize).copied().unwrap_or(0),
             Home::Moving { first, .. } => self.words.get(first + place.word as usize).copied().unwrap_or(0),
         }
+    }
+
+    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
+        let texture = self.ground.program.textures.get(usize::from(texture))?;
+        texel(self.ground.fixed.get(Subject::memory_of(texture.binding))?, place)
+    }
+
+    fn extent(&self, _texture: u16) -> [u32; 3] {
+        [WIDTH, 1, 1]
     }
 
     fn event(&mut self, event: &Event) -> Reply {

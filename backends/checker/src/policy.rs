@@ -30,6 +30,8 @@ pub(crate) struct Policy {
     pub(crate) neighbours: u32,
     /// How many of those find no room.
     pub(crate) neighbours_lost: u32,
+    /// Fragments of this pixel that something opaque hides.
+    pub(crate) hidden: u32,
 }
 
 /// What is to be said of an end.
@@ -51,6 +53,7 @@ struct Counts {
     given_up: u32,
     no_room: u32,
     unsettled: u32,
+    occluded: u32,
 }
 
 impl Counts {
@@ -72,8 +75,15 @@ impl Policy {
         if is_stated { Finding::Stated(text) } else { Finding::Wrong(text) }
     }
 
-    /// What is wrong whatever the rows state: fragments were given up, or found no room, that should not.
+    /// What is wrong whatever the rows state: fragments were given up, or found no room, or were hidden, that should not.
     fn miscarried(&self, counts: Counts) -> Option<String> {
+        let counts_all = counts.generated > 0;
+        if counts_all && counts.occluded != self.hidden || counts.occluded > self.hidden {
+            return Some(format!(
+                "{} fragments are counted as behind something opaque, and should be {}",
+                counts.occluded, self.hidden
+            ));
+        }
         if counts.given_up > 0 && !self.may_give_up && !self.effects.contains(&Effect::GivenUp) {
             return Some(format!("{} fragments gave up waiting for the lock", counts.given_up));
         }
@@ -290,6 +300,7 @@ impl Policy {
                 "spin_exhausted" => counts.given_up = *count,
                 "pool_exhausted" => counts.no_room = *count,
                 "unsettled" => counts.unsettled = *count,
+                "occluded" => counts.occluded = *count,
                 _ => {}
             }
         }

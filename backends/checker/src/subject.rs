@@ -5,7 +5,7 @@
 
 use fragbuf_backends::{Checked, Target, check};
 use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, plan};
-use fragbuf_interpreter::{Marker, Options, Program, Unsupported};
+use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
@@ -135,7 +135,8 @@ impl Subject {
                 _ if pass.kind == Kind::Fullscreen => {}
                 _ => {
                     for (turn, round) in turns.iter().enumerate().filter_map(|(at, turn)| round_of(at, turn, pass)) {
-                        let made = runnable(pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?;
+                        let made =
+                            runnable(&plan, pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?;
                         passes.push(Runnable { turn, round, ..made });
                     }
                 }
@@ -176,6 +177,11 @@ impl Subject {
     /// Whether fragments can be turned away without being counted as a loss.
     pub(crate) fn turns_away(&self) -> bool {
         self.bound.is_some() || self.is_handed_the_best()
+    }
+
+    /// Whether shaders turn fragments away that lie behind what the caller brings.
+    pub(crate) fn hides(&self) -> bool {
+        self.passes.iter().any(|pass| !pass.program.textures.is_empty())
     }
 
     /// Whether a row turns fragments away by what the pixel's others are, kept or not.
@@ -241,13 +247,13 @@ fn question(plan: &Plan, anchor: &str) -> Pass {
     pass
 }
 
-fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
+fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
     let (module, info) = (checked.module(), checked.info());
     let options = Options { markers: &MARKERS };
     let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
     let entry = |entry: &&EntryPoint| entry.stage == stage;
     let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
-    let program = Program::entry_point(module, info, name, &options)?.without_textures()?;
+    let program = with_brought(Program::entry_point(module, info, name, &options)?, plan)?;
     let fragment = match stage {
         Stage::Fragment => Some(FragmentPrograms {
             unpack: Program::function(module, info, "varyings_fragment", &options)?,
@@ -261,6 +267,15 @@ fn runnable(pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
     Ok(Runnable { pass: pass.clone(), turn: 0, round: 0, program, fragment, source })
+}
+
+/// The program, if it reads no textures but those that the caller brings.
+fn with_brought(program: Program, plan: &Plan) -> Result<Program, Vec<Unsupported>> {
+    let is_brought = |texture: &Texture| {
+        let mut brought = plan.resources.iter().filter(|planned| planned.is_brought());
+        texture.binding.is_some_and(|(_, binding)| brought.any(|planned| planned.binding == binding))
+    };
+    if program.textures.iter().all(is_brought) { Ok(program) } else { program.without_textures() }
 }
 
 fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {

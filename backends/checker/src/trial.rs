@@ -15,7 +15,7 @@ use fragbuf_templates::vocabulary::Fact;
 
 use crate::case::Case;
 use crate::explore::{End, Failure, Found, Judge, Step, What, explore};
-use crate::fragments::{Fragment, at_pixel};
+use crate::fragments::{Fragment, at_pixel, farthest};
 use crate::frame::{Frame, Memory, WIDTH, run_alone};
 use crate::model::Model;
 use crate::policy::{Finding, Policy};
@@ -50,6 +50,8 @@ pub(crate) struct Trial<'s> {
     pub(crate) case: Case,
     pub(crate) rounds: Vec<Round<'s>>,
     neighbour: Fragment,
+    /// Comes to every pass, and lies behind something opaque in the pixel under test; `None`: nothing asks for that.
+    hidden: Option<Fragment>,
     policy: Policy,
     /// What the host must make room for, where the rows say that a pass counts it.
     wanted: Option<u64>,
@@ -93,10 +95,17 @@ impl<'s> Trial<'s> {
             fragments,
             neighbours: 1,
             neighbours_lost: case.room.neighbours_lost,
+            hidden: u32::from(subject.hides()),
         };
         let mut frame = Frame::new(subject, case.room.symbols.clone())?;
         frame.reserved = case.room.reserved;
-        let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour: neighbour.clone(), policy, wanted };
+        let program = &subject.passes[case.pass].program;
+        let hidden = farthest(case.prior.iter().chain(&case.new), program).filter(|_| subject.hides());
+        if let Some((depth, _)) = hidden {
+            frame.set_opaque(case.pixel, depth);
+        }
+        let (neighbour, hidden) = (neighbour.clone(), hidden.map(|(_, behind)| behind));
+        let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour, hidden, policy, wanted };
         let turn = trial.runnable().turn;
         let seen = trial.case.new.len() - usize::from(trial.case.room.has_unseen || trial.case.has_helper);
         frame.advance(0, turn, &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))?;
@@ -108,11 +117,12 @@ impl<'s> Trial<'s> {
         &self.subject.passes[self.case.pass]
     }
 
-    /// The inputs of the neighbour, of what was there before, and of `new`.
+    /// The inputs of the neighbour, of what something opaque hides, of what was there before, and of `new`.
     fn inputs(&self, runnable: &Runnable, new: &[Fragment]) -> Vec<Vec<Vec<u32>>> {
         let pixel = self.case.pixel;
         let beside = (&self.neighbour, WIDTH - 1 - pixel);
-        let all = std::iter::once(beside).chain(self.case.prior.iter().chain(new).map(|fragment| (fragment, pixel)));
+        let own = self.hidden.iter().chain(&self.case.prior).chain(new);
+        let all = std::iter::once(beside).chain(own.map(|fragment| (fragment, pixel)));
         all.map(|(fragment, pixel)| at_pixel(fragment, &runnable.program, pixel).inputs).collect()
     }
 

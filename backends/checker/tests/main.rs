@@ -14,6 +14,7 @@ mod litmus;
 mod mutants;
 mod mutation;
 mod occupancy;
+mod opaque;
 mod regressions;
 mod repairs;
 mod repeated;

@@ -1,10 +1,14 @@
 //! What a caller sees: a device for one plan at one size, meshes in, pictures out.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
-use fragbuf_frame::{Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, zeros};
+use fragbuf_frame::{
+    Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, unsupported, zeros,
+};
+use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
 use crate::memory::{Memory, read};
 use crate::{Code, Error, frame};
@@ -80,6 +84,8 @@ pub struct Device {
     pub(crate) uniforms: Vec<u32>,
     pub(crate) camera: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
+    /// Textures that the caller has not brought yet.
+    missing: BTreeSet<usize>,
 }
 
 /// The camera before any is set: positions are clip space.
@@ -96,8 +102,10 @@ impl Device {
         let mut memory = Memory::default();
         memory.resize(&code.plan, &symbols)?;
         let uniforms = zeros(&code.plan.variant.uniforms);
-        let mut device =
-            Device { code, settings, symbols, counting, memory, uniforms, camera: Vec::new(), objects: Vec::new() };
+        let resources = code.plan.resources.iter().enumerate();
+        let missing = resources.filter(|(_, planned)| planned.is_brought()).map(|(index, _)| index).collect();
+        let (camera, objects) = (Vec::new(), Vec::new());
+        let mut device = Device { code, settings, symbols, counting, memory, uniforms, camera, objects, missing };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -117,8 +125,41 @@ impl Device {
         Ok(set(&mut self.uniforms, &self.code.plan.variant.uniforms, name, value)?)
     }
 
-    /// A whole frame. `progress` hears from several threads how far it is.
+    /// Brings a texture that the plan has and does not make (`init: host` in the manifest), filled: one number for each texel,
+    /// row after row from the top. It is only read, from the next frame on, until another takes its place.
+    pub fn set_texture(&mut self, name: &str, texels: &[f32]) -> Result<(), Error> {
+        let plan = &self.code.plan;
+        let index = resource(plan, name)?;
+        let (width, height) = (self.settings.width, self.settings.height);
+        let is_float =
+            |element| matches!(element, Element::Texture(TextureFormat::Depth32Float | TextureFormat::R32Float));
+        let bad = |wanted: String| fragbuf_frame::Error::BadValue { name: format!("the texture `{name}`"), wanted };
+        let planned = &plan.resources[index];
+        if !planned.is_brought() {
+            return Err(bad("left to the plan, which makes it itself".to_owned()).into());
+        }
+        if !is_float(planned.resource.element) || planned.resource.extents.len() > 1 {
+            return Err(unsupported(format!("`{name}`, which has more than one number for a pixel")).into());
+        }
+        if texels.len() != width as usize * height as usize {
+            let found = texels.len();
+            return Err(bad(format!("as large as the frame, {width} x {height} texels; it has {found}")).into());
+        }
+        for (word, texel) in self.memory.resources[index].iter_mut().zip(texels) {
+            *word.get_mut() = texel.to_bits();
+        }
+        self.missing.remove(&index);
+        Ok(())
+    }
+
+    /// A whole frame. `progress` hears from several threads how far it is. Fails where a texture is missing that the caller
+    /// brings.
     pub fn render(&mut self, mesh: &Mesh<'_>, progress: &(dyn Fn(Stage<'_>) + Sync)) -> Result<Picture, Error> {
+        if let Some(planned) = self.missing.first().and_then(|index| self.code.plan.resources.get(*index)) {
+            let wanted = "brought before a frame begins, as large as the frame: `Device::set_texture`".to_owned();
+            let name = format!("the texture `{}`", planned.resource.name);
+            return Err(fragbuf_frame::Error::BadValue { name, wanted }.into());
+        }
         frame::render(self, mesh, progress)
     }
 

@@ -57,7 +57,12 @@ impl Attachments {
         }
         let tested = state.depth.as_ref().map(|depth| &depth.resource);
         let tested = tested.or(state.stencil.as_ref().map(|stencil| &stencil.resource));
-        let depth_stencil = tested.and_then(|name| DepthStencil::of(renderer, name, clears));
+        let only_read = state.stencil.is_none() && state.depth.as_ref().is_some_and(|depth| !depth.write);
+        let mut depth_stencil = tested.and_then(|name| DepthStencil::of(renderer, name, clears));
+        if let Some(attached) = depth_stencil.as_mut().filter(|attached| only_read && attached.is_loaded()) {
+            // Without operations an attachment is read alone: the caller's own texture may be read elsewhere meanwhile.
+            (attached.depth, attached.stencil) = (None, None);
+        }
         if colors.is_empty() && depth_stencil.is_none() {
             // WebGPU refuses a pass without attachments.
             let ops =
@@ -90,6 +95,11 @@ impl Attachments {
 }
 
 impl DepthStencil {
+    /// Whether it begins with what it holds.
+    fn is_loaded(&self) -> bool {
+        self.depth.is_none_or(|depth| matches!(depth.load, wgpu::LoadOp::Load))
+    }
+
     fn of(renderer: &Renderer, name: &str, clears: &mut Clears) -> Option<Self> {
         let (number, texture) = texture(renderer, name)?;
         let (format, clear) = (texture.format(), clears.remove(&number));

@@ -18,6 +18,7 @@ mod action;
 mod attachments;
 mod blocking;
 mod blocks;
+mod brought;
 mod buckets;
 mod error;
 mod fixed_function;

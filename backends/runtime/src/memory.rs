@@ -1,5 +1,5 @@
 //! The memory of a frame: a buffer or a texture per resource, all of them or none. Buffers have as many bytes as the plan's
-//! formula says; textures are as large as the frame, whatever its slices.
+//! formula says; textures are as large as the frame, whatever its slices. Textures that the caller brings are held, not made.
 
 use fragbuf_codegen::{Plan, Planned};
 use fragbuf_frame::{Symbols, bytes};
@@ -10,11 +10,13 @@ use crate::scope::scoped;
 use crate::texture::{create_texture, texture_bytes};
 
 /// The buffers and textures of a plan's resources at one size.
+#[derive(Clone)]
 pub(crate) struct Memory {
     /// One per resource.
     held: Vec<Held>,
 }
 
+#[derive(Clone)]
 struct Held {
     memory: Kind,
     /// 0: the buffer only stands in for an empty resource, because nothing empty can be bound.
@@ -25,6 +27,8 @@ struct Held {
 enum Kind {
     Buffer(wgpu::Buffer),
     Texture(wgpu::Texture),
+    /// What is bound in the place of a texture that the caller has not brought yet.
+    Missing(wgpu::Texture),
 }
 
 /// Bytes of a buffer that stands in for an empty resource.
@@ -51,7 +55,7 @@ impl Memory {
     pub(crate) fn buffer(&self, index: usize) -> Option<&wgpu::Buffer> {
         match &self.held.get(index)?.memory {
             Kind::Buffer(buffer) => Some(buffer),
-            Kind::Texture(_) => None,
+            Kind::Texture(_) | Kind::Missing(_) => None,
         }
     }
 
@@ -61,20 +65,40 @@ impl Memory {
         self.buffer(index)
     }
 
-    /// The texture of a resource that is one.
+    /// The texture of a resource that is one, once the caller has brought it if that is the caller's to do.
     pub(crate) fn texture(&self, index: usize) -> Option<&wgpu::Texture> {
         match &self.held.get(index)?.memory {
             Kind::Texture(texture) => Some(texture),
+            Kind::Buffer(_) | Kind::Missing(_) => None,
+        }
+    }
+
+    /// What to bind for a resource that is a texture.
+    pub(crate) fn bound_texture(&self, index: usize) -> Option<&wgpu::Texture> {
+        match &self.held.get(index)?.memory {
+            Kind::Texture(texture) | Kind::Missing(texture) => Some(texture),
             Kind::Buffer(_) => None,
         }
     }
 
+    /// Takes a texture of the caller's, which fits.
+    pub(crate) fn bring(&mut self, index: usize, texture: &wgpu::Texture) {
+        if let Some(held) = self.held.get_mut(index) {
+            held.memory = Kind::Texture(texture.clone());
+        }
+    }
+
+    /// The number of a resource that the caller has not brought yet.
+    pub(crate) fn missing(&self) -> Option<usize> {
+        self.held.iter().position(|held| matches!(held.memory, Kind::Missing(_)))
+    }
+
     /// Bytes of all buffers as they are, those apart that stand in for empty resources, and of all textures as the plan
-    /// counts them.
+    /// counts them, but for what the caller brings.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = |held: &Held| match &held.memory {
             Kind::Buffer(buffer) => buffer.size(),
-            Kind::Texture(_) => held.size,
+            Kind::Texture(_) | Kind::Missing(_) => held.size,
         };
         self.held.iter().filter(|held| held.size > 0).map(bytes).sum()
     }
@@ -89,11 +113,16 @@ async fn hold(
 ) -> Result<Held, Error> {
     let what = format!("`{}`", planned.resource.name);
     if let Element::Texture(format) = planned.resource.element {
-        let size = texture_bytes(plan, planned, symbols)?;
+        let brought = planned.is_brought();
+        let size = if brought { 0 } else { texture_bytes(plan, planned, symbols)? };
         let frame = (symbols.width, symbols.height);
         let same = |texture: &wgpu::Texture| (texture.width(), texture.height()) == frame;
         let memory = match old.map(|old| &old.memory) {
             Some(Kind::Texture(texture)) if same(texture) => Kind::Texture(texture.clone()),
+            _ if brought => {
+                let make = || create_texture(device, plan, planned, format, (1, 1));
+                Kind::Missing(scoped(device, &what, size, make).await??)
+            }
             _ => {
                 let make = || create_texture(device, plan, planned, format, frame);
                 Kind::Texture(scoped(device, &what, size, make).await??)

@@ -7,6 +7,7 @@ use fragbuf_codegen::Plan;
 use fragbuf_frame::{COUNTERS_RESOURCE, Counting, Symbols, reserve, resource as index, set, symbols, zeros};
 
 use crate::blocks::{Blocks, IDENTITY};
+use crate::brought::{accept, missing};
 use crate::fixed_function::multisample;
 use crate::pipeline::no_target;
 use crate::pipelines::Made;
@@ -83,11 +84,14 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins:
+    /// Starts a frame; one that was not finished is over. Fails where a texture is missing that the caller brings. Submit what was recorded of a frame before the next begins:
     /// uniform buffers are written ahead of the next submission.
     pub fn begin(&mut self) -> Result<Frame, Error> {
         if is_lost(&self.device) {
             return Err(Error::Lost);
+        }
+        if let Some(number) = self.sized.memory.missing() {
+            return Err(missing(self.plan().resources.get(number).map_or("", |planned| &planned.resource.name)));
         }
         self.write_frame()?;
         self.frame_id += 1;
@@ -168,6 +172,24 @@ impl Renderer {
     pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
         set(&mut self.uniforms, &self.pipelines.0.plan.variant.uniforms, name, value)?;
         self.write_uniforms();
+        Ok(())
+    }
+
+    /// Brings a texture that the plan has and does not make (`init: host` in the manifest), filled: of the plan's format and of
+    /// the whole frame's size, whatever its slices, with the usages that the plan's passes need. It is only read, from the next
+    /// frame on, until another takes its place or the frame gets another size.
+    pub async fn set_texture(&mut self, name: &str, texture: &wgpu::Texture) -> Result<(), Error> {
+        let number = accept(self.plan(), &self.sized.symbols, name, texture)?;
+        let mut memory = self.sized.memory.clone();
+        memory.bring(number, texture);
+        let fixed = self.fixed();
+        let what = format!("the bind groups with `{name}`");
+        let bound = scoped(&self.device, &what, 0, || self.sized.bound(&fixed, &memory)).await?;
+        for (round, groups) in self.sized.slices.iter_mut().flatten().zip(bound.into_iter().flatten()) {
+            round.groups = groups;
+        }
+        self.sized.memory = memory;
+        self.frame_id += 1;
         Ok(())
     }
 
@@ -257,7 +279,7 @@ impl Renderer {
     /// Records the readback of a resource, all its words: of a buffer those of the last slice; of a texture row after row,
     /// where only the last slice has left anything.
     /// `None`: the plan does not have it, it is empty, or it is a texture that cannot be copied, because it has several
-    /// samples or a stencil.
+    /// samples or a stencil, or was brought by the caller without the usage `COPY_SRC`.
     pub fn words(&self, resource: &str, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<u32>>> {
         if let Some(texture) = self.texture(resource) {
             return read_texture(&self.device, encoder, texture);
@@ -266,7 +288,7 @@ impl Renderer {
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), |words| words))
     }
 
-    /// The texture of a resource. `None`: the plan does not have it, or it is a buffer.
+    /// The texture of a resource. `None`: the plan does not have it, it is a buffer, or the caller has not brought it.
     pub fn texture(&self, resource: &str) -> Option<&wgpu::Texture> {
         self.sized.memory.texture(index(self.plan(), resource).ok()?)
     }
@@ -296,16 +318,13 @@ impl Renderer {
     }
 
     async fn replace(&mut self, symbols: Symbols) -> Result<(), Error> {
-        let fixed = Fixed {
-            device: &self.device,
-            queue: &self.queue,
-            made: self.made(),
-            blocks: &self.blocks,
-            timed: self.timed,
-        };
-        self.sized = Sized::new(&fixed, symbols, Some(&self.sized)).await?;
+        self.sized = Sized::new(&self.fixed(), symbols, Some(&self.sized)).await?;
         self.frame_id += 1;
         Ok(())
+    }
+
+    fn fixed(&self) -> Fixed<'_> {
+        Fixed { device: &self.device, queue: &self.queue, made: self.made(), blocks: &self.blocks, timed: self.timed }
     }
 
     /// Writes the uniform buffers of the slices, ahead of the next submission.

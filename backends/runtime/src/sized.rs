@@ -65,13 +65,12 @@ pub(crate) enum Timed {
 impl Sized {
     /// For `symbols`, whose slices have their height already. What has the right size is taken over from `old`.
     pub(crate) async fn new(fixed: &Fixed<'_>, symbols: Symbols, old: Option<&Sized>) -> Result<Self, Error> {
-        let Fixed { device, queue, made, blocks, timed } = fixed;
+        let Fixed { device, queue, made, timed, .. } = fixed;
         check_size(device, &symbols)?;
         let memory = Memory::allocate(device, &made.plan, &symbols, old.map(|old| &old.memory)).await?;
         let round = || {
             let frame = block(device, "fragbuf frame", made.plan.frame.len());
-            let group = |prepared| bind_group(device, prepared, &frame, blocks, &memory);
-            Round { groups: made.passes.iter().map(group).collect(), frame }
+            Round { groups: bind_groups(fixed, &frame, &memory), frame }
         };
         let rounds = made.actions.rounds;
         let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
@@ -101,6 +100,17 @@ impl Sized {
         let samples = sample_count(plan, pass).ok()?;
         self.dummies.iter().find(|dummy| dummy.samples == samples).map(|dummy| dummy.view.clone())
     }
+
+    /// The bind groups once more, by slice and round, for other memory.
+    pub(crate) fn bound(&self, fixed: &Fixed<'_>, memory: &Memory) -> Vec<Vec<Vec<wgpu::BindGroup>>> {
+        let rounds = self.slices.iter().map(|rounds| rounds.iter());
+        rounds.map(|rounds| rounds.map(|round| bind_groups(fixed, &round.frame, memory)).collect()).collect()
+    }
+}
+
+fn bind_groups(fixed: &Fixed<'_>, frame: &wgpu::Buffer, memory: &Memory) -> Vec<wgpu::BindGroup> {
+    let group = |prepared| bind_group(fixed.device, prepared, frame, fixed.blocks, memory);
+    fixed.made.passes.iter().map(group).collect()
 }
 
 /// Room for the counters of every slice.
@@ -179,7 +189,7 @@ fn bind_group(
     memory: &Memory,
 ) -> wgpu::BindGroup {
     let view = |slot: &Slot| match *slot {
-        Slot::Texture { index, .. } => memory.texture(index).map(sampled_view),
+        Slot::Texture { index, .. } => memory.bound_texture(index).map(sampled_view),
         _ => None,
     };
     let views: Vec<Option<wgpu::TextureView>> = prepared.slots.iter().map(view).collect();

@@ -57,7 +57,7 @@ pub(crate) fn at_most(plan: &Plan, formula: &Formula, round: Option<u32>, what: 
 }
 
 /// Samples of a pixel of a texture.
-fn samples(plan: &Plan, resource: &Resource) -> Result<u32, Error> {
+pub(crate) fn samples(plan: &Plan, resource: &Resource) -> Result<u32, Error> {
     let extent = resource.extents.iter().find(|extent| extent.name == SAMPLE);
     extent.map_or(Ok(1), |extent| at_most(plan, &extent.length, None, &format!("the samples of `{}`", resource.name)))
 }
@@ -121,7 +121,8 @@ pub(crate) fn read_texture(
     encoder: &mut wgpu::CommandEncoder,
     texture: &wgpu::Texture,
 ) -> Option<Pending<Vec<u32>>> {
-    let texel = texture.format().block_copy_size(None).filter(|_| texture.sample_count() == 1)?;
+    let copies = texture.sample_count() == 1 && texture.usage().contains(wgpu::TextureUsages::COPY_SRC);
+    let texel = texture.format().block_copy_size(None).filter(|_| copies)?;
     let row = (texture.width() * texel) as usize;
     let padded = (texture.width() * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {

@@ -28,6 +28,7 @@ mod losses;
 mod multisample;
 mod occupancy;
 mod opaque;
+mod opaque_depth;
 mod overflow;
 mod rasterisation;
 mod sizing;

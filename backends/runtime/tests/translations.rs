@@ -14,7 +14,7 @@ use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
 use crate::stage::{device, renderer, see, settings, shaders, technique};
 
 /// The files of the target `glsl-vulkan`, compiled.
-fn glsl_shaders(variant: &Variant) -> Shaders {
+pub fn glsl_shaders(variant: &Variant) -> Shaders {
     let targets = [target("glsl-vulkan").unwrap()];
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
     let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));

@@ -1,6 +1,6 @@
 //! What rows of other axes change in a storage's steps.
 
-use fragbuf_templates::vocabulary::{Classes, Edit, Kind, Pass, Repeat, Resource, Step};
+use fragbuf_templates::vocabulary::{Access, Classes, DepthState, Edit, Kind, Pass, Repeat, Resource, Step, Use};
 
 /// Applies one edit. `Err`: it names an anchor that the steps do not have, or a constant that there is not.
 pub(super) fn apply(
@@ -14,6 +14,7 @@ pub(super) fn apply(
         Edit::After(anchor, new) => insert(steps, anchor, new, 1),
         Edit::Around(from, to, repeat) => around(steps, from, to, repeat),
         Edit::SetState(anchor, state) => change(steps, anchor, &|pass| pass.state = state.clone()),
+        Edit::TestDepth(test) => test_depth(steps, test),
         Edit::SetSkeleton(anchor, skeleton) => change(steps, anchor, &|pass| pass.skeleton.clone_from(skeleton)),
         Edit::FormOfSkeleton(anchor, form) => {
             change(steps, anchor, &|pass| pass.skeleton = format!("{}_{form}", pass.skeleton))
@@ -94,6 +95,23 @@ fn change(steps: &mut [Step], anchor: &str, how: &dyn Fn(&mut Pass)) -> Result<(
         }
     });
     if found { Ok(()) } else { Err(unknown(anchor)) }
+}
+
+/// The depth test of every geometry pass, of which none may have one.
+fn test_depth(steps: &mut [Step], test: &DepthState) -> Result<(), String> {
+    let mut taken = None;
+    for_each_pass(steps, &mut |pass| match &pass.state {
+        _ if pass.kind != Kind::Geometry => {}
+        state if state.depth.is_some() || state.stencil.is_some() => taken = Some(pass.anchor.clone()),
+        _ => {
+            pass.state.depth = Some(test.clone());
+            pass.uses.push(Use::new(&test.resource, Access::Attachment));
+        }
+    });
+    match taken {
+        Some(anchor) => Err(format!("an edit tests depth in the pass `{anchor}`, which has a test of its own")),
+        None => Ok(()),
+    }
 }
 
 fn in_some_loop(

@@ -56,9 +56,10 @@ impl Plan {
 
 /// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
 /// node, and f/4 per word of a page of four. Sizes that grow with neither, or with a fraction of the pixels, are left to the
-/// list of resources.
+/// list of resources, and so is what the caller brings.
 pub(super) fn words_per_pixel(resources: &[Planned], bound: &Bound) -> Polynomial {
-    let total = resources.iter().fold(Polynomial::default(), |total, planned| {
+    let own = resources.iter().filter(|planned| !planned.is_brought());
+    let total = own.fold(Polynomial::default(), |total, planned| {
         let words = planned.words.read().map(|words| words.polynomial(&|symbol| bound.value(symbol)));
         words.map_or_else(|_| total.clone(), |words| total.plus(&words, 1))
     });

@@ -8,6 +8,7 @@ use fragbuf::Registry;
 use fragbuf_cpu::{Code, Device, Error, Mesh, Order, Settings};
 use fragbuf_frame::{POOL_EXHAUSTED, Room, Sizing};
 
+use super::opaque::{Opaque, brought, depths};
 use super::{Figures, Painted, Task};
 use crate::cli::attributes::geometry;
 use crate::cli::device::CPU;
@@ -21,13 +22,15 @@ pub(super) fn paint(
     (input, registry): (&Input, &Registry),
     (frames, room): (&mut u32, &mut Option<u32>),
 ) -> Result<Painted, Failure> {
-    let Task { wish, view, stage, progress, variant } = task;
+    let Task { wish, view, stage, progress, variant, opaque } = task;
     progress.stage(format!("{}: compiling", wish.description));
     let code = Code::of(variant, registry).map_err(|error| match error {
         Error::Diagnostics(faults) => input.failure(faults),
         other => other.into(),
     })?;
     let code = Arc::new(code);
+    let brought = brought(&code.plan, *opaque)?;
+    let backdrop = opaque.map(|opaque| backdrop(task, opaque, order, registry)).transpose()?;
     let geometry = geometry(&stage.scene, &code.plan)?;
     let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
     let uniforms = uniforms::values(wish.uniforms, variant)?;
@@ -38,6 +41,9 @@ pub(super) fn paint(
         let mut device = Device::new(code.clone(), settings)?;
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
+        }
+        for (name, backdrop) in brought.iter().zip(backdrop.iter().cycle()) {
+            device.set_texture(name, &backdrop.depths)?;
         }
         device.set_objects(&geometry.objects);
         device.set_camera(&stage.camera.view_projection);
@@ -66,7 +72,32 @@ pub(super) fn paint(
             loops: picture.loops,
         };
         let backend = "interpreter".to_owned();
-        let plan = code.plan.clone();
-        return Ok(Painted { drawn, device: CPU.to_owned(), backend, target: "wgsl-native", plan, frames: *frames });
+        let (plan, behind) = (code.plan.clone(), backdrop.map(|backdrop| backdrop.pixels));
+        let (device, target) = (CPU.to_owned(), "wgsl-native");
+        return Ok(Painted { drawn, behind, device, backend, target, plan, frames: *frames });
     }
+}
+
+/// What is opaque, drawn.
+struct Backdrop {
+    pixels: Vec<[f32; 4]>,
+    /// Row after row.
+    depths: Vec<f32>,
+}
+
+fn backdrop(task: &Task<'_>, opaque: &Opaque<'_>, order: Order, registry: &Registry) -> Result<Backdrop, Failure> {
+    task.progress.stage("drawing what is opaque".to_owned());
+    let code = Code::of(&opaque.variant, registry).map_err(|error| match error {
+        Error::Diagnostics(faults) => opaque.input.failure(faults),
+        other => other.into(),
+    })?;
+    let code = Arc::new(code);
+    let geometry = geometry(&opaque.stage.scene, &code.plan)?;
+    let (width, height) = task.view.size;
+    let mut device = Device::new(code.clone(), Settings { width, height, sizing: Sizing::Auto, order })?;
+    device.set_camera(&opaque.stage.camera.view_projection);
+    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
+    let pixels = device.render(&mesh, &|_| {})?.pixels;
+    let words = device.words(&depths(&code.plan)?).unwrap_or_default();
+    Ok(Backdrop { pixels, depths: words.into_iter().map(f32::from_bits).collect() })
 }

@@ -9,6 +9,7 @@ use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, block_on};
 
+use super::opaque::{Opaque, brought, depths};
 use super::{Figures, Painted, Task};
 use crate::cli::attributes::{Geometry, geometry};
 use crate::cli::input::Input;
@@ -22,7 +23,9 @@ pub(super) fn paint(
     (input, registry): (&Input, &Registry),
     progress: (&mut u32, &mut Option<u32>),
 ) -> Result<Painted, Failure> {
-    Painter::new(task, choice, input, registry)?.paint(task, progress)
+    let painter = Painter::new(task, choice, input, registry)?;
+    let backdrop = task.opaque.map(|opaque| painter.backdrop(task, opaque, registry)).transpose()?;
+    painter.paint(task, backdrop, progress)
 }
 
 /// A device, and the shaders for it.
@@ -66,8 +69,14 @@ impl Painter {
     }
 
     /// Draws the picture until nothing is lost for want of room, in slices as high as the device has memory for.
-    fn paint(self, task: &Task<'_>, (frames, room): (&mut u32, &mut Option<u32>)) -> Result<Painted, Failure> {
-        let Task { wish, view, stage, progress, variant } = task;
+    fn paint(
+        self,
+        task: &Task<'_>,
+        backdrop: Option<Backdrop>,
+        (frames, room): (&mut u32, &mut Option<u32>),
+    ) -> Result<Painted, Failure> {
+        let Task { wish, view, stage, progress, variant, opaque } = task;
+        let brought = brought(&self.shaders.plan, *opaque)?;
         let (width, height) = view.size;
         let Headless { device, queue, .. } = &self.headless;
         progress.stage(format!("{}: making pipelines", wish.description));
@@ -95,6 +104,9 @@ impl Painter {
             for (name, value) in &uniforms {
                 renderer.set_uniform(name, *value)?;
             }
+            for (name, backdrop) in brought.iter().zip(backdrop.iter().cycle()) {
+                block_on(device, renderer.set_texture(name, &backdrop.depths))??;
+            }
             *frames += 1;
             progress.stage(format!("{}: frame {frames}, slices: {}", wish.description, renderer.slices()));
             rows = height.div_ceil(renderer.slices());
@@ -111,12 +123,35 @@ impl Painter {
         };
         Ok(Painted {
             drawn,
+            behind: backdrop.map(|backdrop| backdrop.pixels),
             device: self.headless.info.name.clone(),
             backend: self.headless.info.backend.to_string(),
             target: self.target.name,
             plan: self.shaders.plan,
             frames: *frames,
         })
+    }
+
+    /// Draws what is opaque, on the same device.
+    fn backdrop(&self, task: &Task<'_>, opaque: &Opaque<'_>, registry: &Registry) -> Result<Backdrop, Failure> {
+        task.progress.stage("drawing what is opaque".to_owned());
+        let Headless { device, queue, .. } = &self.headless;
+        let (width, height) = task.view.size;
+        let request = Request { targets: &[&TARGETS[0]], form: Form::Program, prefix: "", group: 0 };
+        let generation =
+            generate(&opaque.variant, &request, registry).map_err(|faults| opaque.input.failure(faults))?;
+        let shaders = Shaders::from_generation(&generation, TARGETS[0].name, 0)?;
+        let mesh = Mesh::upload(device, queue, &geometry(&opaque.stage.scene, &shaders.plan)?)?;
+        let settings = Settings::new(BLENDED, width, height);
+        let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
+        match self.frame(&mut renderer, opaque.stage, &mesh, task.view.size)? {
+            Drawn::Whole(Figures { pixels, .. }) => {
+                let depths = renderer.texture(&depths(&shaders.plan)?).cloned();
+                let depths = depths.ok_or_else(|| Failure::Device("the opaque surfaces leave no depths".to_owned()))?;
+                Ok(Backdrop { pixels, depths })
+            }
+            Drawn::Short(_) => Err(Failure::Device("there is no room for the opaque surfaces".to_owned())),
+        }
     }
 
     /// Draws one frame.
@@ -162,6 +197,12 @@ impl Painter {
             loops: Vec::new(),
         }))
     }
+}
+
+/// What is opaque, drawn.
+struct Backdrop {
+    pixels: Vec<[f32; 4]>,
+    depths: wgpu::Texture,
 }
 
 /// What one frame came to.

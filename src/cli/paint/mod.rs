@@ -6,11 +6,13 @@
 mod cpu;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod opaque;
 
 use fragbuf::{Plan, Registry, Variant};
 use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PassTime};
 use fragbuf_scene::Scene;
 
+use self::opaque::{Opaque, put_before, turned_away};
 use super::device::Picked;
 use super::input::Input;
 use super::output::{Failure, warn};
@@ -30,11 +32,15 @@ pub(crate) struct Wish<'a> {
     pub(crate) uniforms: &'a [(String, String)],
     /// Whether everything is counted unless the description says otherwise.
     pub(crate) count_all: bool,
+    /// What is opaque, and drawn first.
+    pub(crate) opaque: Option<&'a Stage>,
 }
 
 /// What came of it.
 pub(crate) struct Painted {
     pub(crate) drawn: Figures,
+    /// The picture of what is opaque, behind all of it.
+    behind: Option<Vec<[f32; 4]>>,
     /// What drew it, and through what.
     pub(crate) device: String,
     pub(crate) backend: String,
@@ -52,6 +58,7 @@ struct Task<'a> {
     stage: &'a Stage,
     progress: &'a Progress,
     variant: &'a Variant,
+    opaque: Option<&'a Opaque<'a>>,
 }
 
 /// Draws the scene.
@@ -59,10 +66,12 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     let registry = Registry::builtin();
     let picked = view.picked()?;
     let mut input = Input::read(wish.description, &registry)?;
+    let opaque = wish.opaque.map(|stage| Opaque::new(stage, &registry)).transpose()?;
     let rounded = stage.exact && !in_255ths(&stage.scene);
     let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
     let mut unless_said: Vec<(&str, &str)> =
         unless_said.into_iter().filter(|(wanted, _)| *wanted).map(|(_, set)| set).collect();
+    unless_said.extend(opaque.as_ref().and_then(|_| turned_away(&registry)));
     // A storage whose slots hold no more than the papers' payload rounds as the papers do.
     if rounded && input.variant_or(wish.set, &unless_said, &registry).is_err() {
         unless_said.retain(|set| *set != UNROUNDED);
@@ -72,8 +81,8 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     loop {
         let variant = input.variant_or(&set, &unless_said, &registry)?;
         let said = *said.get_or_insert_with(|| says_layers(&variant));
-        let task = Task { wish, view, stage, progress, variant: &variant };
-        let painted = match &picked {
+        let task = Task { wish, view, stage, progress, variant: &variant, opaque: opaque.as_ref() };
+        let mut painted = match &picked {
             Picked::Cpu(order) => cpu::paint(&task, *order, (&input, &registry), (&mut frames, &mut room))?,
             #[cfg(feature = "gpu")]
             Picked::Gpu(choice) => gpu::paint(&task, choice, (&input, &registry), (&mut frames, &mut room))?,
@@ -82,6 +91,9 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
             Some((option, layers)) => set.push((option, layers.to_string())),
             None => {
                 painted.warn(wish.description);
+                if let Some(behind) = painted.behind.take() {
+                    put_before(&mut painted.drawn.pixels, &behind);
+                }
                 return Ok(painted);
             }
         }

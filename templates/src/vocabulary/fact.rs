@@ -38,6 +38,8 @@ facts! {
     OwnAtomics "a storage that keeps writers apart by its own atomic operations";
     SurvivesRaces "a storage whose behaviour stays defined when writers race";
     FixedFunction "a storage that leaves writers to depth test, stencil or blending";
+    LeftToShaders "that shaders keep writers of one pixel apart, so that their depth test is free";
+    CullInShader "a cull that leaves the depth test free";
     LeftToTests "that writers of one pixel are left to depth test, stencil or blending";
     // What a storage can be asked.
     KeepsAll "a storage that keeps every fragment";

@@ -4,25 +4,26 @@
 //! never to compare a key in code.
 
 mod classes;
+mod edit;
 mod effect;
 mod fact;
 mod formula;
 mod pass;
 mod resource;
 mod row;
+mod state;
 mod technique;
 
 /// A text that a row includes, or that a user's file gave.
 pub type Text = std::borrow::Cow<'static, str>;
 
 pub use classes::Classes;
+pub use edit::Edit;
 pub use effect::Effect;
 pub use fact::Fact;
 pub use formula::{Expression, Formula, FormulaError, Polynomial};
-pub use pass::{
-    Access, Blend, Compare, Coverage, DepthState, Edit, Host, Instance, Kind, Loads, Memory, Objects, Pass, Repeat,
-    Role, Samples, State, StencilOperation, StencilState, Step, Target, Until, Use,
-};
+pub use pass::{Access, Host, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Role, Step, Until, Use};
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
 pub use row::{Axis, Carried, Definition, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
+pub use state::{Blend, Compare, Coverage, DepthState, Samples, State, StencilOperation, StencilState, Target};
 pub use technique::{KeepDefault, Technique};

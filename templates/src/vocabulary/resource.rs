@@ -86,7 +86,7 @@ pub enum Init {
     Clear(u32),
     /// Whatever it held: a pass of the plan writes before any reads.
     Keep,
-    /// The host writes it.
+    /// The host writes it. A texture is the host's own: it is brought as it is, and is no memory of the plan's.
     Host,
 }
 
