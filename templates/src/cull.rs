@@ -7,7 +7,11 @@ use crate::vocabulary::{
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        Row { template: Some(template!("cull/none")), ..Row::new("cull", "none", "no fragment is turned away", "") },
+        Row {
+            template: Some(template!("cull/none")),
+            offers: vec![Fact::CullsNothing],
+            ..Row::new("cull", "none", "no fragment is turned away", "")
+        },
         Row {
             template: Some(template!("cull/early")),
             calls: vec!["storage"],
