@@ -3,9 +3,9 @@
 // follow the order of arrival, and frames may differ where arrival is a race. The tail's transmittance is a
 // product and does not depend on the order, but for the rounding of floats.
 //
-// The tail is read, changed and written, so it may be touched inside the critical section alone, or by the one
-// invocation that resolves a pixel. That is where fragments are displaced. What is lost elsewhere (a lock that was
-// not free in time, no room in a pool) is counted and not blended; nothing is turned away earlier.
+// The tail is read, changed and written, so it may be touched inside the critical section alone: that is where a
+// storage displaces fragments. What is lost elsewhere (a lock that was not free in time, no room in a pool) is
+// counted and not blended; nothing is turned away earlier.
 //
 // Memory: 4 words per pixel, a premultiplied colour of floats.
 

@@ -54,7 +54,7 @@ fn tail_blend() -> Row {
         requires: vec![
             Fact::Color,
             Fact::LosesWhole,
-            Fact::OneResolve,
+            Fact::DisplacesInTurn,
             Fact::Critical,
             Fact::CullsNothing,
             Fact::FragmentAtomics,
@@ -117,6 +117,7 @@ fn merging(slots: Fact, row: Row) -> Row {
             Fact::Color,
             Fact::DepthKey,
             Fact::LosesWhole,
+            Fact::DisplacesInTurn,
             slots,
             Fact::Critical,
             Fact::CullsNothing,

@@ -57,6 +57,7 @@ fn sorted_array() -> Row {
             Fact::KeepsBest,
             Fact::BestSuffice,
             Fact::BoundAnyInstant,
+            Fact::DisplacesInTurn,
             Fact::CanReplace,
             Fact::Indexed,
             Fact::SurvivesRaces,

@@ -16,8 +16,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/sorted_array",
-        "entries_store(slot, pixel, carried); keys_store(slot, pixel, carried.key);",
-        "keys_store(slot, pixel, carried.key); entries_store(slot, pixel, carried);",
+        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
+        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
         "inside the lock nobody reads between the two, and outside it the cull reads keys alone",
     ),
     (

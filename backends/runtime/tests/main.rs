@@ -25,6 +25,7 @@ mod failures;
 mod invariance;
 mod larger;
 mod losses;
+mod merging;
 mod occupancy;
 mod opaque;
 mod overflow;
