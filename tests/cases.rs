@@ -107,6 +107,13 @@ pub fn named() -> Vec<Case> {
             vec![("ties", "attribute"), ("ties.by", "id"), ("k", "3"), ("storage", "max_heap")],
         ),
         ("weighted_tail", technique("kb_ab_ll"), vec![("overflow", "weighted_tail"), ("k", "4")]),
+        ("tail_blend", technique("kb_ps"), vec![("overflow", "tail_blend"), ("cull", "none")]),
+        ("merge_last", technique("kplus_array"), vec![("overflow", "merge_last"), ("cull", "none"), ("k", "4")]),
+        (
+            "merge_closest",
+            technique("kb_ps"),
+            vec![("overflow", "merge_closest"), ("cull", "none"), ("fragment.color", "rgba16")],
+        ),
         ("fail", technique("ab_array"), vec![("overflow", "fail")]),
         ("lplus", technique("ab_ll"), vec![("sort", "lplus"), ("resolve.opaque", "4")]),
         ("backwards_memory", technique("ab_ll"), vec![("sort", "backwards_memory"), ("sort.layers", "24")]),

@@ -12,3 +12,4 @@ const OUT_OF_ORDER = 8u;
 const PAGES_LEAKED = 9u;
 const UNSETTLED = 10u;
 const SAMPLES_EXHAUSTED = 11u;
+const PARTLY_COVERED = 12u;

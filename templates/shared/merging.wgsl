@@ -1,6 +1,7 @@
 // Two fragments as one.
 
-/// `near` with the colour of both, the nearer over the farther (Porter & Duff 1984), as straight alpha. Its other words stay.
+/// `near` with the colour of both, the nearer over the farther (Porter & Duff 1984), as straight alpha. Its other words
+/// stay.
 fn merge_over(near: Packed, far: Packed) -> Packed {
     let front = fragment_unpack(near).color;
     let back = fragment_unpack(far).color;

@@ -4,7 +4,7 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 12] = [
+pub const COUNTERS: [(&str, bool, &str); 13] = [
     ("generated", false, "fragments that reached a geometry pass's last stage and met the constraints"),
     ("culled", false, "fragments turned away by the cull"),
     ("displaced", true, "fragments rejected or replaced because better ones were there"),
@@ -25,6 +25,12 @@ pub const COUNTERS: [(&str, bool, &str); 12] = [
         "fragments that still changed something in the last round of a loop: entries may be lost or double",
     ),
     ("samples_exhausted", true, "fragments that came when every sample of their pixel had one"),
+    (
+        "partly_covered",
+        false,
+        "fragments of routing that cover some samples of their pixel: it may lose fragments there or store them twice; \
+         counted as losses are",
+    ),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

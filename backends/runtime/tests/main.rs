@@ -30,6 +30,7 @@ mod occupancy;
 mod opaque;
 mod overflow;
 mod rasterisation;
+mod routing;
 mod sizing;
 mod sloped;
 mod sorts;

@@ -10,7 +10,7 @@ use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, 
 
 const PIXELS: u64 = (SIZE * SIZE) as u64;
 /// Words of the counters.
-const COUNTERS: u64 = 12;
+const COUNTERS: u64 = 13;
 
 fn open(stage: &Headless, key: &str, set: &[(&str, &str)], sizing: Sizing) -> Result<Renderer, Error> {
     renderer(stage, &shaders(&technique(key, set), "wgsl"), &Settings { sizing, ..settings() })

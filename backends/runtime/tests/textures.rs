@@ -114,7 +114,7 @@ fn textures_are_as_large_as_the_frame() {
     let shaders = shaders(&technique("z_buffer", &[]), "wgsl");
     let small = Settings { width: 3, height: 70, ..settings() };
     let mut renderer = renderer(&stage, &shaders, &small).unwrap();
-    let counters = 4 * 12;
+    let counters = 4 * 13;
     assert_eq!(renderer.allocated_bytes(), 4 * 2 * 3 * 70 + counters);
     assert_eq!(renderer.texture("depths").map(|texture| (texture.width(), texture.height())), Some((3, 70)));
     assert!(renderer.buffer("depths").is_none() && renderer.texture("counters").is_none());

@@ -14,7 +14,7 @@ use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
 use crate::stage::{device, renderer, see, settings, shaders, technique};
 
 /// The files of the target `glsl-vulkan`, compiled.
-fn glsl_shaders(variant: &Variant) -> Shaders {
+pub fn glsl_shaders(variant: &Variant) -> Shaders {
     let targets = [target("glsl-vulkan").unwrap()];
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
     let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
@@ -126,6 +126,15 @@ fn minima_links_ranges_and_slots_without_a_lock() {
 fn targets_and_textures() {
     check(&technique("z_buffer", &[("counters", "all"), ("fragment.color", "rgba16")]), |_| {});
     check(&technique("kb_sr", &[("counters", "all")]), |_| {});
+}
+
+#[test]
+fn what_is_displaced_and_not_dropped() {
+    let set = |row| [("overflow", row), ("k", "2"), ("cull", "none"), ("counters", "all")];
+    for row in ["tail_blend", "merge_last"] {
+        check(&technique("kplus_array", &set(row)), |_| {});
+    }
+    check(&technique("kb", &[&set("merge_closest")[..], &[("sync", "spin_lock")]].concat()), |_| {});
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod cpu;
 mod gpu;
 
 use fragbuf::{Plan, Registry, Variant};
-use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PassTime};
+use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PARTLY_COVERED, PassTime};
 use fragbuf_scene::Scene;
 
 use super::device::Picked;
@@ -161,6 +161,12 @@ impl Painted {
             if counter.name == OUT_OF_ORDER && counter.count > 0 {
                 warn(&format!(
                     "{description}: {} fragments came after farther ones had been composited; draw from front to back, or keep more",
+                    counter.count
+                ));
+            }
+            if counter.name == PARTLY_COVERED && counter.count > 0 {
+                warn(&format!(
+                    "{description}: {} fragments cover their pixel in part; no more pixels than that may show others than the first",
                     counter.count
                 ));
             }
