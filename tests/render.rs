@@ -324,7 +324,7 @@ fn figures_are_json_on_stdout_and_add_up() {
     assert_eq!(stored, kept as u64);
     assert_eq!(figures["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
     // 2k + 2 words per pixel, and the counters.
-    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + 12));
+    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + 13));
     assert!(figures["device"].is_string() && figures["ms"].is_object(), "{figures}");
 }
 
