@@ -315,3 +315,39 @@ fn schedules_change_colours_alone() {
         }
     }
 }
+
+/// Of pairs that are equally close the farther becomes one, in whatever order they come: the front stays to the bit.
+#[test]
+fn of_pairs_equally_close_the_farther_merges() {
+    let stage = stage::device();
+    let color = |alpha| [200, 100, 50, alpha];
+    let quads: Vec<Quad> =
+        [0.25, 0.5, 0.75].into_iter().zip([90, 60, 120]).map(|(d, a)| Quad::whole(d, color(a))).collect();
+    for (storage, variant) in with_row("merge_closest", 2, "rgba8") {
+        let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
+        for quads in orders(&quads) {
+            let kept = see(&stage, &mut renderer, &quads).kept.swap_remove(0);
+            assert_eq!(kept.iter().map(|words| words[0]).collect::<Vec<_>>(), [0.25f32.to_bits(), 0.5f32.to_bits()]);
+            assert_eq!(kept[0][1], u32::from_le_bytes(color(90)), "{storage}");
+            // One colour over itself is that colour: 60 + (1 - 60 / 255) * 120, in 255ths.
+            assert_eq!(kept[1][1], u32::from_le_bytes(color(152)), "{storage}");
+        }
+    }
+}
+
+/// Of two fragments that are not seen no colour can be divided out.
+#[test]
+fn two_that_are_not_seen_are_one_that_is_not() {
+    let stage = stage::device();
+    let quads = [0.5, 0.25, 0.75].map(|depth| Quad::whole(depth, [255, 128, 9, 0]));
+    for row in ROWS {
+        for color in ["rgba8", "vec4"] {
+            for (storage, variant) in with_row(row, 1, color) {
+                for pixel in shown(&stage, &variant, &quads).0 {
+                    let is_background = pixel.iter().zip(BACKGROUND).all(|(a, b)| (f64::from(*a) - b).abs() < 0.001);
+                    assert!(is_background, "{row}, {storage}, {color}: {pixel:?}");
+                }
+            }
+        }
+    }
+}
