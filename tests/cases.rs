@@ -114,6 +114,13 @@ pub fn named() -> Vec<Case> {
             vec![("samples", "coverage"), ("overflow", "weighted_tail"), ("cull", "none")],
         ),
         ("weighted_tail", technique("kb_ab_ll"), vec![("overflow", "weighted_tail"), ("k", "4")]),
+        ("tail_blend", technique("kb_ps"), vec![("overflow", "tail_blend"), ("cull", "none")]),
+        ("merge_last", technique("kplus_array"), vec![("overflow", "merge_last"), ("cull", "none"), ("k", "4")]),
+        (
+            "merge_closest",
+            technique("kb_ps"),
+            vec![("overflow", "merge_closest"), ("cull", "none"), ("fragment.color", "rgba16")],
+        ),
         ("fail", technique("ab_array"), vec![("overflow", "fail")]),
         ("lplus", technique("ab_ll"), vec![("sort", "lplus"), ("resolve.opaque", "4")]),
         ("backwards_memory", technique("ab_ll"), vec![("sort", "backwards_memory"), ("sort.layers", "24")]),

@@ -93,6 +93,33 @@ const CASES: &[(&str, &[Expected])] = &[
         &[("unmet", 3, 13, "`cull: occupancy`")],
     ),
     ("buffer B from ab_ll {\n    opaque: late;\n}", &[("unknown-value", 2, 13, "none, in_shader, early")]),
+    // What the cull turns away cannot be blended or merged.
+    ("buffer B from kplus_array {\n    overflow: tail_blend;\n}", &[("unmet", 2, 15, "`cull: none`")]),
+    ("buffer B from kplus_array {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`cull: none`")]),
+    (
+        "buffer B from kplus_array {\n    overflow: merge_last;\n    cull: occupancy;\n}",
+        &[("unmet", 2, 15, "`cull: none`")],
+    ),
+    // Nor what no critical section keeps apart.
+    ("buffer B from kb {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`sync: spin_lock`")]),
+    (
+        "buffer B from kb_ab_ll {\n    overflow: tail_blend;\n}",
+        &[("unmet", 2, 15, "weighted_tail"), ("unmet", 2, 15, "weighted_tail")],
+    ),
+    // The farthest must be the worst, and the slots in the order of depth.
+    (
+        "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_last;\n    keep 8 least |f| f.color.x;\n}",
+        &[("unmet", 3, 15, "`overflow: tail_blend`")],
+    ),
+    (
+        "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_closest;\n}",
+        &[("unmet", 3, 15, "`storage: sorted_array`")],
+    ),
+    ("buffer B from depth_partition {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`storage: sorted_array`")]),
+    (
+        "buffer B from kplus_array {\n    fragment { depth: f32 }\n    cull: none;\n    overflow: merge_last;\n    resolve |f, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
+        &[("unmet", 4, 15, "`color: rgba8`")],
+    ),
     (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
         &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],

@@ -95,6 +95,15 @@ const BAD: &[Bad] = &[
         "//: storage",
         "fn storage_insert(pixel: u32, entry: Packed)",
     ),
+    // Who says that fragments can be replaced must have the functions that rows of another axis would call.
+    bad(
+        "own-atomics, indexed\n//: requires fragment-atomics\n//: suits sync slot_counter\n\n",
+        "own-atomics, loses-whole, displaces-in-turn, can-replace\n//: requires fragment-atomics\n\
+         //: suits sync slot_counter\n\nfn storage_worst(pixel: u32) -> u32 {\n    return 0u;\n}\n\n",
+        "contract",
+        "//: storage",
+        "fn storage_replace(pixel: u32, cursor: u32, entry: Packed)",
+    ),
     bad(
         "storage_first(pixel: u32) -> u32",
         "storage_first(pixel: u32) -> i32",

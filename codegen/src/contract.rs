@@ -48,6 +48,18 @@ pub const CONTRACTS: &[Contract] = &[
         "(pixel: u32) -> u32",
         "a key that no fragment of the final k best exceeds, at any instant",
     ),
+    row(
+        "storage",
+        "storage_worst",
+        "(pixel: u32) -> u32",
+        "inside the critical section: the cursor of the worst of k kept fragments",
+    ),
+    row(
+        "storage",
+        "storage_replace",
+        "(pixel: u32, cursor: u32, entry: Packed)",
+        "inside the critical section: puts an entry in place of a kept one; the caller keeps keys where they belong",
+    ),
     row("storage", "storage_first", "(pixel: u32) -> u32", "the cursor of a first fragment, or END"),
     row("storage", "storage_next", "(pixel: u32, cursor: u32) -> u32", "the cursor after this one, or END"),
     row("storage", "storage_read", "(pixel: u32, cursor: u32) -> Packed", "the fragment at a cursor"),

@@ -7,7 +7,7 @@
 use fragbuf_model::codes::{CONTRACT, REFUSED, ROW, UNKNOWN_AXIS, UNKNOWN_VALUE};
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, is_target_fact, mangled};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Kind, Pass, Row, State, Step};
+use fragbuf_templates::vocabulary::{Fact, Kind, Pass, Row, State, Step};
 
 use crate::link::{Head, Item, heads, items, shape};
 use crate::{CONTRACTS, Contract};
@@ -230,7 +230,10 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
     for caller in registry.rows().iter().filter(|caller| caller.axis != row.axis) {
         let Some(template) = &caller.template else { continue };
         let is_chosen = registry.axis(&caller.axis).is_some_and(|axis| axis.chosen);
-        let suits = || caller.requires.iter().all(|fact| is_target_fact(*fact) || row.offers.contains(fact));
+        // What no row of the axis offers is the affair of other axes, or of the description.
+        let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| offers(other, *fact));
+        let suits =
+            || caller.requires.iter().all(|fact| offers(row, *fact) || is_target_fact(*fact) || is_others(fact));
         let (name, place) = match is_chosen {
             true if suits() => (format!("`{}: {}`", caller.axis, caller.key), places.row.clone()),
             true => continue,
@@ -248,6 +251,11 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         }
     }
     needed
+}
+
+/// Whether a row offers a fact, in some description at least.
+fn offers(row: &Row, fact: Fact) -> bool {
+    row.offers.contains(&fact) || row.implies.iter().any(|(_, implied)| *implied == fact)
 }
 
 /// The line of the pass with this skeleton; the row's own where the row has no passes and serves everybody's.

@@ -13,3 +13,4 @@ const PAGES_LEAKED = 9u;
 const UNSETTLED = 10u;
 const SAMPLES_EXHAUSTED = 11u;
 const OCCLUDED = 12u;
+const PARTLY_COVERED = 13u;

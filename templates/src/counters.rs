@@ -4,7 +4,7 @@ use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
-pub const COUNTERS: [(&str, bool, &str); 13] = [
+pub const COUNTERS: [(&str, bool, &str); 14] = [
     (
         "generated",
         false,
@@ -30,6 +30,12 @@ pub const COUNTERS: [(&str, bool, &str); 13] = [
     ),
     ("samples_exhausted", true, "fragments that came when every sample of their pixel had one"),
     ("occluded", false, "fragments that met the constraints, and were turned away behind something opaque"),
+    (
+        "partly_covered",
+        false,
+        "fragments of routing that cover some samples of their pixel: it may lose fragments there or store them twice; \
+         counted as losses are",
+    ),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {

@@ -9,7 +9,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("cull/none")),
-            offers: vec![Fact::CullInShader],
+            offers: vec![Fact::CullInShader, Fact::CullsNothing],
             ..Row::new("cull", "none", "no fragment is turned away", "")
         },
         Row {

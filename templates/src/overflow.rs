@@ -1,6 +1,6 @@
 //! Axis `overflow`: what becomes of a fragment that finds no place.
 
-use crate::vocabulary::{Access, Element, Fact, Resource, Row, Template, Use};
+use crate::vocabulary::{Access, Element, Fact, Hazard, Resource, Row, Template, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -26,6 +26,9 @@ pub(crate) fn rows() -> Vec<Row> {
                 template!("overflow/weighted_tail"),
             )
         },
+        tail_blend(),
+        merge_last(),
+        merge_closest(),
         Row {
             resources: vec![
                 Resource::new("failed", Element::Word, "1: a fragment found no room, or a lock was not free")
@@ -41,6 +44,96 @@ pub(crate) fn rows() -> Vec<Row> {
             )
         },
     ]
+}
+
+/// Plain words of a pixel, read and written by turns.
+fn tail_blend() -> Row {
+    let tail = Resource::new("blended", Element::Word, "the premultiplied colour of the fragments not kept, as floats");
+    Row {
+        resources: vec![tail.by("channel", "4").by("pixel", "pixels").cleared(0)],
+        uses: vec![Use::new("blended", Access::Coherent)],
+        requires: vec![
+            Fact::Color,
+            Fact::LosesWhole,
+            Fact::DisplacesInTurn,
+            Fact::Critical,
+            Fact::CullsNothing,
+            Fact::FragmentAtomics,
+        ],
+        calls: vec!["counters", "samples"],
+        hazards: vec![hazard(
+            "shows-arrival",
+            "what is not kept is blended in the order of arrival, as if whatever comes later lay before the rest",
+        )],
+        ..row(
+            "tail_blend",
+            "it is blended behind what is kept, over those that came before it: approximate, by the order of arrival",
+            "Maule et al. 2013; nvpro (vk_order_independent_transparency)",
+            template!("overflow/tail_blend"),
+        )
+    }
+}
+
+fn merge_last() -> Row {
+    Row {
+        hazards: vec![hazard(
+            "merged-farthest",
+            "the colour of the farthest kept fragment is its own over those of fragments that are not kept, in an order \
+             that depends on arrival",
+        )],
+        ..merging(
+            Fact::CanReplace,
+            row(
+                "merge_last",
+                "it becomes one with the farthest that is kept: the pixel's transmittance stays, whatever the order",
+                "Salvi & Vaidyanathan 2014 (MLAB)",
+                template!("overflow/merge_last"),
+            ),
+        )
+    }
+}
+
+fn merge_closest() -> Row {
+    Row {
+        hazards: vec![hazard(
+            "merged-neighbours",
+            "where there are more than k, the two nearest to each other in depth become one, with the depth and the other \
+             attributes of the nearer; which two depends on arrival",
+        )],
+        ..merging(
+            Fact::OrderedSlots,
+            row(
+                "merge_closest",
+                "of it and those that are kept, the two closest in depth become one: the pixel's transmittance stays",
+                "Jouppi & Chang 1999 (Z3)",
+                template!("overflow/merge_closest"),
+            ),
+        )
+    }
+}
+
+/// What rows share that merge colours of kept fragments; `slots` is what they need of the storage.
+fn merging(slots: Fact, row: Row) -> Row {
+    Row {
+        requires: vec![
+            Fact::Color,
+            Fact::DepthKey,
+            Fact::LosesWhole,
+            Fact::DisplacesInTurn,
+            slots,
+            // Two fragments that cover different samples are not one.
+            Fact::OneSample,
+            Fact::Critical,
+            Fact::CullsNothing,
+            Fact::FragmentAtomics,
+        ],
+        calls: vec!["counters", "storage"],
+        ..row
+    }
+}
+
+fn hazard(name: &'static str, what: &'static str) -> Hazard {
+    Hazard { name: name.into(), what: what.into(), unless: None }
 }
 
 fn row(key: &str, summary: &'static str, paper: &'static str, template: Template) -> Row {

@@ -60,6 +60,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["opaque", "counters"],
         ),
         row(
+            "store_routed",
+            "stores the scene's fragments in targets, and counts those that cover their pixel in part",
+            template!("pass/store_routed"),
+            vec!["opaque", "counters"],
+        ),
+        row(
             "resolve",
             "makes one colour of each pixel's fragments",
             template!("pass/resolve"),

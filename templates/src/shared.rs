@@ -2,7 +2,7 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 9] = [
+pub(crate) const TEMPLATES: [Template; 10] = [
     template!("shared/markers"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),
@@ -11,5 +11,6 @@ pub(crate) const TEMPLATES: [Template; 9] = [
     template!("shared/layers"),
     template!("shared/gap_sort"),
     template!("shared/stream"),
+    template!("shared/merging"),
     template!("shared/workgroup_scan"),
 ];

@@ -57,6 +57,7 @@ fn sorted_array() -> Row {
             Fact::KeepsBest,
             Fact::BestSuffice,
             Fact::BoundAnyInstant,
+            Fact::DisplacesInTurn,
             Fact::CanReplace,
             Fact::Indexed,
             Fact::SurvivesRaces,
@@ -64,7 +65,7 @@ fn sorted_array() -> Row {
             Fact::LosesWhole,
         ],
         // Entries are in the order of their keys.
-        implies: vec![(Fact::DepthKey, Fact::Sorted)],
+        implies: vec![(Fact::DepthKey, Fact::Sorted), (Fact::DepthKey, Fact::OrderedSlots)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![

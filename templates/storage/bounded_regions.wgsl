@@ -68,6 +68,15 @@ fn storage_insert(pixel: u32, entry: Packed) {
     }
 }
 
+fn storage_worst(pixel: u32) -> u32 {
+    // Fragments are displaced in crowded pixels alone, and array and heap have the worst at the same slot.
+    return array_worst(pixel);
+}
+
+fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
+    array_replace(pixel, cursor, entry);
+}
+
 fn storage_first(pixel: u32) -> u32 {
     let size = offsets_load(pixel + 1u) - offsets_load(pixel);
     if bounded_regions_is_crowded(pixel) {

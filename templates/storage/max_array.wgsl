@@ -25,15 +25,25 @@ fn storage_insert(pixel: u32, entry: Packed) {
     }
     if filled_before < frame.k {
         filled_store(pixel, frame.k);
-    } else {
-        let worst = max_array_read(pixel, 0u);
-        if !better(entry, worst) {
-            on_lost(pixel, entry, DISPLACED);
-            return;
-        }
-        on_lost(pixel, worst, DISPLACED);
+    }
+    let worst = max_array_read(pixel, 0u);
+    if !better(entry, worst) {
+        on_lost(pixel, entry, DISPLACED);
+        return;
     }
     max_array_replace_worst(pixel, entry);
+    // Whoever is handed what was displaced finds the others in place.
+    if worst.key != EMPTY {
+        on_lost(pixel, worst, DISPLACED);
+    }
+}
+
+fn storage_worst(pixel: u32) -> u32 {
+    return 0u;
+}
+
+fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
+    max_array_write(pixel, cursor, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {

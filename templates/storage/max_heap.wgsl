@@ -30,15 +30,25 @@ fn storage_insert(pixel: u32, entry: Packed) {
         for (var parent = frame.k / 2u; parent > 1u; parent--) {
             max_heap_sift(pixel, parent - 1u, max_heap_read(pixel, parent - 1u));
         }
-    } else {
-        let worst = max_heap_read(pixel, 0u);
-        if !better(entry, worst) {
-            on_lost(pixel, entry, DISPLACED);
-            return;
-        }
-        on_lost(pixel, worst, DISPLACED);
+    }
+    let worst = max_heap_read(pixel, 0u);
+    if !better(entry, worst) {
+        on_lost(pixel, entry, DISPLACED);
+        return;
     }
     max_heap_sift(pixel, 0u, entry);
+    // Whoever is handed what was displaced finds the others in place.
+    if worst.key != EMPTY {
+        on_lost(pixel, worst, DISPLACED);
+    }
+}
+
+fn storage_worst(pixel: u32) -> u32 {
+    return 0u;
+}
+
+fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
+    max_heap_write(pixel, cursor, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {

@@ -51,14 +51,23 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
 
 fn storage_insert(pixel: u32, entry: Packed) {
     let worst = revised_array_read(pixel, 0u);
-    if worst.key != EMPTY {
-        if !better(entry, worst) {
-            on_lost(pixel, entry, DISPLACED);
-            return;
-        }
-        on_lost(pixel, worst, DISPLACED);
+    if !better(entry, worst) {
+        on_lost(pixel, entry, DISPLACED);
+        return;
     }
     revised_array_replace_worst(pixel, entry);
+    // Whoever is handed what was displaced finds the others in place.
+    if worst.key != EMPTY {
+        on_lost(pixel, worst, DISPLACED);
+    }
+}
+
+fn storage_worst(pixel: u32) -> u32 {
+    return 0u;
+}
+
+fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
+    revised_array_write(pixel, cursor, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {

@@ -26,8 +26,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         let resident = sorted_array_read(pixel, slot);
         moving = moving || better(carried, resident);
         if moving {
-            entries_store(slot, pixel, carried);
-            keys_store(slot, pixel, carried.key);
+            sorted_array_write(pixel, slot, carried);
             carried = resident;
         }
         if carried.key == EMPTY {
@@ -35,6 +34,14 @@ fn storage_insert(pixel: u32, entry: Packed) {
         }
     }
     on_lost(pixel, carried, DISPLACED);
+}
+
+fn storage_worst(pixel: u32) -> u32 {
+    return frame.k - 1u;
+}
+
+fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
+    sorted_array_write(pixel, cursor, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {
@@ -51,6 +58,11 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
 
 fn sorted_array_read(pixel: u32, slot: u32) -> Packed {
     return entries_load(slot, pixel, keys_load(slot, pixel));
+}
+
+fn sorted_array_write(pixel: u32, slot: u32, entry: Packed) {
+    entries_store(slot, pixel, entry);
+    keys_store(slot, pixel, entry.key);
 }
 
 /// The first slot from `slot` on that holds a fragment: races can leave holes.

@@ -8,8 +8,10 @@
 // pixel is resolved.
 //
 // All this holds where a fragment covers every sample of its pixel. At the border of an object it covers some: those
-// alone move on, and fragments are lost or stored twice there, which nothing counts. OpenGL can switch coverage by
-// sample off and has no such borders.
+// alone move on, and fragments of that pixel may be lost or stored twice. Each fragment that covers its pixel in part
+// is counted by the store pass: a pixel without one holds the first k, so no more pixels than are counted do not. Two
+// triangles that share an edge through a pixel count there too, although between them they cover it once. OpenGL can
+// switch coverage by sample off and has no such borders.
 //
 // Memory: k * (entry_words + 1) words per pixel, in textures of k samples; k is 2, 4 or 8.
 

@@ -31,6 +31,7 @@ mod case;
 mod explore;
 mod fragments;
 mod frame;
+mod merging;
 mod model;
 mod pausing;
 mod policy;

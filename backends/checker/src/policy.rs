@@ -71,7 +71,9 @@ impl Policy {
             return Finding::Wrong(text);
         }
         let Some(text) = self.fault(kept, counts) else { return Finding::Right };
-        let is_stated = !self.effects.is_empty() && self.is_stated(kept, counts);
+        // That fragments merge is part of the promise, and excuses nothing that is not.
+        let is_excused = !self.effects.is_empty() && self.promise.merging.is_none();
+        let is_stated = is_excused && self.is_stated(kept, counts);
         if is_stated { Finding::Stated(text) } else { Finding::Wrong(text) }
     }
 
@@ -118,7 +120,7 @@ impl Policy {
 
     /// Whether `kept` is what stays of some choice of all fragments but `gone`.
     fn is_kept_by_some(&self, kept: &[Vec<u32>], gone: usize) -> bool {
-        self.choices(gone).any(|left| self.agrees(kept, &self.promise.best_of(left)))
+        self.choices(gone).any(|left| self.agrees(kept, &left))
     }
 
     /// The fragments without `gone` of them, in every way.
@@ -140,8 +142,12 @@ impl Policy {
         turned_away <= missing.filter(|(_, words)| is_beyond(words[0])).count()
     }
 
-    /// The same multiset. Where only the key decides, ties at the edge may fall either way.
-    fn agrees(&self, kept: &[Vec<u32>], wanted: &[Vec<u32>]) -> bool {
+    /// What is promised of `left`. Where only the key decides, ties at the edge may fall either way.
+    fn agrees(&self, kept: &[Vec<u32>], left: &[Vec<u32>]) -> bool {
+        let wanted = &self.promise.best_of(left.to_vec())[..];
+        if let Some(merging) = &self.promise.merging {
+            return merging.agrees(kept, left, wanted);
+        }
         if self.promise.is_exact() {
             return kept == wanted;
         }

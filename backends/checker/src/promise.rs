@@ -5,6 +5,7 @@
 
 use fragbuf_templates::vocabulary::{Effect, Fact, Order};
 
+use crate::merging::Merging;
 use crate::subject::Subject;
 
 /// What stays of the fragments of a pixel.
@@ -16,6 +17,8 @@ pub(crate) struct Promise {
     is_sorted: bool,
     /// Of fragments with equal keys those that came first are better.
     is_by_arrival: bool,
+    /// Of several fragments one is made, whose colour is no one's own.
+    pub(crate) merging: Option<Merging>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,9 +55,12 @@ impl Promise {
         } else {
             Keeps::Unknown
         };
+        let merging = Merging::new(subject);
         Promise {
             keeps,
-            deciding: deciding_words(subject),
+            // Colours of several fragments are no one's: keys alone are in an order.
+            deciding: if merging.is_some() { 1 } else { deciding_words(subject) },
+            merging,
             is_sorted: is_sorted(subject),
             is_by_arrival: order(subject) == Some(Order::Submission),
         }

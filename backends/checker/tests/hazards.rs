@@ -101,3 +101,48 @@ fn a_racy_row_that_is_wrong_beyond_its_hazards_fails() {
         assert!(!checked(&STATED[0], Model::Sequential, &registry).is_stated, "{after}");
     }
 }
+
+/// Rows that merge or blend what is displaced, on a storage that can be asked for it.
+const MERGING: [(&str, &str); 2] = [("merge_last", "kplus_array"), ("merge_closest", "kb_ps")];
+
+fn blended(overflow: &str, key: &str, registry: &Registry) -> Report {
+    let set = [("overflow", overflow), ("sync", "spin_lock"), ("cull", "none")];
+    report(key, &set, "spirv", &limits(2, Model::Sequential), registry).unwrap()
+}
+
+/// The registry with one overflow row's text changed.
+fn with_overflow(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
+    let registry = Registry::builtin();
+    let mut row = registry.row("overflow", key).unwrap().clone();
+    change(&mut row);
+    registry.with(row)
+}
+
+fn replace(row: &mut Row, before: &str, after: &str) {
+    let template = row.template.as_mut().unwrap();
+    assert!(template.text.contains(before), "{before}");
+    template.text = template.text.replace(before, after).into();
+}
+
+#[test]
+fn who_merges_must_say_so_and_do_it() {
+    for (overflow, key) in MERGING {
+        let registry = with_overflow(overflow, |row| row.hazards.clear());
+        let unsaid = blended(overflow, key, &registry);
+        assert!(unsaid.failure.is_some() && !unsaid.is_stated, "{overflow}");
+        // What is displaced is forgotten: no word but a colour tells.
+        let registry = with_overflow(overflow, |row| replace(row, "reason == DISPLACED", "reason == POOL_EXHAUSTED"));
+        let dropped = blended(overflow, key, &registry);
+        assert!(dropped.failure.is_some() && !dropped.is_stated, "{overflow}");
+    }
+}
+
+/// A tail of plain words is the critical section's: whoever gives up the lock must leave it alone.
+#[test]
+fn a_tail_that_is_blended_outside_the_lock_is_a_race() {
+    assert_eq!(blended("tail_blend", "kb_ps", &Registry::builtin()).failure, None);
+    let registry = with_overflow("tail_blend", |row| replace(row, "reason == DISPLACED", "reason != POOL_EXHAUSTED"));
+    let report = blended("tail_blend", "kb_ps", &registry);
+    let fault = report.failure.filter(|_| !report.is_stated).map(|schedule| schedule.fault).unwrap_or_default();
+    assert!(fault.contains("race"), "{fault}");
+}

@@ -19,14 +19,20 @@ const BOTH: &str = include_str!("rows/both_neighbours.wgsl");
 /// Axis and key of a mutated row, and what checks it: technique, changes, target, model.
 pub(crate) type Check = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model);
 
+/// What replaces kept fragments, and so tells when a displaced one is handed over.
+const MERGED: &[(&str, &str)] = &[("overflow", "merge_last"), ("sync", "spin_lock"), ("cull", "none")];
+
 const KPLUS: &[Check] = &[
     ("kplus_array", &[], "wgsl", Model::Sequential),
     ("kplus_array", &[], "spirv", Model::Late),
     ("kplus_array", &[("sync", "interlock")], "spirv", Model::Late),
+    ("kplus_array", MERGED, "wgsl", Model::Sequential),
 ];
 const SORTED: &[Check] = &[
     ("kb", &[("sync", "spin_lock"), ("cull", "early")], "wgsl", Model::Sequential),
     ("kb", &[("sync", "spin_lock"), ("cull", "early")], "spirv", Model::Late),
+    ("kb", MERGED, "wgsl", Model::Sequential),
+    ("kb", &[("overflow", "merge_closest"), ("sync", "spin_lock")], "wgsl", Model::Sequential),
 ];
 const LIST: &[Check] = &[("ab_ll", &[], "wgsl", Model::Sequential), ("ab_ll", &[], "wgsl", Model::Late)];
 const REGIONS: &[Check] = &[("ab_sb", &[], "wgsl", Model::Sequential), ("ab_sb", &[], "wgsl", Model::Late)];
@@ -40,7 +46,11 @@ const PAGES: &[Check] = &[
 ];
 const BUCKETS: &[Check] = &[("ab_ll_bun", &[], "wgsl", Model::Sequential), ("ab_ll_bun", &[], "wgsl", Model::Late)];
 
-const HEAP: &[Check] = &[("kplus_heap", &[], "wgsl", Model::Sequential), ("kplus_heap", &[], "spirv", Model::Late)];
+const HEAP: &[Check] = &[
+    ("kplus_heap", &[], "wgsl", Model::Sequential),
+    ("kplus_heap", &[], "spirv", Model::Late),
+    ("kplus_heap", MERGED, "wgsl", Model::Sequential),
+];
 const CASCADE: &[Check] = &[
     ("mdt32_coplanar", &[], "wgsl", Model::Sequential),
     ("mdt32_coplanar", &[], "wgsl", Model::Late),
@@ -53,6 +63,7 @@ const REVISED: &[Check] = &[
     ("kplus_array_revised", &[], "wgsl", Model::Sequential),
     ("kplus_array_revised", &[("sync", "interlock")], "spirv", Model::Late),
     ("kplus_array_revised", &[], "spirv", Model::Late),
+    ("kplus_array_revised", MERGED, "wgsl", Model::Sequential),
 ];
 const ORDERED: &[Check] = &[("kb_ll", &[], "wgsl", Model::Sequential), ("kb_ll", &[], "spirv", Model::Late)];
 const BOUNDED: &[Check] = &[
@@ -60,6 +71,7 @@ const BOUNDED: &[Check] = &[
     // A heap for every k.
     ("kplus_ab_sb", &[("storage.array", "0")], "wgsl", Model::Sequential),
     ("kplus_ab_sb", &[], "spirv", Model::Late),
+    ("kplus_ab_sb", MERGED, "wgsl", Model::Sequential),
 ];
 const WIDE: &[Check] =
     &[("kb_mdt64", &[], "wgsl-native", Model::Sequential), ("kb_mdt64", &[], "wgsl-native", Model::Late)];

@@ -16,9 +16,15 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/sorted_array",
-        "entries_store(slot, pixel, carried); keys_store(slot, pixel, carried.key);",
-        "keys_store(slot, pixel, carried.key); entries_store(slot, pixel, carried);",
+        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
+        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
         "inside the lock nobody reads between the two, and outside it the cull reads keys alone",
+    ),
+    (
+        "storage/max_array",
+        "if filled_before < frame.k {",
+        "if filled_before <= frame.k {",
+        "a full array is said to be full once more",
     ),
     (
         "storage/max_array",
@@ -55,6 +61,12 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "return;",
         "",
         "a way out early: slots behind have greater keys, and an EMPTY that is carried on changes none",
+    ),
+    (
+        "storage/max_heap",
+        "if filled_before < frame.k {",
+        "if filled_before <= frame.k {",
+        "the slots of a full heap are in order, and stay as they are",
     ),
     (
         "storage/max_heap",

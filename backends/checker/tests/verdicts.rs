@@ -39,7 +39,14 @@ const ONE_LOOK: &[(&str, &str)] = &[("storage.retries", "0"), ("k", "2")];
 const SUBMITTED: &[(&str, &str)] = &[("sync", "interlock_ordered"), ("ties", "submission")];
 const INTERLOCK: &[(&str, &str)] = &[("sync", "interlock")];
 
-const VERDICTS: [Verdict; 67] = [
+const TAIL: &[(&str, &str)] = &[("overflow", "tail_blend"), ("sync", "spin_lock"), ("cull", "none")];
+const LAST: &[(&str, &str)] = &[("overflow", "merge_last"), ("sync", "spin_lock"), ("cull", "none")];
+const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin_lock"), ("cull", "none")];
+/// A word beside the colour, and the colour in four.
+const LAST_OF_FLOATS: &[(&str, &str)] =
+    &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
+
+const VERDICTS: [Verdict; 84] = [
     ("kb", &[], "wgsl", Model::Sequential, AsStated),
     ("kb", &[], "spirv", Model::Late, AsStated),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -107,6 +114,23 @@ const VERDICTS: [Verdict; 67] = [
     ("kb_ab_ll", &[], "wgsl", Model::Sequential, Holds),
     ("kb_ab_sb", &[], "wgsl", Model::Sequential, Holds),
     ("kb_ab_sb", &[], "wgsl", Model::Late, Holds),
+    ("kb_ps", TAIL, "wgsl", Model::Sequential, Holds),
+    ("kb_ps", TAIL, "spirv", Model::Late, Holds),
+    ("kplus_array", TAIL, "wgsl", Model::Sequential, Holds),
+    ("kplus_array", TAIL, "wgsl", Model::Late, Fails),
+    ("kplus_array_revised", TAIL, "wgsl", Model::Sequential, Holds),
+    ("kplus_ab_sb", TAIL, "wgsl", Model::Sequential, Holds),
+    ("kb_ps", LAST, "wgsl", Model::Sequential, Holds),
+    ("kb_ps", LAST, "spirv", Model::Late, Holds),
+    ("kplus_array", LAST, "wgsl", Model::Sequential, Holds),
+    ("kplus_array", LAST, "wgsl", Model::Late, Fails),
+    ("kplus_array", LAST, "spirv", Model::Late, Holds),
+    ("kplus_array", LAST_OF_FLOATS, "wgsl", Model::Sequential, Holds),
+    ("kplus_heap", LAST, "wgsl", Model::Sequential, Holds),
+    ("kplus_array_revised", LAST, "wgsl", Model::Sequential, Holds),
+    ("kplus_ab_sb", LAST, "wgsl", Model::Sequential, Holds),
+    ("kb_ps", CLOSEST, "wgsl", Model::Sequential, Holds),
+    ("kb_ps", CLOSEST, "spirv", Model::Late, Holds),
 ];
 
 #[test]

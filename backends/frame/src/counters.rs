@@ -11,6 +11,9 @@ pub const POOL_EXHAUSTED: &str = "pool_exhausted";
 /// The counter of fragments that a stream composited too late.
 pub const OUT_OF_ORDER: &str = "out_of_order";
 
+/// The counter of fragments that cover their pixel in part, where routing wants whole pixels.
+pub const PARTLY_COVERED: &str = "partly_covered";
+
 /// What a frame counted. With `counters: losses`, the default, only losses are; the others stay 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counters(pub Vec<Counter>);

@@ -13,7 +13,7 @@ mod symbols;
 mod uniforms;
 mod unrolled;
 
-pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, POOL_EXHAUSTED};
+pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTLY_COVERED, POOL_EXHAUSTED};
 pub use error::Error;
 pub use host::Decision;
 pub use looped::{LoopEnd, Looped};

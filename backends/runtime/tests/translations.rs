@@ -129,6 +129,15 @@ fn targets_and_textures() {
 }
 
 #[test]
+fn what_is_displaced_and_not_dropped() {
+    let set = |row| [("overflow", row), ("k", "2"), ("cull", "none"), ("counters", "all")];
+    for row in ["tail_blend", "merge_last"] {
+        check(&technique("kplus_array", &set(row)), |_| {});
+    }
+    check(&technique("kb", &[&set("merge_closest")[..], &[("sync", "spin_lock")]].concat()), |_| {});
+}
+
+#[test]
 fn functions_of_the_descriptions_own() {
     check(&glass("kplus_array", GLASS_KEEPS), set_uniforms);
 }

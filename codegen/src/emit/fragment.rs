@@ -15,6 +15,7 @@ pub(super) fn text(plan: &Plan) -> String {
     pack(plan, &mut text);
     unpack(plan, &mut text);
     words(plan, &mut text);
+    recolored(plan, &mut text);
     orders(plan, &mut text);
     admit(plan, &mut text);
     if plan.variant.resolve.is_some() {
@@ -45,7 +46,9 @@ fn pack(plan: &Plan, text: &mut String) {
         Key::Depth => "depth_bits(fragment.depth)",
         Key::Criterion => "ordered_bits(user_criterion(fragment))",
     };
-    let fields = std::iter::once(key.to_owned()).chain(plan.layout.beside.iter().map(packed));
+    let beside = plan.layout.beside.iter();
+    let values = beside.map(|word| packed(word, &format!("fragment.{}", word.member.name)));
+    let fields = std::iter::once(key.to_owned()).chain(values);
     let _ = writeln!(text, "fn fragment_pack(fragment: Fragment) -> Packed {{");
     let _ = writeln!(text, "    return {};\n}}\n", construct("Packed", fields));
 }
@@ -59,17 +62,33 @@ pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> Str
     }
 }
 
-fn packed(word: &Word) -> String {
-    let name = &word.member.name;
+/// A word of a member's `value`.
+fn packed(word: &Word, value: &str) -> String {
     match (word.member.format, word.components) {
-        (Format::Rgba16, Some(pair)) => format!("pack2x16unorm(fragment.{name}.{pair})"),
-        (_, Some(component)) => format!("bitcast<u32>(fragment.{name}.{component})"),
-        (Format::F32, None) if word.member.source == Source::Depth => "depth_bits(fragment.depth)".to_owned(),
-        (Format::U32, None) => format!("fragment.{name}"),
-        (Format::Rgba8, None) => format!("pack4x8unorm(fragment.{name})"),
-        (Format::Octahedral, None) => format!("octahedral_pack(fragment.{name})"),
-        (_, None) => format!("bitcast<u32>(fragment.{name})"),
+        (Format::Rgba16, Some(pair)) => format!("pack2x16unorm({value}.{pair})"),
+        (_, Some(component)) => format!("bitcast<u32>({value}.{component})"),
+        (Format::F32, None) if word.member.source == Source::Depth => format!("depth_bits({value})"),
+        (Format::U32, None) => value.to_owned(),
+        (Format::Rgba8, None) => format!("pack4x8unorm({value})"),
+        (Format::Octahedral, None) => format!("octahedral_pack({value})"),
+        (_, None) => format!("bitcast<u32>({value})"),
     }
+}
+
+/// The member that effects blend.
+const COLOR: &str = "color";
+
+/// Another colour for an entry whose other words stay as they are, to the bit.
+fn recolored(plan: &Plan, text: &mut String) {
+    let words = plan.layout.beside.iter().filter(|word| word.member.name == COLOR);
+    let changes: String =
+        words.map(|word| format!("    changed.{} = {};\n", word.field, packed(word, "color"))).collect();
+    let Some(color) = plan.layout.members.iter().find(|member| member.name == COLOR) else { return };
+    let kind = color.format.wgsl_type();
+    let _ = writeln!(
+        text,
+        "/// The same entry with another colour.\nfn packed_recolored(entry: Packed, color: {kind}) -> Packed {{\n    var changed = entry;\n{changes}    return changed;\n}}\n"
+    );
 }
 
 fn unpack(plan: &Plan, text: &mut String) {

@@ -9,7 +9,7 @@ mod gpu;
 mod opaque;
 
 use fragbuf::{Plan, Registry, Variant};
-use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PassTime};
+use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PARTLY_COVERED, PassTime};
 use fragbuf_scene::Scene;
 
 use self::opaque::{Opaque, put_before, turned_away};
@@ -173,6 +173,12 @@ impl Painted {
             if counter.name == OUT_OF_ORDER && counter.count > 0 {
                 warn(&format!(
                     "{description}: {} fragments came after farther ones had been composited; draw from front to back, or keep more",
+                    counter.count
+                ));
+            }
+            if counter.name == PARTLY_COVERED && counter.count > 0 {
+                warn(&format!(
+                    "{description}: {} fragments cover their pixel in part; no more pixels than that may show others than the first",
                     counter.count
                 ));
             }

@@ -19,7 +19,7 @@ pub(super) fn checked_array() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::CanReplace, Fact::Indexed, Fact::SurvivesRaces],
+        offers: vec![Fact::KeepsBest, Fact::Indexed, Fact::SurvivesRaces],
         requires: vec![Fact::FragmentAtomics, Fact::DepthKey, Fact::OneWordBesideDepth, Fact::Limited],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "insertion".into())],
         parameters: vec![Parameter {

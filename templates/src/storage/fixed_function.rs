@@ -78,7 +78,7 @@ pub(super) fn stencil_routed() -> Row {
         reference: "256 - capacity + iteration".into(),
     });
     route.state.samples = samples("pow2(iteration)");
-    let mut store = Pass::geometry("store", "store_targets")
+    let mut store = Pass::geometry("store", "store_routed")
         .uses("routing", Access::Attachment)
         .uses("entries", Access::Attachment)
         .target("entries", Blend::Replace);
@@ -126,7 +126,8 @@ pub(super) fn stencil_routed() -> Row {
             hazard("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
             hazard(
                 "borders",
-                "where a triangle covers some samples of a pixel, fragments are lost or stored twice, and not counted",
+                "where a triangle covers some samples of a pixel, fragments of that pixel may be lost or stored twice; \
+                 how many cover one in part is counted, so no more pixels than that are wrong",
             ),
             hazard(
                 "many-late",

@@ -21,7 +21,7 @@ pub(super) fn depth_ranges() -> Row {
             ),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::CanReplace, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
+        offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
         requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited],
         defaults: vec![("sync".into(), "spin_lock".into()), ("sort".into(), "none".into())],
         parameters: vec![

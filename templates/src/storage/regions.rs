@@ -77,6 +77,7 @@ pub(super) fn bounded_regions() -> Row {
             Fact::KeepsBest,
             Fact::BestSuffice,
             Fact::BoundAnyInstant,
+            Fact::DisplacesInTurn,
             Fact::CanReplace,
             Fact::Counted,
             Fact::Indexed,

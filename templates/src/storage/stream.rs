@@ -38,7 +38,7 @@ pub(super) fn stream_array() -> Row {
             ),
         ],
         calls: vec!["resolve", "counters"],
-        offers: vec![Fact::Streams, Fact::CanReplace, Fact::Indexed, Fact::Sorted],
+        offers: vec![Fact::Streams, Fact::Indexed, Fact::Sorted],
         requires: vec![
             Fact::FragmentAtomics,
             Fact::Critical,

@@ -33,10 +33,19 @@ pub enum Effect {
     /// Of the fragments in one of k equal ranges of depth the best is kept, and the others are counted. The ranges go from
     /// `NEAR_MILLIONTHS` to `FAR_MILLIONTHS`, constants of the row; what lies outside belongs to the first or the last.
     OnePerRange,
+    /// The colour of the farthest entry is its own over those of fragments that are not kept: which of them lies before which
+    /// depends on the order of arrival, how much light all together let through does not. All else is as promised.
+    MergedFarthest,
+    /// Entries are as many as promised and in order, the nearest is among them, and the others are any: where two were
+    /// neighbours, the nearer stays, and its colour is its own over the other's. How much light all together let through
+    /// does not depend on the order of arrival.
+    MergedNeighbours,
+    /// What a pixel shows, but not what it holds, depends on the order of arrival.
+    ShowsArrival,
 }
 
 /// Every name that says an effect.
-const NAMES: [(&str, Effect); 13] = [
+const NAMES: [(&str, Effect); 16] = [
     ("lost-update", Effect::Lost),
     ("duplicate", Effect::Duplicate),
     ("torn", Effect::Torn),
@@ -50,6 +59,9 @@ const NAMES: [(&str, Effect); 13] = [
     ("given-up", Effect::GivenUp),
     ("unsettled", Effect::Unsettled),
     ("one-per-range", Effect::OnePerRange),
+    ("merged-farthest", Effect::MergedFarthest),
+    ("merged-neighbours", Effect::MergedNeighbours),
+    ("shows-arrival", Effect::ShowsArrival),
 ];
 
 impl Effect {
@@ -60,6 +72,14 @@ impl Effect {
 
     /// Whether it comes of a race: fragments that come one after the other never show it.
     pub fn is_a_races(self) -> bool {
-        !matches!(self, Effect::EqualKeys | Effect::EqualFragments | Effect::OnePerRange)
+        !matches!(
+            self,
+            Effect::EqualKeys
+                | Effect::EqualFragments
+                | Effect::OnePerRange
+                | Effect::MergedFarthest
+                | Effect::MergedNeighbours
+                | Effect::ShowsArrival
+        )
     }
 }

@@ -48,13 +48,17 @@ facts! {
     SelectsBest "that the k best are chosen among all";
     BestSuffice "a storage that may be handed the k best fragments alone";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
-    CanReplace "that a kept fragment can be replaced";
+    DisplacesInTurn "a storage that displaces fragments inside the critical section alone, one whenever another comes";
+    CanReplace "that the worst kept fragment can be replaced inside the critical section, once there are k";
+    OrderedSlots "slots in the order of depth, each of which can be replaced inside the critical section";
     Counted "the number of fragments of each pixel, known before they are stored";
     LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
     KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
     Indexed "kept fragments with an index";
     Passes "a build step for every kept fragment";
     Streams "a storage that hands fragments on in order, two neighbours at a time";
+    // What comes to it.
+    CullsNothing "that no fragment is turned away before the storage sees it";
     // What the kept fragments are, once gathered.
     Sorted "fragments in the order of depth";
     OneResolve "one resolve pass that serves every pixel";
