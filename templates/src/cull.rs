@@ -1,8 +1,7 @@
 //! Axis `cull`: which fragments are turned away before they reach the storage.
 
 use crate::vocabulary::{
-    Access, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step, Takes,
-    TextureFormat, Use,
+    Access, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step, TextureFormat, Use,
 };
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -78,14 +77,13 @@ fn by_occupancy(key: &str, summary: &'static str) -> Row {
     );
     Row {
         resources: vec![map.by("word", "OCCUPANCY_WORDS + 2").by("pixel", "pixels").cleared(0)],
-        parameters: vec![Parameter {
-            name: "words".into(),
-            constant: "OCCUPANCY_WORDS".into(),
-            takes: Takes::Number,
-            default: "max(4, capacity / 8)".into(),
-            range: (1, 128),
-            summary: "words of 32 buckets that the range of a pixel's keys is cut into; more than k / 32".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "words",
+            "OCCUPANCY_WORDS",
+            "max(4, capacity / 8)",
+            (1, 128),
+            "words of 32 buckets that the range of a pixel's keys is cut into; more than k / 32",
+        )],
         least: vec![("words".into(), "k / 32 + 1".into())],
         ..Row::new("cull", key, summary, "Vasilakis & Papaioannou 2015 (C15)")
     }

@@ -61,7 +61,7 @@ fn tail_blend() -> Row {
             Fact::FragmentAtomics,
         ],
         calls: vec!["counters", "samples"],
-        hazards: vec![hazard(
+        hazards: vec![Hazard::new(
             "shows-arrival",
             "what is not kept is blended in the order of arrival, as if whatever comes later lay before the rest",
         )],
@@ -76,7 +76,7 @@ fn tail_blend() -> Row {
 
 fn merge_last() -> Row {
     Row {
-        hazards: vec![hazard(
+        hazards: vec![Hazard::new(
             "merged-farthest",
             "the colour of the farthest kept fragment is its own over those of fragments that are not kept, in an order \
              that depends on arrival",
@@ -95,7 +95,7 @@ fn merge_last() -> Row {
 
 fn merge_closest() -> Row {
     Row {
-        hazards: vec![hazard(
+        hazards: vec![Hazard::new(
             "merged-neighbours",
             "where there are more than k, the two nearest to each other in depth become one, with the depth and the other \
              attributes of the nearer; which two depends on arrival",
@@ -130,10 +130,6 @@ fn merging(slots: Fact, row: Row) -> Row {
         calls: vec!["counters", "storage"],
         ..row
     }
-}
-
-fn hazard(name: &'static str, what: &'static str) -> Hazard {
-    Hazard { name: name.into(), what: what.into(), unless: None }
 }
 
 fn row(key: &str, summary: &'static str, paper: &'static str, template: Template) -> Row {

@@ -1,7 +1,7 @@
 //! Axis `resolve`: what is made of the kept fragments.
 
 use crate::Registry;
-use crate::vocabulary::{Fact, Parameter, Row, Takes};
+use crate::vocabulary::{Fact, Parameter, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -9,16 +9,13 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("resolve/over")),
             calls: vec!["samples"],
             requires: vec![Fact::Sorted, Fact::Color],
-            parameters: vec![Parameter {
-                name: "opaque".into(),
-                constant: "OPAQUE_THOUSANDTHS".into(),
-                takes: Takes::Number,
-                default: "0".into(),
-                range: (0, 1000),
-                summary:
-                    "thousandths of the light behind, and of a channel's error: blending ends when fewer pass; 0: never"
-                        .into(),
-            }],
+            parameters: vec![Parameter::number(
+                "opaque",
+                "OPAQUE_THOUSANDTHS",
+                "0",
+                (0, 1000),
+                "thousandths of the light behind, and of a channel's error: blending ends when fewer pass; 0: never",
+            )],
             ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984; K15 §4.4")
         },
         Row {

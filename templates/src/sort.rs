@@ -1,6 +1,6 @@
 //! Axis `sort`: how the kept fragments are put in the order of depth before they are resolved.
 
-use crate::vocabulary::{Classes, Edit, Fact, Parameter, Role, Row, Takes};
+use crate::vocabulary::{Classes, Edit, Fact, Parameter, Role, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -41,14 +41,13 @@ pub(crate) fn rows() -> Vec<Row> {
         },
         Row {
             template: Some(template!("sort/lplus")),
-            parameters: vec![Parameter {
-                name: "batch".into(),
-                constant: "LPLUS_BATCH".into(),
-                takes: Takes::Number,
-                default: "32".into(),
-                range: (1, 4096),
-                summary: "fragments that are ordered each time that the pixel is read".into(),
-            }],
+            parameters: vec![Parameter::number(
+                "batch",
+                "LPLUS_BATCH",
+                "32",
+                (1, 4096),
+                "fragments that are ordered each time that the pixel is read",
+            )],
             offers: vec![Fact::Sorted, Fact::OneResolve],
             ..Row::new(
                 "sort",
@@ -92,23 +91,21 @@ pub(crate) fn rows() -> Vec<Row> {
 }
 
 fn insertion_most() -> Parameter {
-    Parameter {
-        name: "insertion".into(),
-        constant: "INSERTION_MOST".into(),
-        takes: Takes::Number,
-        default: "16".into(),
-        range: (0, 4096),
-        summary: "the most fragments of a pixel that are sorted by insertion".into(),
-    }
+    Parameter::number(
+        "insertion",
+        "INSERTION_MOST",
+        "16",
+        (0, 4096),
+        "the most fragments of a pixel that are sorted by insertion",
+    )
 }
 
 fn layers() -> Parameter {
-    Parameter {
-        name: "layers".into(),
-        constant: "LAYERS".into(),
-        takes: Takes::Number,
-        default: "capacity".into(),
-        range: (1, 4096),
-        summary: "fragments that the resolve pass can hold; the farthest beyond are left out, and counted".into(),
-    }
+    Parameter::number(
+        "layers",
+        "LAYERS",
+        "capacity",
+        (1, 4096),
+        "fragments that the resolve pass can hold; the farthest beyond are left out, and counted",
+    )
 }

@@ -43,58 +43,31 @@ fn sorted_array() -> Row {
         template: Some(template!("storage/sorted_array")),
         resources: array_resources("keys in ascending order; EMPTY past the last"),
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::DisplacesInTurn,
-            Fact::CanReplace,
-            Fact::Indexed,
-            Fact::SurvivesRaces,
-            Fact::KeepsArrival,
-            Fact::LosesWhole,
-        ],
+        offers: [OF_THE_K_BEST.as_slice(), &[Fact::SurvivesRaces, Fact::KeepsArrival]].concat(),
         // Entries are in the order of their keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted), (Fact::DepthKey, Fact::OrderedSlots)],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
-            Hazard {
-                name: "lost-update".into(),
-                what: "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted"
-                    .into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "duplicate".into(),
-                what: "an entry moved by one fragment while another moves it too stands in two slots".into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "torn".into(),
-                what: "key and payload of a slot come from two fragments".into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "stale".into(),
-                what: "a key is seen before what stands beside it, and moves on with what the slot held before".into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "unsorted".into(),
-                what: "the entries of a pixel are not in the order of their keys".into(),
-                unless: Some(Fact::Critical),
-            },
+            Hazard::new(
+                "lost-update",
+                "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted",
+            )
+            .unless(Fact::Critical),
+            Hazard::new("duplicate", "an entry moved by one fragment while another moves it too stands in two slots")
+                .unless(Fact::Critical),
+            Hazard::new("torn", "key and payload of a slot come from two fragments").unless(Fact::Critical),
+            Hazard::new(
+                "stale",
+                "a key is seen before what stands beside it, and moves on with what the slot held before",
+            )
+            .unless(Fact::Critical),
+            Hazard::new("unsorted", "the entries of a pixel are not in the order of their keys").unless(Fact::Critical),
         ],
         ..Row::new(
             "storage",
@@ -118,12 +91,7 @@ fn fixed_array() -> Row {
         ],
         steps: vec![
             Step::Pass(Pass::geometry("store", "store").uses("counts", Access::Atomic).uses("entries", Access::Plain)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("counts", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["counts", "entries"]),
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
@@ -147,6 +115,28 @@ fn array_resources(keys: &'static str) -> Vec<Resource> {
             .by("slot", "k")
             .by("pixel", "pixels"),
     ]
+}
+
+/// What arrays of the k best offer, whose worst entry gives way inside a critical section.
+const OF_THE_K_BEST: [Fact; 7] = [
+    Fact::KeepsBest,
+    Fact::BestSuffice,
+    Fact::BoundAnyInstant,
+    Fact::DisplacesInTurn,
+    Fact::CanReplace,
+    Fact::Indexed,
+    Fact::LosesWhole,
+];
+
+/// The pass that empties every pixel, by writing these.
+fn reset(resources: &[&str]) -> Step {
+    Step::Pass(resources.iter().fold(reset_pass(), |pass, resource| pass.uses(resource, Access::Plain)))
+}
+
+/// The pass that makes a colour of every pixel, by reading these.
+fn resolve(resources: &[&str]) -> Step {
+    let pass = Pass::fullscreen("resolve", "resolve").target("output", Blend::Over);
+    Step::Pass(resources.iter().fold(pass, |pass, resource| pass.uses(resource, Access::Read)))
 }
 
 fn reset_pass() -> Pass {

@@ -1,6 +1,6 @@
 //! Axis `sync`: how writers of the same pixel are kept apart.
 
-use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Takes, Use};
+use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![none(), slot_counter(), spin_lock(), interlock(), interlock_ordered(), fixed_function()]
@@ -54,14 +54,13 @@ fn spin_lock() -> Row {
         calls: vec!["storage", "overflow", "counters"],
         offers: vec![Fact::Critical, Fact::LeftToShaders],
         requires: vec![Fact::FragmentAtomics],
-        parameters: vec![Parameter {
-            name: "limit".into(),
-            constant: "SPIN_LIMIT".into(),
-            takes: Takes::Number,
-            default: "4096".into(),
-            range: (1, 1 << 24),
-            summary: "tries before a fragment is given up and counted".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "limit",
+            "SPIN_LIMIT",
+            "4096",
+            (1, 1 << 24),
+            "tries before a fragment is given up and counted",
+        )],
         soundness: Soundness::Lock,
         ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")
     }

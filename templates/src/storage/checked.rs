@@ -1,7 +1,7 @@
 //! A storage that writers race in, and notice when they have.
 
-use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Fact, Hazard, Parameter, Pass, Row, Step, Takes};
+use super::{array_resources, reset, resolve};
+use crate::vocabulary::{Access, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The sorted array with a checksum in every entry.
 pub(super) fn checked_array() -> Row {
@@ -9,64 +9,46 @@ pub(super) fn checked_array() -> Row {
         template: Some(template!("storage/checked_array")),
         resources: array_resources("keys in ascending order, each with a checksum of its entry; EMPTY past the last"),
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::KeepsBest, Fact::Indexed, Fact::SurvivesRaces],
         requires: vec![Fact::FragmentAtomics, Fact::DepthKey, Fact::OneWordBesideDepth, Fact::Limited],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "insertion".into())],
-        parameters: vec![Parameter {
-            name: "retries".into(),
-            constant: "REPAIRS".into(),
-            takes: Takes::Number,
-            default: "4".into(),
-            range: (0, 64),
-            summary: "times that a fragment which was written over tries again".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "retries",
+            "REPAIRS",
+            "4",
+            (0, 64),
+            "times that a fragment which was written over tries again",
+        )],
         hazards: vec![
-            Hazard {
-                name: "equal-fragments".into(),
-                what:
-                    "of fragments with the same words, or of one key with `ties: unordered`, one is kept; the others \
-                       are counted"
-                        .into(),
-                unless: None,
-            },
-            Hazard {
-                name: "lost-update".into(),
-                what: "a fragment is written over after its last look at the slots, unseen and uncounted".into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "given-up".into(),
-                what: "a fragment that is written over every time it looks is given up after its last try, and counted"
-                    .into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "torn".into(),
-                what: "a slot of two fragments' words passes the check, one time in four that there is one".into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "stale".into(),
-                what:
-                    "a key is seen before what stands beside it, and what stood there before the frame passes the check"
-                        .into(),
-                unless: Some(Fact::Critical),
-            },
-            Hazard {
-                name: "counted-twice".into(),
-                what: "a fragment that races displaced more than once is counted each time".into(),
-                unless: Some(Fact::Critical),
-            },
+            Hazard::new(
+                "equal-fragments",
+                "of fragments with the same words, or of one key with `ties: unordered`, one is kept; the others \
+                       are counted",
+            ),
+            Hazard::new(
+                "lost-update",
+                "a fragment is written over after its last look at the slots, unseen and uncounted",
+            )
+            .unless(Fact::Critical),
+            Hazard::new(
+                "given-up",
+                "a fragment that is written over every time it looks is given up after its last try, and counted",
+            )
+            .unless(Fact::Critical),
+            Hazard::new("torn", "a slot of two fragments' words passes the check, one time in four that there is one")
+                .unless(Fact::Critical),
+            Hazard::new(
+                "stale",
+                "a key is seen before what stands beside it, and what stood there before the frame passes the check",
+            )
+            .unless(Fact::Critical),
+            Hazard::new("counted-twice", "a fragment that races displaced more than once is counted each time")
+                .unless(Fact::Critical),
         ],
         ..Row::new(
             "storage",

@@ -44,9 +44,9 @@ pub(super) fn depth_tested() -> Row {
             Fact::OwnEntryPoints,
         ],
         hazards: vec![
-            hazard("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
-            hazard("far-plane", "a fragment at depth 1.0 exactly is not kept"),
-            hazard("uncounted", "what the depth test turns away is not counted"),
+            Hazard::new("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
+            Hazard::new("far-plane", "a fragment at depth 1.0 exactly is not kept"),
+            Hazard::new("uncounted", "what the depth test turns away is not counted"),
         ],
         // One fragment is in order.
         offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::Sorted],
@@ -123,13 +123,13 @@ pub(super) fn stencil_routed() -> Row {
         ],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL],
         hazards: vec![
-            hazard("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
-            hazard(
+            Hazard::new("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
+            Hazard::new(
                 "borders",
                 "where a triangle covers some samples of a pixel, fragments of that pixel may be lost or stored twice; \
                  how many cover one in part is counted, so no more pixels than that are wrong",
             ),
-            hazard(
+            Hazard::new(
                 "many-late",
                 "beyond 255 - capacity fragments of a pixel that came too late, no more of them are counted",
             ),
@@ -147,7 +147,3 @@ pub(super) fn stencil_routed() -> Row {
 const LEFT_TO_TESTS: (Text, Text) = (Text::Borrowed("sync"), Text::Borrowed("fixed_function"));
 const ARRIVAL: (Text, Text) = (Text::Borrowed("ties"), Text::Borrowed("unordered"));
 const UNSORTED: (Text, Text) = (Text::Borrowed("sort"), Text::Borrowed("none"));
-
-fn hazard(name: impl Into<Text>, what: impl Into<Text>) -> Hazard {
-    Hazard { name: name.into(), what: what.into(), unless: None }
-}

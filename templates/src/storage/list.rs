@@ -1,6 +1,7 @@
 //! Storages of lists: nodes of one pool, linked per pixel.
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step, Takes};
+use super::resolve;
+use crate::vocabulary::{Access, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
     let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
@@ -40,14 +41,13 @@ pub(super) fn ordered_list() -> Row {
         // The list is in the order of its keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],
-        parameters: vec![Parameter {
-            name: "retries".into(),
-            constant: "LINK_TRIES".into(),
-            takes: Takes::Number,
-            default: "4096".into(),
-            range: (1, 1 << 24),
-            summary: "tries to link a node before its fragment is given up and counted".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "retries",
+            "LINK_TRIES",
+            "4096",
+            (1, 1 << 24),
+            "tries to link a node before its fragment is given up and counted",
+        )],
         // Readers follow a link to words that its writer stored plainly.
         soundness: Soundness::Lock,
         ..list(
@@ -76,16 +76,7 @@ fn resources([heads, links, nodes]: [&'static str; 3]) -> Vec<Resource> {
 fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
     let touched = store(Pass::geometry("store", "store").uses("heads", Access::Atomic));
     Row {
-        steps: vec![
-            Step::Pass(touched.uses("pool", Access::Atomic)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("heads", Access::Read)
-                    .uses("links", Access::Read)
-                    .uses("nodes", Access::Read)
-                    .target("output", Blend::Over),
-            ),
-        ],
+        steps: vec![Step::Pass(touched.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
         calls: vec!["overflow", "counters"],
         requires: vec![Fact::FragmentAtomics],
         ..row

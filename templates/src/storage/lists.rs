@@ -1,6 +1,7 @@
 //! Storages of several lists or pages per pixel, through one pool.
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step, Takes};
+use super::resolve;
+use crate::vocabulary::{Access, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
 
 /// Lists whose links lead from page to page.
 pub(super) fn paged_list() -> Row {
@@ -24,44 +25,33 @@ pub(super) fn paged_list() -> Row {
                     .uses("entries", Access::Plain)
                     .uses("pool", Access::Atomic),
             ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("cursors", Access::Read)
-                    .uses("links", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["cursors", "links", "entries"]),
         ],
         calls: vec!["addressing", "overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
         requires: vec![Fact::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         parameters: vec![
-            Parameter {
-                name: "page".into(),
-                constant: "PAGE_ENTRIES".into(),
-                takes: Takes::Number,
-                default: "4".into(),
-                range: (1, 256),
-                summary: "fragments of a page; powers of two are divided by without a division".into(),
-            },
-            Parameter {
-                name: "retries".into(),
-                constant: "PAGE_TRIES".into(),
-                takes: Takes::Number,
-                default: "4096".into(),
-                range: (1, 1 << 24),
-                summary: "tries to move the cursor before a fragment is given up and counted".into(),
-            },
+            Parameter::number(
+                "page",
+                "PAGE_ENTRIES",
+                "4",
+                (1, 256),
+                "fragments of a page; powers of two are divided by without a division",
+            ),
+            Parameter::number(
+                "retries",
+                "PAGE_TRIES",
+                "4096",
+                (1, 1 << 24),
+                "tries to move the cursor before a fragment is given up and counted",
+            ),
         ],
-        hazards: vec![Hazard {
-            name: "leaked-page".into(),
-            what:
-                "of pages that several fragments of a pixel take at once one is used: the others are missing from the \
-                   pool, and fragments may find it empty that there was room for; both are counted"
-                    .into(),
-            unless: None,
-        }],
+        hazards: vec![Hazard::new(
+            "leaked-page",
+            "of pages that several fragments of a pixel take at once one is used: the others are missing from the \
+                   pool, and fragments may find it empty that there was room for; both are counted",
+        )],
         ..Row::new(
             "storage",
             "paged_list",
@@ -97,14 +87,7 @@ pub(super) fn bucket_lists() -> Row {
                     .uses("nodes", Access::Plain)
                     .uses("pool", Access::Atomic),
             ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("ranges", Access::Read)
-                    .uses("heads", Access::Read)
-                    .uses("links", Access::Read)
-                    .uses("nodes", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["ranges", "heads", "links", "nodes"]),
         ],
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],

@@ -1,7 +1,7 @@
 //! Storages of atomic minima: no lock, each slot keeps the lesser.
 
-use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use super::{array_resources, reset, resolve};
+use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
 
 pub(super) fn cascade() -> Row {
     let mut resources = array_resources("the k least keys in ascending order, equal ones each; EMPTY past the last");
@@ -17,19 +17,14 @@ pub(super) fn cascade() -> Row {
         template: Some(template!("storage/cascade")),
         resources,
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain).uses("tails", Access::Plain)),
+            reset(&["keys", "tails"]),
             Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic)),
             Step::Repeat(Repeat {
                 body: vec![Step::Pass(settle)],
                 until: Until::Times("beside_words".into()),
                 at_most: "beside_words".into(),
             }),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("tails", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "tails"]),
         ],
         ..by_minima(Row::new(
             "storage",
@@ -46,28 +41,20 @@ pub(super) fn distinct_cascade() -> Row {
         template: Some(template!("storage/distinct_cascade")),
         resources: array_resources("the k least keys in ascending order, equal ones once; EMPTY past the last"),
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic)),
             Step::Pass(Pass::geometry("settle", "settle").uses("keys", Access::Read).uses("entries", Access::Atomic)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         hazards: vec![
-            Hazard {
-                name: "equal-keys".into(),
-                what: "of fragments with equal keys one is kept, the last to write; the others are counted".into(),
-                unless: None,
-            },
-            Hazard {
-                name: "torn-equal-keys".into(),
-                what: "what stands beside a key comes from several fragments of that key, where it is several words"
-                    .into(),
-                unless: None,
-            },
+            Hazard::new(
+                "equal-keys",
+                "of fragments with equal keys one is kept, the last to write; the others are counted",
+            ),
+            Hazard::new(
+                "torn-equal-keys",
+                "what stands beside a key comes from several fragments of that key, where it is several words",
+            ),
         ],
         ..by_minima(Row::new(
             "storage",
@@ -95,11 +82,9 @@ pub(super) fn wide_cascade() -> Row {
         template: Some(template!("storage/wide_cascade")),
         resources: vec![slots.by("slot", "k").by("pixel", "pixels")],
         steps: vec![
-            Step::Pass(reset_pass().uses("slots", Access::Plain)),
+            reset(&["slots"]),
             Step::Pass(Pass::geometry("store", "store").uses("slots", Access::Atomic)),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve").uses("slots", Access::Read).target("output", Blend::Over),
-            ),
+            resolve(&["slots"]),
         ],
         calls: vec!["overflow"],
         offers: [row.offers.as_slice(), &[Fact::LosesWhole]].concat(),

@@ -1,7 +1,7 @@
 //! A storage of depth ranges: one fragment in each.
 
-use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Fact, Hazard, Parameter, Pass, Row, Step, Takes};
+use super::{array_resources, reset, resolve};
+use crate::vocabulary::{Access, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The nearest fragment of each of k ranges of depth.
 pub(super) fn depth_ranges() -> Row {
@@ -9,16 +9,11 @@ pub(super) fn depth_ranges() -> Row {
         template: Some(template!("storage/depth_ranges")),
         resources: array_resources("key of the nearest fragment in the range of this number; EMPTY: none"),
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Pass(
                 Pass::geometry("store", "store").uses("keys", Access::Coherent).uses("entries", Access::Coherent),
             ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
@@ -28,22 +23,14 @@ pub(super) fn depth_ranges() -> Row {
             depth("near", "NEAR_MILLIONTHS", "0", "depth at which the first range begins, in millionths"),
             depth("far", "FAR_MILLIONTHS", "1000000", "depth at which the last range ends, in millionths"),
         ],
-        hazards: vec![Hazard {
-            name: "one-per-range".into(),
-            what: "of the fragments in one range of depth the nearest is kept; the others are counted".into(),
-            unless: None,
-        }],
+        hazards: vec![Hazard::new(
+            "one-per-range",
+            "of the fragments in one range of depth the nearest is kept; the others are counted",
+        )],
         ..Row::new("storage", "depth_ranges", "the nearest fragment in each of k equal ranges of depth", "B06 §4.2")
     }
 }
 
 fn depth(name: &'static str, constant: &'static str, default: &'static str, summary: &'static str) -> Parameter {
-    Parameter {
-        name: name.into(),
-        constant: constant.into(),
-        takes: Takes::Number,
-        default: default.into(),
-        range: (0, 1_000_000),
-        summary: summary.into(),
-    }
+    Parameter::number(name, constant, default, (0, 1_000_000), summary)
 }

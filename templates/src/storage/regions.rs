@@ -1,7 +1,7 @@
 //! Storages that count first, and give every pixel a region of exactly the size it needs.
 
-use super::reset_pass;
-use crate::vocabulary::{Access, Blend, Element, Fact, Host, Parameter, Pass, Resource, Row, Step, Takes};
+use super::{OF_THE_K_BEST, reset_pass, resolve};
+use crate::vocabulary::{Access, Element, Fact, Host, Parameter, Pass, Resource, Row, Step};
 
 pub(super) fn exact_regions() -> Row {
     let mut resources = counted_resources("fragments of the pixel; the store pass counts them down again");
@@ -14,12 +14,7 @@ pub(super) fn exact_regions() -> Row {
             .uses("offsets", Access::Read)
             .uses("entries", Access::Plain),
     ));
-    steps.push(Step::Pass(
-        Pass::fullscreen("resolve", "resolve")
-            .uses("offsets", Access::Read)
-            .uses("entries", Access::Read)
-            .target("output", Blend::Over),
-    ));
+    steps.push(resolve(&["offsets", "entries"]));
     Row {
         template: Some(template!("storage/exact_regions")),
         resources,
@@ -51,14 +46,7 @@ pub(super) fn bounded_regions() -> Row {
         reset_pass().uses("counts", Access::Plain).uses("offsets", Access::Read).uses("region_keys", Access::Plain),
     ));
     steps.push(Step::Pass(store));
-    steps.push(Step::Pass(
-        Pass::fullscreen("resolve", "resolve")
-            .uses("counts", Access::Read)
-            .uses("offsets", Access::Read)
-            .uses("region_keys", Access::Read)
-            .uses("region_entries", Access::Read)
-            .target("output", Blend::Over),
-    ));
+    steps.push(resolve(&["counts", "offsets", "region_keys", "region_entries"]));
     let mut resources = counted_resources("fragments of the pixel, then those to come; of crowded pixels those kept");
     resources.push(
         Resource::new("region_keys", Element::Word, "keys, pixel after pixel; of a crowded pixel the worst first")
@@ -73,26 +61,16 @@ pub(super) fn bounded_regions() -> Row {
         resources,
         steps,
         calls: vec!["overflow", "counters"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::DisplacesInTurn,
-            Fact::CanReplace,
-            Fact::Counted,
-            Fact::Indexed,
-            Fact::LosesWhole,
-        ],
+        offers: [OF_THE_K_BEST.as_slice(), &[Fact::Counted]].concat(),
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
-        parameters: vec![Parameter {
-            name: "array".into(),
-            constant: "ARRAY_MOST".into(),
-            takes: Takes::Number,
-            default: "16".into(),
-            range: (0, 1024),
-            summary: "the greatest k for which a crowded pixel keeps an array; beyond it keeps a heap".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "array",
+            "ARRAY_MOST",
+            "16",
+            (0, 1024),
+            "the greatest k for which a crowded pixel keeps an array; beyond it keeps a heap",
+        )],
         ..Row::new(
             "storage",
             "bounded_regions",

@@ -1,7 +1,7 @@
 //! A storage that is written again until nothing changes: races are repaired, not prevented.
 
-use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use super::{array_resources, reset, resolve};
+use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
 
 pub(super) fn repeated_array() -> Row {
     let mut resources = array_resources("keys in no order, each once; EMPTY: no fragment");
@@ -14,18 +14,13 @@ pub(super) fn repeated_array() -> Row {
         template: Some(template!("storage/repeated_array")),
         resources,
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Repeat(Repeat {
                 body: vec![Step::Clear { resource: "changed".to_owned(), value: 0 }, Step::Pass(store)],
                 until: Until::Zero("changed".to_owned()),
                 at_most: "k + 1".into(),
             }),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         calls: vec!["counters"],
         offers: vec![Fact::KeepsBest, Fact::SurvivesRaces],
@@ -42,18 +37,17 @@ pub(super) fn repeated_array() -> Row {
 }
 
 fn hazards() -> Vec<Hazard> {
-    let hazard = |name: &'static str, what: &'static str| Hazard { name: name.into(), what: what.into(), unless: None };
     vec![
-        hazard("equal-keys", "of fragments with equal keys one is kept, the last to write"),
-        hazard(
+        Hazard::new("equal-keys", "of fragments with equal keys one is kept, the last to write"),
+        Hazard::new(
             "torn-equal-keys",
             "what stands beside a key comes from several fragments of that key, where it is several words",
         ),
-        hazard(
+        Hazard::new(
             "unsettled",
             "where the last of the k + 1 rounds still changes a slot, entries are lost, double or torn; the fragments that \
              changed one are counted",
         ),
-        hazard("uncounted", "losses are counted in the first round alone, as if its fragments had not raced"),
+        Hazard::new("uncounted", "losses are counted in the first round alone, as if its fragments had not raced"),
     ]
 }

@@ -1,6 +1,6 @@
 //! A storage that fragments pass through: what leaves it is composited in order.
 
-use super::{array_resources, reset_pass};
+use super::{array_resources, reset};
 use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
 
 /// The k nearest of those to come; the nearest of all leaves for every one that comes.
@@ -21,7 +21,7 @@ pub(super) fn stream_array() -> Row {
         template: Some(template!("storage/stream_array")),
         resources,
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain)),
+            reset(&["keys"]),
             Step::Pass(
                 Pass::geometry("store", "store")
                     .uses("keys", Access::Coherent)
@@ -53,13 +53,11 @@ pub(super) fn stream_array() -> Row {
             ("sort".into(), "none".into()),
             ("resolve".into(), "stream".into()),
         ],
-        hazards: vec![Hazard {
-            name: "out-of-order".into(),
-            what: "a fragment that comes more than k places late is composited behind those it lies before, and \
-                   counted; equal depths are composited in the order of arrival"
-                .into(),
-            unless: None,
-        }],
+        hazards: vec![Hazard::new(
+            "out-of-order",
+            "a fragment that comes more than k places late is composited behind those it lies before, and \
+                   counted; equal depths are composited in the order of arrival",
+        )],
         ..Row::new(
             "storage",
             "stream_array",

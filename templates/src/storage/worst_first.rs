@@ -1,7 +1,7 @@
 //! Storages that keep the worst entry at slot 0 and replace it inside a critical section.
 
-use super::{array_resources, reset_pass};
-use crate::vocabulary::{Access, Blend, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step, Takes};
+use super::{OF_THE_K_BEST, array_resources, reset, resolve};
+use crate::vocabulary::{Access, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn max_array() -> Row {
     Row {
@@ -25,7 +25,7 @@ pub(super) fn revised_array() -> Row {
         template: Some(template!("storage/revised_array")),
         resources,
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain).uses("tickets", Access::Plain)),
+            reset(&["keys", "tickets"]),
             // Who waits reads keys that others write outside the lock: no load of them may be weakened.
             Step::Pass(
                 Pass::geometry("store", "store_reserving")
@@ -33,33 +33,19 @@ pub(super) fn revised_array() -> Row {
                     .uses("entries", Access::Coherent)
                     .uses("tickets", Access::Atomic),
             ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::DisplacesInTurn,
-            Fact::CanReplace,
-            Fact::Indexed,
-            Fact::LosesWhole,
-        ],
+        offers: OF_THE_K_BEST.to_vec(),
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
-        parameters: vec![Parameter {
-            name: "wait".into(),
-            constant: "WAIT_LIMIT".into(),
-            takes: Takes::Number,
-            default: "4096".into(),
-            range: (1, 1 << 24),
-            summary: "looks at the slots of others before a fragment is given up and counted".into(),
-        }],
+        parameters: vec![Parameter::number(
+            "wait",
+            "WAIT_LIMIT",
+            "4096",
+            (1, 1 << 24),
+            "looks at the slots of others before a fragment is given up and counted",
+        )],
         // What is stored outside the critical section reaches those inside by fences, whatever the section is made of.
         soundness: Soundness::Lock,
         ..Row::new(
@@ -78,31 +64,17 @@ fn worst_first(row: Row) -> Row {
     Row {
         resources,
         steps: vec![
-            Step::Pass(reset_pass().uses("keys", Access::Plain).uses("filled", Access::Plain)),
+            reset(&["keys", "filled"]),
             Step::Pass(
                 Pass::geometry("store", "store")
                     .uses_rechecked("keys")
                     .uses("entries", Access::Coherent)
                     .uses("filled", Access::Coherent),
             ),
-            Step::Pass(
-                Pass::fullscreen("resolve", "resolve")
-                    .uses("keys", Access::Read)
-                    .uses("entries", Access::Read)
-                    .uses("filled", Access::Read)
-                    .target("output", Blend::Over),
-            ),
+            resolve(&["keys", "entries", "filled"]),
         ],
         calls: vec!["overflow"],
-        offers: vec![
-            Fact::KeepsBest,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::DisplacesInTurn,
-            Fact::CanReplace,
-            Fact::Indexed,
-            Fact::LosesWhole,
-        ],
+        offers: OF_THE_K_BEST.to_vec(),
         requires: vec![Fact::FragmentAtomics, Fact::Critical],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row

@@ -173,6 +173,32 @@ impl Template {
     }
 }
 
+impl Parameter {
+    /// A whole number.
+    pub fn number(
+        name: impl Into<Text>,
+        constant: impl Into<Text>,
+        default: impl Into<Formula>,
+        range: (u32, u32),
+        summary: impl Into<Text>,
+    ) -> Self {
+        let (name, constant, summary) = (name.into(), constant.into(), summary.into());
+        Parameter { name, constant, takes: Takes::Number, default: default.into(), range, summary }
+    }
+}
+
+impl Hazard {
+    /// One that nothing prevents.
+    pub fn new(name: impl Into<Text>, what: impl Into<Text>) -> Self {
+        Hazard { name: name.into(), what: what.into(), unless: None }
+    }
+
+    /// The same, where nothing offers `fact`.
+    pub fn unless(self, fact: Fact) -> Self {
+        Hazard { unless: Some(fact), ..self }
+    }
+}
+
 impl Row {
     /// A row with nothing but its names.
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
