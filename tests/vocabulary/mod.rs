@@ -78,3 +78,26 @@ fn an_edit_of_an_unknown_pass_is_refused() {
     let faults = plan(&variant, &selection, &registry).unwrap_err();
     assert!(faults.to_string().contains("`no_such_pass`"), "{faults}");
 }
+
+/// Rules refuse it first; a row of one's own that states no facts meets the plan.
+#[test]
+fn a_second_depth_test_is_refused() {
+    use fragbuf_templates::vocabulary::{Fact, Row};
+    let builtin = Registry::builtin();
+    let early = builtin.row("opaque", "early").unwrap().clone();
+    for (key, set, pass) in [
+        ("z_buffer", ("sort", "none"), "store"),
+        ("kb_sr", ("sort", "insertion"), "store"),
+        ("kplus_array", ("cull", "occupancy_early"), "store"),
+    ] {
+        let registry = builtin.clone().with(Row { requires: vec![Fact::EarlyDepth], ..early.clone() });
+        let origin = Origin::new(key, 1, 1);
+        let mut draft = Draft::from_technique(key, &origin);
+        draft.set("opaque", "early", &origin).unwrap();
+        draft.set(set.0, set.1, &origin).unwrap();
+        let variant = check(&draft, &registry).unwrap();
+        let selection = variant.select(Fact::ALL).unwrap();
+        let faults = plan(&variant, &selection, &registry).unwrap_err().to_string();
+        assert!(faults.contains(&format!("`{pass}`, which has a test of its own")), "{key}: {faults}");
+    }
+}

@@ -16,7 +16,7 @@ use crate::order::{Numbers, orders};
 use crate::quads::{Quad, vertices};
 
 /// What says how, and not what.
-const AXES: [&str; 6] = ["sync", "cull", "select", "addressing", "counters", "sort"];
+const AXES: [&str; 7] = ["sync", "cull", "opaque", "select", "addressing", "counters", "sort"];
 
 /// No multiple of any tile: every padding is there.
 const FRAME: (u32, u32) = (13, 11);
@@ -43,7 +43,13 @@ fn device(variant: &Variant) -> Option<Device> {
         sizing: Sizing::Reserve(Room::Fragments(50 * FRAME.0 * FRAME.1)),
         order: Order::Submission,
     };
-    Some(Device::new(Arc::new(code), settings).unwrap())
+    let mut device = Device::new(Arc::new(code), settings).unwrap();
+    // Nothing is opaque.
+    let brought = device.plan().resources.iter().find(|planned| planned.is_brought());
+    if let Some(name) = brought.map(|planned| planned.resource.name.clone()) {
+        device.set_texture(&name, &[1.0; (FRAME.0 * FRAME.1) as usize]).unwrap();
+    }
+    Some(device)
 }
 
 /// The pictures of some scenes, bit by bit: quads anywhere of few depths and colours, so that many are equal, in two orders;
