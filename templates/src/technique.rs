@@ -236,7 +236,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_sr".to_owned(),
             title: "KB-SR (stencil routing)",
             paper: "Myers & Bavoil 2007; K15 §2",
-            summary: "the first k, each in a sample of a multisampled pixel: one draw, no atomic operation; not exact at borders",
+            summary: "the first k, each in a sample of a multisampled pixel: one draw, no lock; not exact at borders",
             keep: KeepDefault::Best(4),
             choices: vec![
                 ("storage", "stencil_routed"),

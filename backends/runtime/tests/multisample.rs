@@ -255,26 +255,22 @@ fn effects_go_through_the_fragments_of_a_sample_as_they_like() {
 fn a_tail_takes_what_a_fragment_covers() {
     let stage = stage::device();
     let behind = Triangle { corners: [[300, 410], [3700, 1200], [900, 3650]], depth: 0.5, color: [0, 0, 255, 200] };
+    // Over the whole frame: its third side only touches a corner.
     let corners = [[-WHOLE, 0], [WHOLE, 0], [WHOLE, 2 * WHOLE]];
-    let whole = [corners, corners.map(|[x, y]| [WHOLE - x, WHOLE - y])];
-    let before = whole.map(|corners| Triangle { corners, depth: 0.25, color: [255, 0, 0, 128] });
-    // Two triangles make the whole frame: the pixels along their edge hold both, and are left out.
-    let set = [("k", "1"), ("overflow", "weighted_tail")];
-    let several = with_samples("kplus_array", &set, 4).unwrap();
-    let triangles = [before[0], behind];
-    let seen = on_driver(&stage, &several, &triangles).unwrap();
+    let triangles = [Triangle { corners, depth: 0.25, color: [255, 0, 0, 128] }, behind];
     let expected = supersampled(4, &triangles, |moved| on_driver(&stage, &technique("ab_ll", &[]), moved).unwrap());
-    let mut halves = 0;
-    for (pixel, (seen, expected)) in (0..SIZE * SIZE).zip(seen.iter().zip(&expected)) {
-        let (x, y) = (pixel % SIZE, pixel / SIZE);
-        // Where the nearer covers all samples.
-        if y + 1 < x + SIZE && x > y {
+    for overflow in ["weighted_tail", "tail_blend"] {
+        let set = [("k", "1"), ("overflow", overflow), ("cull", "none")];
+        let seen = on_driver(&stage, &with_samples("kplus_array", &set, 4).unwrap(), &triangles).unwrap();
+        let mut halves = 0;
+        for (pixel, (seen, expected)) in (0..SIZE * SIZE).zip(seen.iter().zip(&expected)) {
+            let (x, y) = (pixel % SIZE, pixel / SIZE);
             let difference = seen.iter().zip(expected).map(|(a, b)| 255.0 * (a - b).abs()).fold(0.0, f32::max);
-            assert!(difference <= 1.0, "pixel {x}, {y} is {seen:?}, supersampled {expected:?}");
+            assert!(difference <= 1.0, "{overflow}: pixel {x}, {y} is {seen:?}, supersampled {expected:?}");
             halves += u32::from(expected[2] > 0.02 && expected[2] < 0.35);
         }
+        assert!(halves > 4, "{halves} pixels lie on the edge of what the tail took");
     }
-    assert!(halves > 4, "{halves} pixels lie on the edge of what the tail took");
 }
 
 #[test]
