@@ -118,6 +118,19 @@ fn files_are_short_and_have_heads() {
     }
 }
 
+/// Of every axis that a user chooses on, but for storages, which techniques name.
+#[test]
+fn the_readme_names_every_value() {
+    let (readme, registry) = (read(&root().join("README.md")), Registry::builtin());
+    for axis in registry.axes().iter().filter(|axis| axis.chosen && axis.key != "storage") {
+        let line = readme.lines().find(|line| line.starts_with(&format!("| {} |", axis.key)));
+        let line = line.unwrap_or_else(|| panic!("README.md has no line for the axis `{}`", axis.key));
+        for row in registry.rows_of(axis.key).filter(|row| row.key != Registry::CLOSURE) {
+            assert!(line.contains(&format!("`{}", row.key)), "README.md does not name `{}: {}`", axis.key, row.key);
+        }
+    }
+}
+
 #[test]
 fn words_that_say_nothing_name_nothing() {
     const WORDS: [&str; 5] = ["utils", "util", "helpers_misc", "manager", "types_misc"];

@@ -4,7 +4,8 @@
 //
 // What is kept, and in which order it comes, is decided for the whole pixel: attributes and depth are those at its
 // middle, as everywhere where shaders run once per pixel. So samples are those of supersampling except where surfaces
-// cross inside of one pixel; and two triangles that share an edge are two fragments of the pixels along it.
+// cross inside of one pixel; and two triangles that share an edge are two fragments of the pixels along it. What an
+// overflow makes of lost fragments is one colour for the pixel, to which each adds as much as it covers.
 //
 // Memory: 1 word per fragment.
 
