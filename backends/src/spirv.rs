@@ -20,7 +20,11 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
-        let words = edits::apply(words, emission.prefix, emission.interlock)?;
+        // Reading words back costs more than writing them.
+        let words = match edits::may_apply(&module, &entry.name, emission.prefix) {
+            true => edits::apply(words, emission.prefix, emission.interlock)?,
+            false => words,
+        };
         let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let path = emission.path(&format!(".{}.spv", stage_suffix(entry.stage)));
         files.push(emission.file(path, vec![(stage_name(entry.stage), entry.name.clone())], bytes));

@@ -12,6 +12,16 @@ use super::sample_mask;
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
 use crate::target::InterlockOrder;
 
+/// Whether there may be something to edit in the words of an entry point: its module calls a marker, or it has a sample mask.
+pub(super) fn may_apply(module: &naga::Module, entry: &str, prefix: &str) -> bool {
+    let markers = [CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE].map(|marker| format!("{prefix}{marker}"));
+    let is_marker = |name: &String| markers.contains(name);
+    let Some(point) = module.entry_points.iter().find(|point| point.name == entry) else { return true };
+    point.stage == naga::ShaderStage::Fragment
+        && (module.functions.iter().any(|(_, function)| function.name.as_ref().is_some_and(is_marker))
+            || sample_mask::is_in(module, &point.function))
+}
+
 /// Applies the edits; `prefix` precedes the markers' names.
 pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Result<Vec<u32>, String> {
     let mut module = load_words(&words).map_err(|error| format!("naga's SPIR-V cannot be read back: {error}"))?;

@@ -7,6 +7,18 @@
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{BuiltIn, Decoration, Op, StorageClass, Word};
 
+/// Whether an entry point has the built-in, as an input or an output, by itself or in a struct.
+pub(super) fn is_in(module: &naga::Module, function: &naga::Function) -> bool {
+    let is_mask = |binding: Option<&naga::Binding>| binding == Some(&naga::Binding::BuiltIn(naga::BuiltIn::SampleMask));
+    let holds = |kind: naga::Handle<naga::Type>| match &module.types[kind].inner {
+        naga::TypeInner::Struct { members, .. } => members.iter().any(|member| is_mask(member.binding.as_ref())),
+        _ => false,
+    };
+    let arguments = function.arguments.iter().map(|argument| (argument.binding.as_ref(), argument.ty));
+    let results = function.result.iter().map(|result| (result.binding.as_ref(), result.ty));
+    arguments.chain(results).any(|(binding, kind)| is_mask(binding) || holds(kind))
+}
+
 /// Mends every variable that is the sample mask, input or output; whether there was one.
 pub(super) fn mend(module: &mut Module) -> Result<bool, String> {
     let variables: Vec<Word> = module.annotations.iter().filter_map(mask_variable).collect();
