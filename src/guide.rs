@@ -3,11 +3,12 @@
 //! 1. [`describe`]: payload, criterion, constraints, choices, effect; in a file, in Rust, by a program.
 //! 2. [`language`]: what closures can say.
 //! 3. [`generate`]: files for engines, build scripts, tiers.
-//! 4. [`run`]: pictures and figures from the command line.
-//! 5. [`embed`]: frames in an engine of yours.
-//! 6. [`extend`]: a storage of your own, snapshots.
-//! 7. [`check`]: every order in which fragments of a pixel can come, tried.
-//! 8. [`refusals`]: what goes wrong, and how to read it.
+//! 4. [`manifest`]: how an engine in any language runs a frame.
+//! 5. [`run`]: pictures and figures from the command line.
+//! 6. [`embed`]: frames in an engine of yours.
+//! 7. [`extend`]: a storage of your own, snapshots.
+//! 8. [`check`]: every order in which fragments of a pixel can come, tried.
+//! 9. [`refusals`]: what goes wrong, and how to read it.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -15,6 +16,8 @@ pub mod describe {}
 pub mod language {}
 #[doc = include_str!("guide/generate.md")]
 pub mod generate {}
+#[doc = include_str!("guide/manifest.md")]
+pub mod manifest {}
 #[doc = include_str!("guide/run.md")]
 pub mod run {}
 #[cfg(feature = "pictures")]

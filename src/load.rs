@@ -44,6 +44,15 @@ pub struct Loaded {
     pub variant: Result<Variant, Diagnostics>,
     /// Every text that was read, by its name in messages; the description's is the first.
     pub sources: Vec<(String, String)>,
+    /// The changes as texts with a line for each, by their names in messages. They are no files.
+    pub changes: Vec<(String, String)>,
+}
+
+impl Loaded {
+    /// Every text that messages may point to, by its name there.
+    pub fn texts(&self) -> Vec<(String, String)> {
+        self.sources.iter().chain(&self.changes).cloned().collect()
+    }
 }
 
 /// Checks a description after the changes `set`, each a name and a value as in `--set name=value`, and with the choices
@@ -70,7 +79,12 @@ pub fn load(
         }
         Parsed { draft: Some(draft), diagnostics }.check(&own.registry)
     });
-    Loaded { variant, sources }
+    let lines = |changes: &mut dyn Iterator<Item = (&str, &str)>| -> String {
+        changes.map(|(name, value)| format!("{name}={value}\n")).collect()
+    };
+    let set = lines(&mut set.iter().map(|(name, value)| (name.as_str(), value.as_str())));
+    let changes = vec![(SET.to_owned(), set), (UNLESS_SAID.to_owned(), lines(&mut unless_said.iter().copied()))];
+    Loaded { variant, sources, changes }
 }
 
 /// The variant alone, after the changes `set`.
@@ -94,9 +108,16 @@ fn drafted(description: &Description) -> Result<(Draft, Diagnostics), Diagnostic
     }
 }
 
+/// What stands for a file where a change from outside is at fault: a line for each.
+const SET: &str = "--set";
+
+/// The same for what a command chooses where nobody does.
+const UNLESS_SAID: &str = "chosen by the command";
+
 fn change(draft: &mut Draft, set: &[(String, String)], unless_said: &[(&str, &str)], diagnostics: &mut Diagnostics) {
-    for (name, value) in set {
-        let origin = Origin::new("--set", 1, 1).with_length(name.chars().count() as u32);
+    let whole = |name: &str, value: &str| name.chars().count() as u32 + 1 + value.chars().count() as u32;
+    for (line, (name, value)) in (1..).zip(set) {
+        let origin = Origin::new(SET, line, 1).with_length(whole(name, value));
         if let Err(wanted) = draft.set(name, value, &origin) {
             diagnostics.push(Diagnostic::new(
                 codes::BAD_OPTION,
@@ -106,14 +127,14 @@ fn change(draft: &mut Draft, set: &[(String, String)], unless_said: &[(&str, &st
             ));
         }
     }
-    for (name, value) in unless_said {
+    for (line, (name, value)) in (1..).zip(unless_said) {
         let said = match name.split_once('.') {
             Some(("fragment", _)) => !draft.attributes.is_empty(),
             _ => draft.choices.iter().any(|choice| choice.axis.value == *name),
         };
         if !said {
             // A choice on an axis takes any text; the rules judge it.
-            let _ = draft.set(name, value, &Origin::new("unless said", 1, 1));
+            let _ = draft.set(name, value, &Origin::new(UNLESS_SAID, line, 1).with_length(whole(name, value)));
         }
     }
 }

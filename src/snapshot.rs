@@ -51,7 +51,8 @@ pub fn texts(description: &str, targets: &[&str]) -> Result<Vec<(String, String)
         None => Description::read(path).map_err(|error| format!("{description}: {error}"))?,
     };
     let loaded = load(&read, &[], &[], &registry);
-    let report = |faults| render(&faults, &loaded.sources);
+    let texts = loaded.texts();
+    let report = |faults| render(&faults, &texts);
     let variant = loaded.variant.map_err(report)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     let (mut plans, mut files) = (Vec::new(), Vec::new());

@@ -123,6 +123,7 @@ fn who_says_otherwise_is_drawn_over_what_is_opaque() {
     let all = [arguments("ab_ll", &scene, &surfaces, &out, "cpu"), vec!["--set", "opaque=none"]].concat();
     let output = fragbuf(&all);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("seen through them"), "{}", stderr(&output));
     for (index, pixel) in read(&out).2.iter().enumerate() {
         let (x, y) = (index % SIZE, index / SIZE);
         let front = expected(&transparent, &[], usize::MAX, (x, y));

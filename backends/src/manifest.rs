@@ -2,7 +2,7 @@
 
 use fragbuf_codegen::{GENERATOR, Plan, Planned as PlannedResource};
 use fragbuf_glsl::Dialect;
-use fragbuf_model::mangled;
+use fragbuf_model::{UniformBlock, mangled};
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::{
     Access, Blend, Compare, DepthState, Element, Init, Kind, Life, Objects, Pass, State, StencilOperation,
@@ -121,25 +121,25 @@ fn entry(plan: &Plan) -> Value {
     json!({ "words": plan.layout.entry_words(), "fields": fields, "key": dashed(&format!("{:?}", plan.layout.key)) })
 }
 
-/// Uniform blocks with their fields in order; offsets follow std140, which WGSL's uniform layout equals here.
+/// Uniform blocks with their fields in order, offsets and sizes in bytes: WGSL's uniform layout, which std140 equals here.
 fn uniform_blocks(plan: &Plan, group: u32) -> Value {
-    let frame: Vec<Value> = plan.frame.iter().map(|name| json!({ "name": name, "type": "u32" })).collect();
-    let own: Vec<Value> = plan
-        .variant
-        .uniforms
-        .iter()
-        .map(|uniform| json!({ "name": mangled(&uniform.name.value), "type": uniform.kind.value.wgsl_type() }))
-        .collect();
-    let camera = json!([{ "name": "view_projection", "type": "mat4x4<f32>" }]);
-    let block = |name: &str, binding: u32, fields: Value| {
+    let field = |name: &str, kind: &str, offset: u32| json!({ "name": name, "type": kind, "offset": offset });
+    let frame: Vec<Value> = (0..).zip(&plan.frame).map(|(word, name)| field(name, "u32", 4 * word)).collect();
+    let uniforms = &plan.variant.uniforms;
+    let UniformBlock { offsets, size } = UniformBlock::of(uniforms);
+    let own = offsets.into_iter().zip(uniforms);
+    let own = own.map(|(offset, one)| field(&mangled(&one.name.value), one.kind.value.wgsl_type(), offset));
+    let block = |name: &str, binding: u32, bytes: u32, fields: Vec<Value>| {
         let opengl = opengl_binding(group, binding);
-        json!({ "name": name, "group": group, "binding": binding, "opengl_binding": opengl, "fields": fields })
+        json!({
+            "name": name, "group": group, "binding": binding, "opengl_binding": opengl, "bytes": bytes, "fields": fields,
+        })
     };
-    let mut blocks = vec![block("frame", 0, frame.into())];
-    if !own.is_empty() {
-        blocks.push(block("uniforms", 1, own.into()));
+    let mut blocks = vec![block("frame", 0, (4 * plan.frame.len() as u32).next_multiple_of(16), frame)];
+    if !uniforms.is_empty() {
+        blocks.push(block("uniforms", 1, size, own.collect()));
     }
-    blocks.push(block("camera", 2, camera));
+    blocks.push(block("camera", 2, 64, vec![field("view_projection", "mat4x4<f32>", 0)]));
     blocks.into()
 }
 
@@ -280,6 +280,9 @@ fn pass_json(pass: &Pass) -> Value {
     map.insert("kind".into(), kind.into());
     if let Kind::Compute { groups } = &pass.kind {
         map.insert("groups".into(), groups.iter().map(|formula| formula.0.to_string()).collect());
+    }
+    if pass.kind == Kind::Fullscreen {
+        map.insert("vertices".into(), 3.into());
     }
     if !pass.constants.is_empty() {
         let constants = pass.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value)));

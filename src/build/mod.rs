@@ -161,7 +161,8 @@ impl Entry {
         for (file, _) in loaded.sources.iter().skip(1) {
             rerun_if_changed(Path::new(file))?;
         }
-        let failed = |faults| Error::Description(render(&faults, &loaded.sources));
+        let texts = loaded.texts();
+        let failed = |faults| Error::Description(render(&faults, &texts));
         let variant = loaded.variant.map_err(failed)?;
         let request = Request { targets, form: Form::Program, prefix: "", group };
         let generation = generate(&variant, &request, &registry).map_err(failed)?;

@@ -42,7 +42,7 @@ impl Input {
         registry: &Registry,
     ) -> Result<Variant, Failure> {
         let loaded = load(&self.description, set, unless_said, registry);
-        self.sources = loaded.sources;
+        self.sources = loaded.texts();
         loaded.variant.map_err(|diagnostics| self.failure(diagnostics))
     }
 

@@ -96,7 +96,7 @@ fn ratios(criterion: &mut Criterion) {
                 println!("{:12} {:12} {:>10} {:>10} {:>6}", technique.key, target.name, ours.as_micros(), "none", "");
                 continue;
             }
-            let floor = least(|| drop(floor(&texts, target)));
+            let floor = least(|| _ = floor(&texts, target));
             let ratio = ours.as_secs_f64() / floor.as_secs_f64();
             let (ours, floor) = (ours.as_micros(), floor.as_micros());
             println!("{:12} {:12} {ours:>10} {floor:>10} {ratio:>6.2}", technique.key, target.name);

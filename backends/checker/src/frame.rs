@@ -51,8 +51,7 @@ impl<'s> Frame<'s> {
         let count = FIRST_BINDING as usize + subject.plan.resources.len();
         let memory = vec![Vec::new(); count];
         let mut frame = Frame { subject, memory, symbols, reserved: None, asked: None, round: 0 };
-        // Every component of every uniform is 1: constraints by a bound admit something.
-        frame.memory[1] = vec![1f32.to_bits(); 256];
+        frame.memory[1] = vec![subject.uniform.to_bits(); 256];
         frame.memory[2] = vec![0; 16];
         frame.allocate()?;
         Ok(frame)

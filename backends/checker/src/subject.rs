@@ -54,6 +54,8 @@ pub(crate) struct Subject {
     pub(crate) has_fences: bool,
     /// Whether an interlock lets fragments in by the order of submission.
     pub(crate) has_ordered_interlock: bool,
+    /// What every component of every uniform is.
+    pub(crate) uniform: f32,
 }
 
 /// A pass that computes or draws.
@@ -164,6 +166,7 @@ impl Subject {
             stream,
             has_fences: target.offers.contains(&Fact::Fences),
             has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
+            uniform: 1.0,
             turns,
             plan,
         }))

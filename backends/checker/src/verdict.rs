@@ -130,7 +130,8 @@ pub fn check_variant(
         return Err(Error::NothingToTry(LEFT_TO_TESTS.to_owned()));
     }
     for tries in [Tries::AsStated, Tries::Least] {
-        let Some(subject) = Subject::new(variant, target, registry, tries)? else { continue };
+        let Some(mut subject) = Subject::new(variant, target, registry, tries)? else { continue };
+        admit_some(&mut subject).map_err(Error::Unable)?;
         report.is_judged = !Promise::new(&subject, None).is_unknown();
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.what.to_string())).collect();
@@ -140,6 +141,26 @@ pub fn check_variant(
         }
     }
     Ok(report)
+}
+
+/// Values of uniforms that are tried, until the description's constraints admit fragments enough.
+const UNIFORMS: [f32; 4] = [1.0, 0.0, 0.5, -1.0];
+
+/// Gives the uniforms a value by which the constraints admit fragments enough.
+fn admit_some(subject: &mut Subject) -> Result<(), String> {
+    let mut problem = String::new();
+    for uniform in UNIFORMS {
+        subject.uniform = uniform;
+        let mut frame = Frame::new(subject, plenty(subject)?)?;
+        match Candidates::new(subject, &mut frame.memory) {
+            Ok(_) => return Ok(()),
+            Err(error) => problem = error,
+        }
+    }
+    Err(format!(
+        "{problem}, whether uniforms are {}: check the storage with constraints that admit more",
+        UNIFORMS.map(|uniform| uniform.to_string()).join(", ")
+    ))
 }
 
 fn try_all(

@@ -176,7 +176,7 @@ fn is_exact_in_order(variant: &Variant) -> bool {
 fn the_driver_shows_what_supersampling_shows() {
     let stage = stage::device();
     let all = multisampled(4);
-    assert!(all.len() >= 18, "{} techniques", all.len());
+    assert!(all.len() >= 15, "{} techniques", all.len());
     let mut compared = 0;
     for (key, several, one) in all.into_iter().filter(|(_, several, _)| is_exact_in_order(several)) {
         for (name, triangles) in scenes() {
@@ -188,7 +188,7 @@ fn the_driver_shows_what_supersampling_shows() {
         }
         compared += 1;
     }
-    assert!(compared >= 14, "{compared} techniques were compared");
+    assert!(compared >= 12, "{compared} techniques were compared");
 }
 
 #[test]

@@ -29,6 +29,9 @@ impl Draft {
     /// the draft says. What the rows of an axis make of a value is left to the checks; for `k` and formats `Err` says what
     /// the value must be.
     pub fn set(&mut self, name: &str, value: &str, origin: &Origin) -> Result<(), String> {
+        if value.trim().is_empty() {
+            return Err("a value behind the `=`".to_owned());
+        }
         if name == "k" {
             let count = match value {
                 "all" => KeepCount::All,
@@ -55,11 +58,26 @@ impl Draft {
         }
         let names: Vec<String> =
             self.attributes.iter().map(|attribute| format!("`{}`", attribute.name.value)).collect();
-        match self.attributes.iter_mut().find(|attribute| attribute.name.value == name) {
-            Some(attribute) => attribute.format = Spanned::new(format, origin.clone()),
-            None => return Err(format!("the format of an attribute that there is: {}", names.join(", "))),
+        let has_closures = self.has_closures();
+        let Some(attribute) = self.attributes.iter_mut().find(|attribute| attribute.name.value == name) else {
+            return Err(format!("the format of an attribute that there is: {}", names.join(", ")));
+        };
+        let seen = attribute.format.value.wgsl_type();
+        if has_closures && format.wgsl_type() != seen {
+            let alike = Format::ALL.into_iter().filter(|format| format.wgsl_type() == seen).map(Format::keyword);
+            return Err(format!(
+                "a format that is {seen} to the description's closures: {}",
+                alike.collect::<Vec<_>>().join(", ")
+            ));
         }
+        attribute.format = Spanned::new(format, origin.clone());
         Ok(())
+    }
+
+    /// Whether some function has been checked against the attributes as they are.
+    fn has_closures(&self) -> bool {
+        let criterion = self.keep.as_ref().is_some_and(|keep| keep.criterion.is_some());
+        criterion || !self.constraints.is_empty() || self.resolve.is_some()
     }
 
     fn set_axis(&mut self, axis: &str, value: &str, origin: &Origin) {

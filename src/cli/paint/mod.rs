@@ -164,6 +164,11 @@ impl Painted {
                 "{description}: no fragment is seen; look at the camera, at `where`, and at uniforms, which are 0 unless given"
             ));
         }
+        if self.behind.is_some() && !self.plan.resources.iter().any(|planned| planned.is_brought()) {
+            warn(&format!(
+                "{description}: it does not ask for the depths of opaque surfaces, so what lies behind them is seen through them"
+            ));
+        }
         self.drawn.undone().for_each(|text| warn(&format!("{description}: {text}")));
         for counter in self.drawn.counters.iter().flat_map(|counters| &counters.0) {
             // What better fragments displaced is what the description asked for.
@@ -178,7 +183,7 @@ impl Painted {
             }
             if counter.name == PARTLY_COVERED && counter.count > 0 {
                 warn(&format!(
-                    "{description}: {} fragments cover their pixel in part; no more pixels than that may show others than the first",
+                    "{description}: {} fragments cover their pixel in part: at borders of triangles, pixels may show others than the first",
                     counter.count
                 ));
             }

@@ -35,7 +35,8 @@ pub(super) fn cascade() -> Row {
     }
 }
 
-/// The papers' 32-bit multidepth: one slot per key, the rest of an entry in a second pass.
+/// The papers' 32-bit multidepth: one slot per key, the rest of an entry in a second pass. Of two triangles that share an edge it
+/// keeps one, so it takes one sample per pixel: others would show cracks.
 pub(super) fn distinct_cascade() -> Row {
     Row {
         template: Some(template!("storage/distinct_cascade")),
@@ -46,6 +47,7 @@ pub(super) fn distinct_cascade() -> Row {
             Step::Pass(Pass::geometry("settle", "settle").uses("keys", Access::Read).uses("entries", Access::Atomic)),
             resolve(&["keys", "entries"]),
         ],
+        requires: vec![Fact::FragmentAtomics, Fact::OneSample],
         hazards: vec![
             Hazard::new(
                 "equal-keys",

@@ -17,7 +17,8 @@ pub(super) fn depth_ranges() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited],
+        // Of two triangles that share an edge it keeps one: several samples would show cracks.
+        requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::OneSample],
         defaults: vec![("sync".into(), "spin_lock".into()), ("sort".into(), "none".into())],
         parameters: vec![
             depth("near", "NEAR_MILLIONTHS", "0", "depth at which the first range begins, in millionths"),

@@ -24,7 +24,8 @@ pub(super) fn repeated_array() -> Row {
         ],
         calls: vec!["counters"],
         offers: vec![Fact::KeepsBest, Fact::SurvivesRaces],
-        requires: vec![Fact::FragmentAtomics, Fact::Race],
+        // Of two triangles that share an edge it keeps one: several samples would show cracks.
+        requires: vec![Fact::FragmentAtomics, Fact::Race, Fact::OneSample],
         defaults: vec![("sync".into(), "none".into())],
         hazards: hazards(),
         ..Row::new(

@@ -48,7 +48,7 @@ facts! {
     SelectsBest "that the k best are chosen among all";
     BestSuffice "a storage that may be handed the k best fragments alone";
     BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
-    DisplacesInTurn "a storage that displaces fragments inside the critical section alone, one whenever another comes";
+    DisplacesInTurn "a storage in which, inside the critical section, a better fragment displaces a kept one";
     CanReplace "that the worst kept fragment can be replaced inside the critical section, once there are k";
     OrderedSlots "slots in the order of depth, each of which can be replaced inside the critical section";
     Counted "the number of fragments of each pixel, known before they are stored";
