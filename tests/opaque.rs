@@ -113,6 +113,24 @@ fn depths_that_nobody_leaves_behind_are_asked_for() {
     assert!(stderr(&output).contains("nothing"), "{}", stderr(&output));
 }
 
+#[test]
+fn pictures_behind_opaque_surfaces_are_compared() {
+    let (folder, transparent, opaque) = scenes("opaque-compared");
+    let behind = folder.join("behind");
+    std::fs::create_dir_all(&behind).unwrap();
+    let (scene, surfaces, out) = (write(&folder, &transparent), write(&behind, &opaque), folder.join("o.png"));
+    let arguments = arguments("kplus_array", &scene, &surfaces, &out, "cpu");
+    let compared = |second: &[&str]| {
+        let both = [&["compare", "ab_ll"], &arguments[1..], second].concat();
+        let output = fragbuf(&both);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+        figures["different_pixels"].as_u64().unwrap()
+    };
+    assert_eq!(compared(&[]), 0);
+    assert!(compared(&["--set-second", "opaque=none"]) > 0);
+}
+
 /// A description that says `opaque: none` is drawn over all of it.
 #[test]
 fn who_says_otherwise_is_drawn_over_what_is_opaque() {

@@ -39,11 +39,12 @@ impl Compare {
         view.check()?;
         let progress = Progress::new();
         progress.stage(format!("loading {}", view.scene));
-        let stage = view.stage()?;
+        let (stage, opaque) = view.stages()?;
         let one = |description: &str, own: &[(String, String)]| {
             let set = [&self.set, own].concat();
             // The hit ratio needs every event.
-            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque: None };
+            let opaque = opaque.as_ref();
+            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque };
             paint(&wish, view, &stage, &progress)
         };
         let (first, second) = (one(&self.first, &self.set_first)?, one(&self.second, &self.set_second)?);

@@ -8,7 +8,7 @@ use super::output::{self, Failure};
 use super::paint::{Painted, Wish, paint};
 use super::picture;
 use super::progress::Progress;
-use super::view::{self, Stage, View, scenes};
+use super::view::{Stage, View, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -21,10 +21,6 @@ pub(crate) struct Render {
     /// A uniform of the description; those that are not given are 0
     #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = super::assignment)]
     uniforms: Vec<(String, String)>,
-    /// A scene that is drawn first, as if opaque: what lies behind it is turned away, its picture is behind the other. The camera
-    /// frames both. The description takes opaque=in_shader unless it says otherwise
-    #[arg(long, value_name = "PATH|builtin:NAME")]
-    opaque: Option<String>,
     #[command(flatten)]
     view: View,
 }
@@ -33,13 +29,9 @@ impl Render {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let view = &self.view;
         view.check()?;
-        self.opaque.iter().try_for_each(|scene| view::check(scene))?;
         let progress = Progress::new();
         progress.stage(format!("loading {}", view.scene));
-        let (stage, opaque) = match &self.opaque {
-            Some(opaque) => view.stages(opaque).map(|(stage, opaque)| (stage, Some(opaque)))?,
-            None => (view.stage()?, None),
-        };
+        let (stage, opaque) = view.stages()?;
         let wish = Wish {
             description: &self.description,
             set: &self.set,

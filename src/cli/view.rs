@@ -13,6 +13,10 @@ pub(crate) struct View {
     /// A model (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
     pub(crate) scene: String,
+    /// A scene that is drawn first, as if opaque: what lies behind it is turned away, its picture is behind the other. The camera
+    /// frames both. A description takes opaque=in_shader unless it says otherwise
+    #[arg(long, value_name = "PATH|builtin:NAME")]
+    opaque: Option<String>,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
@@ -67,22 +71,19 @@ pub(crate) struct Stage {
 }
 
 impl View {
-    /// Loads or makes the scene.
-    pub(crate) fn stage(&self) -> Result<Stage, Failure> {
+    /// Loads or makes the scene, and the one that is opaque, whatever its alpha; the camera frames both.
+    pub(crate) fn stages(&self) -> Result<(Stage, Option<Stage>), Failure> {
         let scene = fragbuf_scene::open(&self.scene, self.color)?;
-        let camera = self.camera(&scene);
-        Ok(self.staged(scene, camera))
-    }
-
-    /// The same, and another scene that is opaque, whatever its alpha; the camera frames both.
-    pub(crate) fn stages(&self, opaque: &str) -> Result<(Stage, Stage), Failure> {
-        let scene = fragbuf_scene::open(&self.scene, self.color)?;
+        let Some(opaque) = &self.opaque else {
+            let camera = self.camera(&scene);
+            return Ok((self.staged(scene, camera), None));
+        };
         let mut opaque = fragbuf_scene::open(opaque, self.color)?;
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let both = Scene { objects: scene.objects.iter().chain(&opaque.objects).cloned().collect() };
         let camera = self.camera(&both);
-        Ok((self.staged(scene, camera), self.staged(opaque, camera)))
+        Ok((self.staged(scene, camera), Some(self.staged(opaque, camera))))
     }
 
     fn camera(&self, scene: &Scene) -> Camera {
@@ -110,12 +111,12 @@ impl View {
 
     /// What is wrong with the arguments and needs no work to see.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        check(&self.scene)
+        std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
     }
 }
 
 /// What is wrong with the name of a scene and needs no work to see.
-pub(crate) fn check(scene: &str) -> Result<(), Failure> {
+fn check(scene: &str) -> Result<(), Failure> {
     if let Some(name) = scene.strip_prefix("builtin:") {
         name.parse::<fragbuf_scene::Builtin>()?;
     }
