@@ -84,7 +84,10 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from kplus_array {\n    samples: coverage;\n    cull: occupancy_early;\n}",
         &[("unmet", 3, 11, "`cull: occupancy`")],
     ),
-    ("buffer B from ab_ll {\n    opaque: in_shader;\n    samples: coverage;\n}", &[("unmet", 2, 13, "`opaque: none`")]),
+    (
+        "buffer B from ab_ll {\n    opaque: early;\n    samples: coverage;\n}",
+        &[("unmet", 2, 13, "`opaque: in_shader`")],
+    ),
     // Depth test and stencil are taken: by the storage, by the cull.
     ("buffer B from z_buffer {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: in_shader`")]),
     ("buffer B from kb_sr {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: none`")]),

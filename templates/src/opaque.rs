@@ -20,8 +20,6 @@ fn in_shader() -> Row {
         resources: vec![depth_buffer()],
         uses: vec![Use::new(DEPTH_BUFFER, Access::Sampled)],
         calls: vec!["addressing"],
-        // A depth buffer of several samples hides some of a pixel's and not others.
-        requires: vec![Fact::OneSample],
         ..Row::new(
             "opaque",
             "in_shader",

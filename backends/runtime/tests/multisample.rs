@@ -110,9 +110,17 @@ fn on_driver(stage: &Headless, variant: &Variant, triangles: &[Triangle]) -> Res
 }
 
 fn on_cpu(variant: &Variant, triangles: &[Triangle]) -> Picture {
+    behind(None, variant, triangles)
+}
+
+/// On the CPU device; behind something opaque at one depth, if there is any.
+fn behind(opaque: Option<f32>, variant: &Variant, triangles: &[Triangle]) -> Picture {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
     let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order: Order::Submission };
     let mut device = Device::new(Arc::new(code), settings).unwrap();
+    if let Some(depth) = opaque {
+        device.set_texture("opaque", &[depth; (SIZE * SIZE) as usize]).unwrap();
+    }
     let words: Vec<u32> =
         vertices(triangles, &VertexInputs::of(device.plan())).iter().map(|float| float.to_bits()).collect();
     let indices: Vec<u32> = (0..3 * triangles.len() as u32).collect();
@@ -201,6 +209,21 @@ fn the_cpu_device_shows_what_supersampling_shows() {
                 let expected = supersampled(samples, &triangles, |moved| on_cpu(&technique(key, &[]), moved));
                 compare(&format!("{key}, {samples} samples, {name}"), &seen, &expected);
             }
+        }
+    }
+}
+
+/// The depth buffer of opaque surfaces has one sample: what it hides, it hides in all samples of a pixel.
+#[test]
+fn opaque_surfaces_hide_every_sample() {
+    const OPAQUE: f32 = 0.375;
+    for samples in [2, 4, 8] {
+        let variant = with_samples("kplus_array", &[("opaque", "in_shader")], samples).unwrap();
+        let free = with_samples("kplus_array", &[], samples).unwrap();
+        for (name, triangles) in scenes() {
+            let seen: Vec<Triangle> = triangles.iter().copied().filter(|triangle| triangle.depth <= OPAQUE).collect();
+            let shown = behind(Some(OPAQUE), &variant, &triangles);
+            compare(&format!("{samples} samples, {name}"), &shown, &on_cpu(&free, &seen));
         }
     }
 }
