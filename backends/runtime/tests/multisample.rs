@@ -93,13 +93,7 @@ fn on_driver(stage: &Headless, variant: &Variant, triangles: &[Triangle]) -> Res
     let mut renderer = renderer(stage, &shaders, &settings())?;
     let floats = vertices(triangles, renderer.vertex_inputs());
     let bytes: Vec<u8> = floats.iter().flat_map(|float| float.to_le_bytes()).collect();
-    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("triangles"),
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    stage.queue.write_buffer(&buffer, 0, &bytes);
+    let buffer = stage::vertex_buffer(stage, &bytes);
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
     renderer.render(&output, &mut |pass, _| {

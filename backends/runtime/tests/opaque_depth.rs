@@ -366,13 +366,7 @@ fn nearest(quads: &[Quad]) -> Vec<Quad> {
 /// Draws over what the target holds.
 fn draw_on(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], target: &Offscreen) {
     let bytes = vertices(quads, renderer.vertex_inputs());
-    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("quads"),
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    stage.queue.write_buffer(&buffer, 0, &bytes);
+    let buffer = stage::vertex_buffer(stage, &bytes);
     let output = Output { view: target.view(), load: wgpu::LoadOp::Load };
     let drawn = renderer.render(&output, &mut |pass, _| {
         pass.set_vertex_buffer(0, buffer.slice(..));

@@ -19,13 +19,7 @@ fn depths(triangles: &[[[f32; 3]; 3]]) -> Vec<Vec<f32>> {
         let vertex = [x / half - 1.0, 1.0 - y / half, *z, 1.0, 1.0, 1.0, 1.0];
         bytes.extend(vertex.iter().flat_map(|value| value.to_le_bytes()));
     }
-    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    stage.queue.write_buffer(&buffer, 0, &bytes);
+    let buffer = crate::stage::vertex_buffer(&stage, &bytes);
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
     let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {

@@ -208,13 +208,7 @@ fn a_driver_routes_partly_covered_fragments_sample_by_sample() {
         for (name, triangles) in scenes() {
             let words = vertices(&triangles, renderer.vertex_inputs());
             let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-            let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("triangles"),
-                size: bytes.len() as u64,
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            stage.queue.write_buffer(&buffer, 0, &bytes);
+            let buffer = crate::stage::vertex_buffer(&stage, &bytes);
             let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
             let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
             let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {

@@ -125,13 +125,7 @@ fn every_technique_keeps_the_best_of_what_was_captured() {
     for seed in 0..4 {
         let count = 24;
         let bytes: Vec<u8> = triangles(count, seed).iter().flat_map(|float| float.to_le_bytes()).collect();
-        let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("triangles"),
-            size: bytes.len() as u64,
-            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        stage.queue.write_buffer(&buffer, 0, &bytes);
+        let buffer = crate::stage::vertex_buffer(&stage, &bytes);
         let fragments = captured(&stage, &buffer, count);
         assert!(fragments.len() > 500, "{} fragments", fragments.len());
         for (key, k) in techniques.clone() {

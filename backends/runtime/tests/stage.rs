@@ -100,6 +100,18 @@ pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, V
     reads.into_iter().filter_map(read).collect()
 }
 
+/// A vertex buffer with these bytes, or with nothing.
+pub fn vertex_buffer(stage: &Headless, bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("vertices"),
+        size: bytes.len().max(4) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    stage.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
 /// Draws `quads` in their order over the background.
 pub fn draw_over(
     stage: &Headless,
@@ -108,13 +120,7 @@ pub fn draw_over(
     offscreen: &Offscreen,
 ) -> Result<(), Error> {
     let bytes = vertices(quads, renderer.vertex_inputs());
-    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("quads"),
-        size: bytes.len().max(4) as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    stage.queue.write_buffer(&buffer, 0, &bytes);
+    let buffer = vertex_buffer(stage, &bytes);
     let [r, g, b] = BACKGROUND;
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
     renderer.render(&output, &mut |pass, _| {

@@ -1,0 +1,119 @@
+//! Formulas in normal form. In: sums and products of numbers and symbols. Out: what two formulas have in common, and a text
+//! as the papers write it. No value of a symbol is asked for here.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A sum of products of symbols, in normal form: equal formulas have equal polynomials.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Polynomial(BTreeMap<Vec<String>, i64>);
+
+impl Polynomial {
+    /// The constant `number`.
+    pub fn number(number: i64) -> Self {
+        let mut terms = BTreeMap::new();
+        if number != 0 {
+            terms.insert(Vec::new(), number);
+        }
+        Polynomial(terms)
+    }
+
+    /// The symbol `name`.
+    pub fn symbol(name: &str) -> Self {
+        Polynomial(BTreeMap::from([(vec![name.to_owned()], 1)]))
+    }
+
+    /// `self + factor * other`.
+    pub fn plus(&self, other: &Polynomial, factor: i64) -> Polynomial {
+        let mut terms = self.0.clone();
+        for (symbols, coefficient) in &other.0 {
+            *terms.entry(symbols.clone()).or_insert(0) += factor * coefficient;
+        }
+        terms.retain(|_, coefficient| *coefficient != 0);
+        Polynomial(terms)
+    }
+
+    /// `self * other`.
+    pub fn times(&self, other: &Polynomial) -> Polynomial {
+        let mut product = Polynomial::default();
+        for (left, a) in &self.0 {
+            for (right, b) in &other.0 {
+                let mut symbols = [left.as_slice(), right.as_slice()].concat();
+                symbols.sort();
+                product = product.plus(&Polynomial(BTreeMap::from([(symbols, 1)])), a * b);
+            }
+        }
+        product
+    }
+
+    /// The coefficient of the single factor `name`: what remains of each term that has `name` in it, without one of them.
+    pub fn coefficient(&self, name: &str) -> Polynomial {
+        let mut terms = BTreeMap::new();
+        for (symbols, coefficient) in &self.0 {
+            if let Some(index) = symbols.iter().position(|symbol| symbol == name) {
+                let mut rest = symbols.clone();
+                rest.remove(index);
+                terms.insert(rest, *coefficient);
+            }
+        }
+        Polynomial(terms)
+    }
+
+    /// The terms with a fraction of the symbol `name` in them, whose fractions are called those of `other`: `8(a/4)` is
+    /// `8b/4` for `a` and `b`.
+    pub fn fractions(&self, name: &str, other: &str) -> Polynomial {
+        let renamed = |symbol: &String| {
+            let below = symbol.strip_prefix('(')?.strip_prefix(name)?.strip_prefix('/')?.strip_suffix(')')?;
+            below.parse::<u32>().is_ok().then(|| format!("{other}/{below}"))
+        };
+        let mut terms = BTreeMap::new();
+        for (symbols, coefficient) in &self.0 {
+            if symbols.iter().any(|symbol| renamed(symbol).is_some()) {
+                let symbols = symbols.iter().map(|symbol| renamed(symbol).unwrap_or_else(|| symbol.clone()));
+                terms.insert(symbols.collect(), *coefficient);
+            }
+        }
+        Polynomial(terms)
+    }
+
+    /// Whether nothing is left.
+    pub fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(super) fn as_number(&self) -> Option<u64> {
+        match self.0.iter().next() {
+            None => Some(0),
+            Some((symbols, number)) if symbols.is_empty() && self.0.len() == 1 => u64::try_from(*number).ok(),
+            Some(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Polynomial {
+    /// The papers' notation: `2k+2`, `3f+1`; products of symbols are joined by `*`; the constant comes last.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return f.write_str("0");
+        }
+        let mut terms: Vec<_> = self.0.iter().collect();
+        terms.sort_by_key(|(symbols, _)| std::cmp::Reverse(symbols.len()));
+        for (index, (symbols, coefficient)) in terms.into_iter().enumerate() {
+            let sign = if *coefficient < 0 {
+                "-"
+            } else if index > 0 {
+                "+"
+            } else {
+                ""
+            };
+            let magnitude = coefficient.unsigned_abs();
+            let product = symbols.join("*");
+            match (magnitude, product.as_str()) {
+                (_, "") => write!(f, "{sign}{magnitude}")?,
+                (1, _) => write!(f, "{sign}{product}")?,
+                _ => write!(f, "{sign}{magnitude}{product}")?,
+            }
+        }
+        Ok(())
+    }
+}
