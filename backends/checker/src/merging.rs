@@ -33,11 +33,8 @@ impl Merging {
     /// How a subject merges; `None`: it does not.
     pub(crate) fn new(subject: &Subject) -> Option<Self> {
         let effects = effects(subject);
-        let which = match () {
-            () if effects.contains(&Effect::MergedFarthest) => Which::Farthest,
-            () if effects.contains(&Effect::MergedNeighbours) => Which::Neighbours,
-            () => return None,
-        };
+        let kinds = [(Effect::MergedFarthest, Which::Farthest), (Effect::MergedNeighbours, Which::Neighbours)];
+        let (_, which) = kinds.into_iter().find(|(effect, _)| effects.contains(effect))?;
         let beside = (1..).zip(&subject.plan.layout.beside);
         let words: Vec<_> = beside.filter(|(_, word)| word.member.name == "color").collect();
         let format = words.first()?.1.member.format;

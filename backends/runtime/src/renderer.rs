@@ -84,8 +84,8 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// Starts a frame; one that was not finished is over. Fails where a texture is missing that the caller brings. Submit what was recorded of a frame before the next begins:
-    /// uniform buffers are written ahead of the next submission.
+    /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins: uniform
+    /// buffers are written ahead of the next submission. Fails where a texture is missing that the caller brings.
     pub fn begin(&mut self) -> Result<Frame, Error> {
         if is_lost(&self.device) {
             return Err(Error::Lost);

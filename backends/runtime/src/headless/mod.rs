@@ -26,9 +26,8 @@ pub struct Headless {
     lost: Arc<AtomicBool>,
 }
 
-/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, forced early depth
-/// tests, and code that is passed
-/// through.
+/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, forced early depth tests, and
+/// code that is passed through.
 const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::MEMORY_DECORATION_COHERENT)
     .union(wgpu::Features::SHADER_INT64)
