@@ -244,9 +244,9 @@ fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<
         }
         let plan = plan(variant, &one.1, registry).unwrap_or_else(|faults| panic!("{faults}"));
         let order = one.1.rows.iter().find_map(|selected| selected.row.order);
-        let around = format!("{:?}", (&plan.resources, &plan.frame, &plan.constants, order, variant.keep));
+        let around = format!("{:?}", (&plan.resources, &plan.fields, &plan.constants, order, variant.keep));
         let mut is_new = false;
-        for pass in plan.passes() {
+        for pass in &plan.passes {
             let mut hasher = DefaultHasher::new();
             (accepted.payload, target.profile, format!("{pass:?}"), &around).hash(&mut hasher);
             is_new |= planned.lock().unwrap().insert(hasher.finish());
@@ -257,7 +257,7 @@ fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<
         }
         let linking = Linking { profile: one.0, form: Form::Program, prefix: String::new(), group: 0 };
         let program = link(&plan, &linking, registry).unwrap_or_else(|faults| panic!("{faults}"));
-        texts.extend(program.passes.iter().zip(plan.passes()).map(|(linked, pass)| {
+        texts.extend(program.passes.iter().zip(&plan.passes).map(|(linked, pass)| {
             let mut hasher = DefaultHasher::new();
             let code = linked.text.lines().filter(|line| !line.trim_start().starts_with("//"));
             code.for_each(|line| line.hash(&mut hasher));
@@ -315,7 +315,7 @@ fn every_capacity_generates() {
     for k in ks {
         let source = format!("buffer B from kplus_array {{ keep {k}; }}");
         let variant = checked(&text(&source), &[]).unwrap_or_else(|faults| panic!("{faults}"));
-        let capacity = generated(&variant).plans[0].plan.bound.value("capacity");
+        let capacity = Some(u64::from(generated(&variant).plans[0].plan.capacity()));
         assert!(capacity.is_some_and(|capacity| capacity >= u64::from(k) && capacity.is_power_of_two()));
     }
 }

@@ -138,7 +138,7 @@ fn emit(
     request: &Request<'_>,
 ) -> Result<Vec<File>, Diagnostics> {
     let prefix = if request.prefix.is_empty() { String::new() } else { format!("{}_", request.prefix) };
-    let planned = plan.passes();
+    let planned = &plan.passes;
     let mut diagnostics = Diagnostics::new();
     let mut files: Vec<File> = Vec::new();
     for (checked, pass) in passes.iter().zip(planned) {

@@ -1,13 +1,12 @@
 //! What an engine follows: `manifest.json`. The schema is versioned; fields are only ever added within a version.
 
-use fragbuf_codegen::{GENERATOR, Plan, Planned as PlannedResource};
+mod frame;
+
+use fragbuf_codegen::{GENERATOR, Plan, PlanSymbol, PlanValue, Planned as PlannedResource, SymbolId};
 use fragbuf_glsl::Dialect;
 use fragbuf_model::{UniformBlock, mangled};
 use fragbuf_templates::COUNTERS;
-use fragbuf_templates::vocabulary::{
-    Access, Blend, Compare, DepthState, Element, Init, Kind, Life, Objects, Pass, State, StencilOperation,
-    StencilState, Step, TextureFormat, Until,
-};
+use fragbuf_templates::vocabulary::{Element, Init, Life, SYMBOLS, TextureFormat};
 use serde_json::{Map, Value, json};
 
 use crate::generate::{Generation, Planned};
@@ -15,7 +14,7 @@ use crate::glsl::slot;
 use crate::tier;
 
 /// The schema of `manifest.json`.
-pub const SCHEMA: &str = "fragbuf-manifest/1";
+pub const SCHEMA: &str = "fragbuf-manifest/2";
 
 /// The manifest of a generation whose resources are in bind group `group`.
 pub fn manifest(generation: &Generation, group: u32) -> Value {
@@ -85,7 +84,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("axes".into(), axes.into());
     map.insert("keep".into(), plan.variant.keep.into());
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
-    map.insert("pixels".into(), plan.pixels().0.into());
+    map.insert("symbols".into(), symbols(plan));
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
     map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(fact.word())).collect());
     map.insert(
@@ -96,11 +95,35 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("uniform_blocks".into(), uniform_blocks(plan, group));
     map.insert("vertex_inputs".into(), vertex_inputs(plan));
     map.insert("resources".into(), plan.resources.iter().map(|planned| resource(planned, group)).collect());
-    map.insert("steps".into(), steps(&plan.steps));
+    map.insert("exchanges".into(), frame::exchanges(plan));
+    map.insert("steps".into(), frame::steps(plan));
     map.insert("counters".into(), counters(plan));
     let hazards = plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "what": hazard.what }));
     map.insert("hazards".into(), hazards.collect());
     map
+}
+
+/// The symbols of formulas: what each is, when and by whom it is set, its range, and its value where nobody sets one.
+fn symbols(plan: &Plan) -> Value {
+    let symbol = |(id, symbol): (SymbolId, &PlanSymbol)| {
+        let (least, most) = symbol.range;
+        let most = if id == SymbolId::K { u64::from(plan.capacity()) } else { most };
+        let mut value = json!({
+            "name": symbol.name,
+            "meaning": symbol.meaning,
+            "when": symbol.when.word(),
+            "set_by": symbol.set_by.word(),
+            "least": least,
+            "most": most,
+        });
+        match &symbol.value {
+            PlanValue::Number(number) => value["value"] = (*number).into(),
+            PlanValue::Default(quantity) => value["default"] = quantity.to_string().into(),
+            PlanValue::Open => {}
+        }
+        value
+    };
+    plan.symbols.iter().take(SYMBOLS.len()).map(symbol).collect()
 }
 
 /// A `Debug` name in lower case, words joined by `-`.
@@ -124,7 +147,8 @@ fn entry(plan: &Plan) -> Value {
 /// Uniform blocks with their fields in order, offsets and sizes in bytes: WGSL's uniform layout, which std140 equals here.
 fn uniform_blocks(plan: &Plan, group: u32) -> Value {
     let field = |name: &str, kind: &str, offset: u32| json!({ "name": name, "type": kind, "offset": offset });
-    let frame: Vec<Value> = (0..).zip(&plan.frame).map(|(word, name)| field(name, "u32", 4 * word)).collect();
+    let frame = (0..).zip(&plan.fields).map(|(word, id)| field(&plan.symbols.get(*id).name, "u32", 4 * word));
+    let frame: Vec<Value> = frame.collect();
     let uniforms = &plan.variant.uniforms;
     let UniformBlock { offsets, size } = UniformBlock::of(uniforms);
     let own = offsets.into_iter().zip(uniforms);
@@ -135,7 +159,7 @@ fn uniform_blocks(plan: &Plan, group: u32) -> Value {
             "name": name, "group": group, "binding": binding, "opengl_binding": opengl, "bytes": bytes, "fields": fields,
         })
     };
-    let mut blocks = vec![block("frame", 0, (4 * plan.frame.len() as u32).next_multiple_of(16), frame)];
+    let mut blocks = vec![block("frame", 0, (4 * plan.fields.len() as u32).next_multiple_of(16), frame)];
     if !uniforms.is_empty() {
         blocks.push(block("uniforms", 1, size, own.collect()));
     }
@@ -182,7 +206,7 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         "opengl_binding": opengl_binding(group, planned.binding),
         "element": element,
         "extents": extents,
-        "words": planned.words.0,
+        "words": planned.words.to_string(),
         "bytes": format!("4 * ({})", planned.words),
         "init": init,
         "life": if resource.life == Life::Persistent { "persistent" } else { "frame" },
@@ -240,125 +264,6 @@ fn texture_format(format: TextureFormat) -> &'static str {
         TextureFormat::Depth32Float => "depth32float",
         TextureFormat::Depth24PlusStencil8 => "depth24plus-stencil8",
     }
-}
-
-fn steps(steps: &[Step]) -> Value {
-    steps.iter().map(step).collect()
-}
-
-fn step(step: &Step) -> Value {
-    match step {
-        Step::Pass(pass) => pass_json(pass),
-        Step::Clear { resource, value } => json!({ "do": "clear", "resource": resource, "value": value }),
-        Step::Copy { from, to } => json!({ "do": "copy", "from": from, "to": to }),
-        Step::Swap(a, b) => json!({ "do": "swap", "resources": [a, b] }),
-        Step::Host(host) => {
-            json!({ "do": "host", "function": host.function, "reads": host.reads, "sets": host.sets })
-        }
-        Step::Repeat(repeat) => {
-            let until = match &repeat.until {
-                Until::Times(times) => json!({ "times": times.0 }),
-                Until::Zero(counter) => json!({ "zero": counter }),
-                Until::NoSamples(pass) => json!({ "no_samples": pass }),
-            };
-            json!({ "do": "repeat", "until": until, "at_most": repeat.at_most.0, "steps": steps(&repeat.body) })
-        }
-    }
-}
-
-fn pass_json(pass: &Pass) -> Value {
-    let uses: Map<String, Value> =
-        pass.uses.iter().map(|usage| (usage.resource.clone(), access(usage.access).into())).collect();
-    let mut map = Map::new();
-    map.insert("do".into(), "pass".into());
-    map.insert("pass".into(), pass.anchor.clone().into());
-    let kind = match &pass.kind {
-        Kind::Geometry => "geometry",
-        Kind::Fullscreen => "fullscreen",
-        Kind::Compute { .. } => "compute",
-    };
-    map.insert("kind".into(), kind.into());
-    if let Kind::Compute { groups } = &pass.kind {
-        map.insert("groups".into(), groups.iter().map(|formula| formula.0.to_string()).collect());
-    }
-    if pass.kind == Kind::Fullscreen {
-        map.insert("vertices".into(), 3.into());
-    }
-    if !pass.constants.is_empty() {
-        let constants = pass.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value)));
-        map.insert("constants".into(), constants.collect::<Map<_, _>>().into());
-    }
-    map.insert("uses".into(), uses.into());
-    map.insert("state".into(), state(&pass.state));
-    match &pass.objects {
-        Objects::All => {}
-        Objects::Boxes => {
-            map.insert("objects".into(), "boxes".into());
-        }
-        Objects::Visible(query) => {
-            map.insert("objects".into(), json!({ "visible_in": query }));
-        }
-    }
-    map.into()
-}
-
-fn access(access: Access) -> &'static str {
-    match access {
-        Access::Read => "read",
-        Access::Plain => "plain",
-        Access::Atomic => "atomic",
-        Access::Coherent => "coherent",
-        Access::Attachment => "attachment",
-        Access::Sampled => "sampled",
-        Access::Indirect => "indirect",
-    }
-}
-
-fn state(state: &State) -> Value {
-    let mut map = Map::new();
-    if let Some(DepthState { resource, compare, write, early }) = &state.depth {
-        let compare = compare_name(*compare);
-        map.insert("depth".into(), json!({ "resource": resource, "compare": compare, "write": write, "early": early }));
-    }
-    if let Some(StencilState { resource, compare, fail, pass, reference }) = &state.stencil {
-        let value = json!({
-            "resource": resource,
-            "compare": compare_name(*compare),
-            "fail": stencil_operation(*fail),
-            "pass": stencil_operation(*pass),
-            "reference": reference.0,
-        });
-        map.insert("stencil".into(), value);
-    }
-    let targets = state.targets.iter().map(|t| json!({ "resource": t.resource, "blend": blend(t.blend) }));
-    map.insert("targets".into(), targets.collect());
-    if let Some(samples) = &state.samples {
-        let coverage = dashed(&format!("{:?}", samples.coverage));
-        let (count, mask) = (&samples.count.0, &samples.mask.0);
-        map.insert("samples".into(), json!({ "count": count, "mask": mask, "coverage": coverage }));
-    }
-    map.into()
-}
-
-fn compare_name(compare: Compare) -> String {
-    dashed(&format!("{compare:?}"))
-}
-
-fn stencil_operation(operation: StencilOperation) -> String {
-    dashed(&format!("{operation:?}"))
-}
-
-/// Blending as factors that every API has: source, destination, operation.
-fn blend(blend: Blend) -> Value {
-    let (source, destination, operation) = match blend {
-        Blend::Replace => ("one", "zero", "add"),
-        Blend::Over => ("one", "one-minus-source-alpha", "add"),
-        Blend::Under => ("one-minus-destination-alpha", "one", "add"),
-        Blend::Max => ("one", "one", "max"),
-        Blend::Min => ("one", "one", "min"),
-        Blend::Add => ("one", "one", "add"),
-    };
-    json!({ "name": dashed(&format!("{blend:?}")), "source": source, "destination": destination, "operation": operation })
 }
 
 fn counters(plan: &Plan) -> Value {

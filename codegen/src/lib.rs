@@ -10,17 +10,23 @@
 
 mod contract;
 mod emit;
+mod frame;
 mod layout;
 mod link;
 mod own;
 mod plan;
 mod program;
+mod symbols;
 
 pub use contract::{CONTRACTS, Contract, verify};
+pub use frame::{
+    Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range, ResourceId,
+};
 pub use layout::{Key, Layout, Word};
 pub use own::adopt;
-pub use plan::{Arrival, Bound, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
+pub use plan::{Arrival, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
+pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term};
 
 /// What a generator puts on the first line of every file that it writes.
 pub const GENERATOR: &str = concat!("fragbuf ", env!("CARGO_PKG_VERSION"));

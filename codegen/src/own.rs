@@ -7,7 +7,7 @@
 use fragbuf_model::codes::{CONTRACT, REFUSED, ROW, UNKNOWN_AXIS, UNKNOWN_VALUE};
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, is_target_fact, mangled};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Kind, Pass, Row, State, Step};
+use fragbuf_templates::vocabulary::{Fact, Host, Kind, Pass, Row, State, Step};
 
 use crate::link::{Head, Item, heads, items, shape};
 use crate::{CONTRACTS, Contract};
@@ -65,6 +65,9 @@ impl File<'_> {
 fn steps(row: &mut Row, places: &RowPlaces, registry: &Registry, faults: &mut Diagnostics) {
     let (mut unknown, axis) = (false, row.axis.clone());
     for (step, place) in row.steps.iter_mut().zip(&places.steps) {
+        if let Step::Host(host) = step {
+            host_function(host, place, registry, faults);
+        }
         let Step::Pass(pass) = step else { continue };
         if let Some((kind, state)) = shape_of(&pass.skeleton, registry) {
             (pass.kind, pass.state) = (kind, state);
@@ -81,6 +84,17 @@ fn steps(row: &mut Row, places: &RowPlaces, registry: &Registry, faults: &mut Di
         let message = format!("no pass of the row draws the scene, and a {axis} needs one");
         faults.push(Diagnostic::new(ROW, &places.row, message, "add a line such as `//: pass store: entries plain`"));
     }
+}
+
+/// A host step calls a row of the axis `host`.
+fn host_function(host: &Host, place: &Origin, registry: &Registry, faults: &mut Diagnostics) {
+    if registry.row("host", &host.function).is_some_and(|row| row.host.is_some()) {
+        return;
+    }
+    let known: Vec<&str> = registry.rows_of("host").map(|row| row.key.as_str()).collect();
+    let message = format!("there is no host function `{}`", host.function);
+    let hint = format!("the functions are {}; a program adds its own by `Registry::with`", known.join(", "));
+    faults.push(Diagnostic::new(UNKNOWN_VALUE, place, message, hint));
 }
 
 /// Whether a pass of the row draws the scene.

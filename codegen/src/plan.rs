@@ -12,13 +12,16 @@ pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
 use summary::{passes, words_per_pixel};
 
+use std::sync::Arc;
+
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Definition, Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
+    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Row, Soundness, Step, When,
 };
 
-use crate::Layout;
+use crate::frame::{Context, Lowered, lower};
+use crate::{Layout, LoweredFrame, PlanValue, PlannedPass, Quantity, ResourceId, SymbolId, SymbolTable};
 
 /// Bindings before this one are the frame's, the description's uniforms and the camera.
 pub const FIRST_BINDING: u32 = 3;
@@ -34,16 +37,16 @@ pub struct Plan {
     pub layout: Layout,
     /// Constants that are generated into every pass that names them.
     pub constants: Vec<(String, u32)>,
-    /// Symbols that are bound by now.
-    pub bound: Bound,
-    /// Symbols that rows give a value.
-    pub defined: Vec<Definition>,
-    /// Fields of the frame's uniform buffer, all `u32`.
-    pub frame: Vec<String>,
+    /// The symbols of its formulas.
+    pub symbols: Arc<SymbolTable>,
+    /// Fields of the shaders' uniform block `frame`, all `u32`.
+    pub fields: Vec<SymbolId>,
     /// What is kept in memory.
     pub resources: Vec<Planned>,
-    /// What is done, in order.
-    pub steps: Vec<Step>,
+    /// The passes, in the order of the frame.
+    pub passes: Vec<PlannedPass>,
+    /// What a frame does, in order.
+    pub frame: LoweredFrame,
     /// Words per pixel in the papers' notation: k entries kept, f fragments of the pixel, f_k the lesser of the two.
     pub words_per_pixel: String,
     /// Times that the scene is drawn.
@@ -64,7 +67,9 @@ pub struct Planned {
     /// Its binding in every pass.
     pub binding: u32,
     /// Its size in words, as one formula.
-    pub words: Formula,
+    pub words: Quantity,
+    /// The lengths of its extents.
+    pub lengths: Vec<Quantity>,
     /// For a texture that holds one word of a fragment: which.
     pub part: Option<Part>,
 }
@@ -85,17 +90,6 @@ pub struct Part {
     pub field: String,
 }
 
-/// Values of the symbols that are bound when code is generated; parameters of rows by their constants.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bound(pub Vec<(String, u64)>);
-
-impl Bound {
-    /// The value of `symbol`, if it is bound by now.
-    pub fn value(&self, symbol: &str) -> Option<u64> {
-        self.0.iter().find(|(name, _)| name == symbol).map(|(_, value)| *value)
-    }
-}
-
 /// The capacity for k kept fragments: k may change up to it without new code. An A-buffer resolves up to 64 layers unless
 /// it is told otherwise.
 pub fn bucket(keep: Option<u32>) -> u32 {
@@ -109,18 +103,10 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         let hint = "report it with the description; a row of your own must name only what it declares";
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     };
-    let mut bound = Bound(vec![
-        ("capacity".to_owned(), u64::from(bucket(variant.keep))),
-        ("entry_words".to_owned(), u64::from(layout.entry_words())),
-        ("beside_words".to_owned(), u64::from(layout.beside_words())),
-    ]);
-    let parameters = parameters(selection, &bound).map_err(|error| fault(error.to_string()))?;
-    bound.0.extend(parameters.iter().map(|(name, value)| (name.clone(), u64::from(*value))));
-    let limit = if variant.keep.is_some() { Limit::K } else { Limit::None };
-    let constants = constants(&bound, parameters);
-    let built = build(selection, limit, registry, (&bound, &layout), &constants).map_err(fault)?;
+    let rows = || selection.rows.iter().map(|selected| &*selected.row);
+    let (symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
+    let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
     let offers = selection.offers();
-    let rows = || selection.rows.iter().map(|selected| &selected.row);
     let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
     requires.sort();
     requires.dedup();
@@ -130,13 +116,13 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         selection: selection.clone(),
         layout,
         constants,
-        frame: built.frame,
+        fields: fields(variant, &symbols, &built),
+        geometry_passes: passes(&built.lowered, &symbols, &|pass| pass.kind == Kind::Geometry).to_string(),
+        words_per_pixel: words_per_pixel(&built.resources, &symbols).to_string(),
         resources: built.resources,
-        geometry_passes: passes(&built.steps, &bound, &|pass| pass.kind == Kind::Geometry).to_string(),
-        steps: built.steps,
-        words_per_pixel: built.words_per_pixel,
-        bound,
-        defined: rows().flat_map(|row| row.defines.iter().cloned()).collect(),
+        passes: built.lowered.passes,
+        frame: built.lowered.frame,
+        symbols: Arc::new(symbols),
         requires,
         soundness: selection.soundness(),
         hazards: rows()
@@ -146,18 +132,51 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     })
 }
 
+/// The symbols of a plan: numbers of generation time, what rows define, the parameters of the rows. Also: the generated
+/// constants, which are what every program may name, then the parameters.
+fn symbols(
+    variant: &Variant,
+    selection: &Selection,
+    layout: &Layout,
+) -> Result<(SymbolTable, Vec<(String, u32)>), FormulaError> {
+    let numbers = [
+        (SymbolId::CAPACITY, bucket(variant.keep)),
+        (SymbolId::ENTRY_WORDS, layout.entry_words()),
+        (SymbolId::BESIDE_WORDS, layout.beside_words()),
+    ];
+    let numbers = numbers.map(|(id, number)| (id, u64::from(number)));
+    let rows = || selection.rows.iter().map(|selected| &*selected.row);
+    let defined: Vec<(&str, &Formula)> =
+        rows().flat_map(|row| &row.defines).map(|defined| (&*defined.symbol, &defined.value)).collect();
+    let mut table = SymbolTable::new(&numbers, &defined)?;
+    let mut constants =
+        vec![("CAPACITY".to_owned(), bucket(variant.keep)), ("BESIDE_WORDS".to_owned(), layout.beside_words())];
+    for selected in &selection.rows {
+        for parameter in &selected.row.parameters {
+            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
+            let value = match set {
+                Some(value) => value,
+                None => table.evaluate(&table.compile(&parameter.default)?, &|_| None)? as u32,
+            };
+            constants.push((parameter.constant.to_string(), value));
+        }
+    }
+    let parameters = rows().flat_map(|row: &Row| &row.parameters);
+    for (parameter, (_, value)) in parameters.zip(constants.iter().skip(2)) {
+        table.add(&parameter.constant, &parameter.summary, parameter.range, u64::from(*value));
+    }
+    Ok((table, constants))
+}
+
 struct Built {
-    frame: Vec<String>,
     resources: Vec<Planned>,
-    steps: Vec<Step>,
-    words_per_pixel: String,
+    lowered: Lowered,
 }
 
 fn build(
     selection: &Selection,
-    limit: Limit,
     registry: &Registry,
-    (bound, layout): (&Bound, &Layout),
+    (symbols, layout): (&SymbolTable, &Layout),
     constants: &[(String, u32)],
 ) -> Result<Built, String> {
     let mut resources: Vec<Resource> =
@@ -169,6 +188,7 @@ fn build(
         }
     }
     roles::complete(&mut steps, &mut resources, selection, registry)?;
+    let declared: Vec<String> = resources.iter().map(|resource| resource.name.clone()).collect();
     let resources = textures::spread(resources, &mut steps, layout);
     let clears =
         resources.iter().map(|(resource, _)| resource).filter(|resource| resource.life == Life::Frame).filter_map(
@@ -180,19 +200,19 @@ fn build(
     let steps: Vec<Step> = clears.chain(steps).collect();
     let mut planned = Vec::with_capacity(resources.len());
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
-        let words = size(&resource).map_err(|error| error.to_string())?;
-        planned.push(Planned { resource, binding, words, part });
+        let named = |error: FormulaError| format!("`{}`: {error}", resource.name);
+        let words = symbols.compile(&size(&resource)?).map_err(named)?;
+        let lengths = resource.extents.iter().map(|extent| symbols.compile(&extent.length));
+        let lengths = lengths.collect::<Result<_, _>>().map_err(named)?;
+        planned.push(Planned { resource, binding, words, lengths, part });
     }
-    Ok(Built {
-        frame: frame(limit, &planned, &steps),
-        words_per_pixel: words_per_pixel(&planned, bound).to_string(),
-        resources: planned,
-        steps,
-    })
+    let context = Context { resources: &planned, declared: &declared, symbols, registry };
+    let lowered = lower(&steps, &context)?;
+    Ok(Built { resources: planned, lowered })
 }
 
 /// Words of a resource: the product of its extents and of an element's words.
-fn size(resource: &Resource) -> Result<Formula, FormulaError> {
+fn size(resource: &Resource) -> Result<Formula, String> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
         Element::Word => {}
@@ -205,7 +225,7 @@ fn size(resource: &Resource) -> Result<Formula, FormulaError> {
         Element::EntryTextures(_) => factors.push("entry_words".into()),
     }
     for factor in &factors {
-        factor.read()?;
+        factor.read().map_err(|error| error.to_string())?;
     }
     let texts: Vec<String> = factors.iter().map(written_factor).collect();
     let text = if texts.is_empty() { "1".to_owned() } else { texts.join(" * ") };
@@ -217,81 +237,47 @@ fn written_factor(factor: &Formula) -> String {
     if is_sum && !factor.0.contains('(') { format!("({factor})") } else { factor.to_string() }
 }
 
-/// What every program may name, then the parameters of the chosen rows.
-fn constants(bound: &Bound, parameters: Vec<(String, u32)>) -> Vec<(String, u32)> {
-    let number = |symbol| bound.value(symbol).unwrap_or(0) as u32;
-    let mut constants =
-        vec![("CAPACITY".to_owned(), number("capacity")), ("BESIDE_WORDS".to_owned(), number("beside_words"))];
-    constants.extend(parameters);
-    constants
-}
-
-/// The parameters of the chosen rows by their constants, as set or by default.
-fn parameters(selection: &Selection, bound: &Bound) -> Result<Vec<(String, u32)>, FormulaError> {
-    let mut parameters = Vec::new();
-    for selected in &selection.rows {
-        for parameter in &selected.row.parameters {
-            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-            let value = match set {
-                Some(value) => value,
-                None => parameter.default.evaluate(&|symbol| bound.value(symbol))? as u32,
-            };
-            parameters.push((parameter.constant.to_string(), value));
-        }
-    }
-    Ok(parameters)
-}
-
-/// Whether a description keeps no more than k.
-#[derive(Clone, Copy)]
-enum Limit {
-    K,
-    None,
-}
-
-/// The frame's fields: its size, the row at which a slice of a picture begins (0: there are no slices), the round of a loop,
-/// and every symbol of a resource's size that is bound later than code.
-fn frame(limit: Limit, resources: &[Planned], steps: &[Step]) -> Vec<String> {
-    let mut fields = ["width", "height", "first_row"].map(str::to_owned).to_vec();
-    if let Limit::K = limit {
-        fields.push("k".to_owned());
-    }
-    for symbol in ["n", "fragments", "kept"] {
-        if resources.iter().any(|planned| planned.words.mentions(symbol)) {
-            fields.push(symbol.to_owned());
-        }
-    }
-    if steps.iter().any(|step| matches!(step, Step::Repeat(_))) {
-        fields.push("iteration".to_owned());
-    }
-    fields
+/// The fields of the shaders' `frame`: its size, the row at which a slice of a picture begins (0: there are no slices), k
+/// where a description keeps no more, the iteration where there are loops, and every symbol that a resource's size rests on,
+/// or a host step sets, and that has its value later than memory.
+fn fields(variant: &Variant, symbols: &SymbolTable, built: &Built) -> Vec<SymbolId> {
+    let is_sized = |id| built.resources.iter().any(|planned| planned.words.mentions(id));
+    let is_decided = |id: &SymbolId| built.lowered.frame.decisions().any(|decision| decision.sets.contains(id));
+    let is_field = |id: SymbolId, when: When| match id {
+        SymbolId::WIDTH | SymbolId::HEIGHT | SymbolId::FIRST_ROW => true,
+        SymbolId::K => variant.keep.is_some() || is_decided(&id),
+        SymbolId::ITERATION => !built.lowered.frame.loops.is_empty(),
+        _ => when == When::Readback && (is_sized(id) || is_decided(&id)),
+    };
+    symbols.iter().filter(|(id, symbol)| is_field(*id, symbol.when)).map(|(id, _)| id).collect()
 }
 
 impl Plan {
-    /// The passes in the order of the steps, those inside loops included.
-    pub fn passes(&self) -> Vec<&fragbuf_templates::vocabulary::Pass> {
-        fn collect<'a>(steps: &'a [Step], passes: &mut Vec<&'a fragbuf_templates::vocabulary::Pass>) {
-            for step in steps {
-                match step {
-                    Step::Pass(pass) => passes.push(pass),
-                    Step::Repeat(repeat) => collect(&repeat.body, passes),
-                    _ => {}
-                }
-            }
-        }
-        let mut passes = Vec::new();
-        collect(&self.steps, &mut passes);
-        passes
-    }
-
     /// Pixels of the frame and of its padding, over its width and height.
     pub fn pixels(&self) -> Formula {
-        let defined = self.defined.iter().find(|definition| definition.symbol == "pixels");
-        defined.map_or("width * height".into(), |definition| definition.value.clone())
+        match &self.symbols.get(SymbolId::PIXELS).value {
+            PlanValue::Default(quantity) => quantity.formula().clone(),
+            _ => "width * height".into(),
+        }
+    }
+
+    /// The greatest k that the code serves.
+    pub fn capacity(&self) -> u32 {
+        self.symbols.number(SymbolId::CAPACITY).and_then(|number| u32::try_from(number).ok()).unwrap_or(0)
+    }
+
+    /// Whether the shaders' `frame` has a field for the symbol.
+    pub fn has_field(&self, id: SymbolId) -> bool {
+        self.fields.contains(&id)
     }
 
     /// A resource by name.
     pub fn resource(&self, name: &str) -> Option<&Planned> {
         self.resources.iter().find(|planned| planned.resource.name == name)
+    }
+
+    /// The handle of a resource, for what comes from outside.
+    pub fn resource_id(&self, name: &str) -> Option<ResourceId> {
+        self.resources.iter().position(|planned| planned.resource.name == name).map(ResourceId)
     }
 }

@@ -162,7 +162,7 @@ impl LineMap {
 pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Program, Diagnostics> {
     let mut passes = Vec::new();
     let mut diagnostics = Diagnostics::new();
-    for pass in plan.passes() {
+    for pass in &plan.passes {
         match link_pass(plan, pass, linking, registry) {
             Ok(text) => passes.push(text),
             Err(fault) => diagnostics.push(unlinkable(plan, pass, &fault)),

@@ -49,7 +49,8 @@ fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
 
 /// Uniform blocks: byte offsets of their fields, and sizes as every target takes them.
 fn blocks(plan: &Plan, text: &mut String) {
-    let frame: Vec<(String, UniformType)> = plan.frame.iter().map(|field| (field.clone(), UniformType::U32)).collect();
+    let fields = plan.fields.iter().map(|id| (plan.symbols.get(*id).name.to_string(), UniformType::U32));
+    let frame: Vec<(String, UniformType)> = fields.collect();
     block("frame", "The size of the frame and what else the host sets for it", 0, &frame, text);
     let own: Vec<(String, UniformType)> =
         plan.variant.uniforms.iter().map(|u| (u.name.value.clone(), u.kind.value)).collect();
@@ -109,7 +110,7 @@ fn buffers(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// What is kept in memory.\n        pub mod buffers {\n");
     for planned in &plan.resources {
         let (name, summary) = (rust::snake_case(&planned.resource.name), &planned.resource.summary);
-        let (parameters, words) = rust::formula(&planned.words, &plan.bound, &plan.pixels());
+        let (parameters, words) = rust::formula(&planned.words, &plan.symbols);
         let parameters: Vec<String> = parameters.iter().map(|parameter| format!("{parameter}: u64")).collect();
         let _ =
             write!(text, "            /// `{}`: {summary}.\n            pub mod {name} {{\n", planned.resource.name);
@@ -128,7 +129,7 @@ fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], f
         write!(text, "\n    /// The passes of a frame for the target `{target}`, in order.\n    pub mod {name} {{\n");
     let _ = writeln!(text, "        pub use super::{plan}{};", if plan == "plan" { "" } else { " as plan" });
     let mut names = Names::with("plan");
-    for pass in planned.plan.passes() {
+    for pass in &planned.plan.passes {
         let _ = write!(
             text,
             "\n        /// The pass `{0}`.\n        pub mod {1} {{\n",

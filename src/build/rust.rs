@@ -1,7 +1,8 @@
 //! Names and formulas as Rust spells them.
 
-use fragbuf_codegen::Bound;
-use fragbuf_templates::vocabulary::{Expression, Formula};
+use std::collections::BTreeSet;
+
+use fragbuf_codegen::{PlanValue, Quantity, SymbolId, SymbolTable, Term};
 
 /// Words that Rust keeps for itself.
 const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final \
@@ -21,32 +22,27 @@ pub(super) fn snake_case(name: &str) -> String {
     word
 }
 
-/// The symbols of a formula that are bound after generation, as parameters.
-const SYMBOLS: [&str; 5] = ["width", "height", "k", "fragments", "kept"];
-
-/// A constant function: the parameters that the formula needs, and its value. A formula that cannot be read has been
-/// refused when the plan was made.
-pub(super) fn formula(formula: &Formula, bound: &Bound, pixels: &Formula) -> (Vec<&'static str>, String) {
-    let (Ok(expression), Ok(pixels)) = (formula.read(), pixels.read()) else { return (Vec::new(), "0".to_owned()) };
-    let mut used = Vec::new();
-    let text = written(&expression, bound, &pixels, &mut used);
-    (SYMBOLS.into_iter().filter(|symbol| used.iter().any(|used| used == symbol)).collect(), text)
+/// A constant function: the parameters that a formula needs, and its value. Symbols of generation time are numbers, the pixels
+/// of a frame are what the addressing says, and all others are parameters.
+pub(super) fn formula(of: &Quantity, symbols: &SymbolTable) -> (Vec<String>, String) {
+    let mut used = BTreeSet::new();
+    let text = written(of.term(), symbols, &mut used);
+    (used.into_iter().map(|id| symbols.get(id).name.to_string()).collect(), text)
 }
 
-fn written(expression: &Expression, bound: &Bound, pixels: &Expression, used: &mut Vec<String>) -> String {
-    match expression {
-        Expression::Number(number) => number.to_string(),
-        Expression::Symbol(symbol) => match bound.value(symbol) {
-            Some(value) => value.to_string(),
-            // Its definition is over the frame's width and height.
-            None if symbol == "pixels" && expression != pixels => written(pixels, bound, pixels, used),
-            None => {
-                used.push(symbol.clone());
-                symbol.clone()
+fn written(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
+    match term {
+        Term::Number(number) => number.to_string(),
+        Term::Symbol(id) => match &symbols.get(*id).value {
+            PlanValue::Number(number) => number.to_string(),
+            PlanValue::Default(quantity) if *id == SymbolId::PIXELS => written(quantity.term(), symbols, used),
+            _ => {
+                used.insert(*id);
+                symbols.get(*id).name.to_string()
             }
         },
-        Expression::Apply(operator, arguments) => {
-            let parts: Vec<String> = arguments.iter().map(|argument| written(argument, bound, pixels, used)).collect();
+        Term::Apply(operator, arguments) => {
+            let parts: Vec<String> = arguments.iter().map(|argument| written(argument, symbols, used)).collect();
             match (*operator, parts.as_slice()) {
                 ("ceil_div", [a, b]) => format!("u64::div_ceil({a}, {b})"),
                 ("pow2", [a]) => format!("(1u64 << {a})"),
@@ -72,12 +68,23 @@ mod tests {
 
     #[test]
     fn formulas_keep_their_meaning() {
-        let bound = Bound(vec![("entry_words".to_owned(), 3)]);
-        let of = |text: &'static str| formula(&Formula::from(text), &bound, &"width * height".into());
+        use fragbuf_codegen::plan;
+        use fragbuf_model::{Draft, Origin, Selection, check};
+        use fragbuf_templates::Registry;
+        let registry = Registry::builtin();
+        let draft = Draft::from_technique("kplus_array", &Origin::new("test", 1, 1));
+        let variant = check(&draft, &registry).unwrap();
+        let plan = plan(&variant, &Selection::first(&variant), &registry).unwrap();
+        let of = |text: &'static str| formula(&plan.symbols.compile(&text.into()).unwrap(), &plan.symbols);
         let (parameters, text) = of("pixels * k * entry_words");
-        assert_eq!((parameters, text.as_str()), (vec!["width", "height", "k"], "(((width * height) * k) * 3)"));
+        assert_eq!(parameters, ["width", "height", "k"]);
+        assert_eq!(text, "(((width * height) * k) * 2)");
         assert_eq!(of("ceil_div(pixels, 1024)").1, "u64::div_ceil((width * height), 1024)");
-        assert_eq!(of("fragments / (k * 2)"), (vec!["k", "fragments"], "(fragments / (k * 2))".to_owned()));
+        assert_eq!(
+            of("fragments / (k * 2)"),
+            (vec!["k".to_owned(), "fragments".to_owned()], "(fragments / (k * 2))".to_owned())
+        );
+        assert_eq!(of("n * pixels").0, ["width", "height", "n"]);
         assert_eq!(of("max(k, 2) - min(k, 1)").1, "((if k > 2 { k } else { 2 }) - (if k < 1 { k } else { 1 }))");
     }
 }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use fragbuf::vocabulary::{Kind, Pass, Step, Until};
+use fragbuf::vocabulary::{Kind, Pass};
 use fragbuf::{Generation, Plan, Registry, tier};
+use fragbuf_codegen::{Action, Decision, Loop, LoopUntil, Range, ResourceId};
 
 /// The page of what was generated from a preset for every target.
 pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
@@ -13,7 +14,7 @@ pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
     axes(first, &mut text);
     memory(first, &mut text);
     text.push_str("\n## A frame\n\n");
-    steps(&first.steps, "", &mut text);
+    steps(first, &mut text);
     let _ = writeln!(text, "\nGeometry is drawn {} time(s).", first.geometry_passes);
     targets(generation, &mut text);
     hazards(first, &mut text);
@@ -72,31 +73,63 @@ fn axes(plan: &Plan, text: &mut String) {
 
 fn memory(plan: &Plan, text: &mut String) {
     let _ = writeln!(text, "\n## Memory\n\n**{} words per pixel** for the papers' payload.\n", plan.words_per_pixel);
-    for definition in &plan.defined {
+    for definition in plan.selection.rows.iter().flat_map(|selected| &selected.row.defines) {
         let _ = writeln!(text, "`{}` is `{}`.\n", definition.symbol, definition.value);
     }
     text.push_str("| buffer | words | what |\n|---|---|---|\n");
     for planned in &plan.resources {
-        let _ =
-            writeln!(text, "| `{}` | `{}` | {} |", planned.resource.name, planned.words.0, planned.resource.summary);
+        let _ = writeln!(text, "| `{}` | `{}` | {} |", planned.resource.name, planned.words, planned.resource.summary);
     }
 }
 
-fn steps(steps: &[Step], indent: &str, text: &mut String) {
-    for step in steps {
-        let line = match step {
-            Step::Pass(pass) => self::pass(pass),
-            Step::Clear { resource, value } => format!("clear `{resource}` to {value:#x}"),
-            Step::Copy { from, to } => format!("copy `{from}` to `{to}`"),
-            Step::Swap(a, b) => format!("exchange `{a}` and `{b}`"),
-            Step::Host(host) => {
-                format!("host: `{}` reads {} and sets {}", host.function, host.reads.join(", "), host.sets.join(", "))
+fn steps(plan: &Plan, text: &mut String) {
+    let mut indent = String::new();
+    let name = |id: ResourceId| &plan.resources[id.0].resource.name;
+    for command in &plan.frame.commands {
+        let line = match &command.action {
+            Action::Pass(id) => pass(&plan.passes[id.0]),
+            Action::Clear { resource, value } => format!("clear `{}` to {value:#x}", name(*resource)),
+            Action::Copy { from, to } => format!("copy `{}` to `{}`", name(*from), name(*to)),
+            Action::Host(decision) => host(plan, decision),
+            Action::Loop(id) => looped(plan, &plan.frame.loops[id.0]),
+            Action::LoopEnd(_) => {
+                indent.truncate(indent.len().saturating_sub(2));
+                continue;
             }
-            Step::Repeat(repeat) => format!("repeat, at most {} times, {}", repeat.at_most, until(&repeat.until)),
         };
         let _ = writeln!(text, "{indent}* {line}");
-        if let Step::Repeat(repeat) = step {
-            self::steps(&repeat.body, &format!("{indent}  "), text);
+        if let Action::Loop(_) = command.action {
+            indent.push_str("  ");
+        }
+    }
+    if !plan.frame.exchanges.is_empty() {
+        let pairs = plan.frame.exchanges.iter().map(|[a, b]| format!("`{}` and `{}`", name(*a), name(*b)));
+        let _ = writeln!(text, "\nIn every iteration {} exchange their roles.", pairs.collect::<Vec<_>>().join(", "));
+    }
+}
+
+fn host(plan: &Plan, decision: &Decision) -> String {
+    let read = |range: &Range| {
+        let name = &plan.resources[range.resource.0].resource.name;
+        match range.count.to_string().as_str() {
+            "1" => format!("{name}[{}]", range.first),
+            count => format!("{name}[{}, {count} words]", range.first),
+        }
+    };
+    let reads: Vec<String> = decision.reads.iter().map(read).collect();
+    let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
+    format!("host: `{}` reads {} and sets {}", decision.name, reads.join(", "), sets.join(", "))
+}
+
+fn looped(plan: &Plan, looped: &Loop) -> String {
+    let at_most = &looped.at_most;
+    match looped.until {
+        LoopUntil::Times => format!("repeat {at_most} times"),
+        LoopUntil::WordIsZero(word) => {
+            format!("repeat, at most {at_most} times, until `{}` is 0", plan.resources[word.0].resource.name)
+        }
+        LoopUntil::NoSamples(pass) => {
+            format!("repeat, at most {at_most} times, until `{}` draws no sample", plan.passes[pass.0].anchor)
         }
     }
 }
@@ -113,14 +146,6 @@ fn pass(pass: &Pass) -> String {
     let uses: Vec<String> = pass.uses.iter().map(|usage| format!("`{}`", usage.resource)).collect();
     let uses = if uses.is_empty() { String::new() } else { format!(", over {}", uses.join(", ")) };
     format!("pass **{}** {kind}{uses}", pass.anchor)
-}
-
-fn until(until: &Until) -> String {
-    match until {
-        Until::Times(times) => format!("{times} times"),
-        Until::Zero(counter) => format!("until `{counter}` is 0"),
-        Until::NoSamples(query) => format!("until `{query}` sees nothing"),
-    }
 }
 
 fn targets(generation: &Generation, text: &mut String) {

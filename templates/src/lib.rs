@@ -20,6 +20,7 @@ macro_rules! template {
 mod addressing;
 mod counters;
 mod cull;
+mod host;
 mod opaque;
 mod overflow;
 mod pass;

@@ -3,7 +3,7 @@
 
 use crate::vocabulary::{Axis, Fact, Row, Technique, Template};
 use crate::{
-    addressing, counters, cull, opaque, overflow, pass, resolve, samples, select, shared, sort, storage, sync,
+    addressing, counters, cull, host, opaque, overflow, pass, resolve, samples, select, shared, sort, storage, sync,
     technique, ties,
 };
 
@@ -65,6 +65,7 @@ impl Registry {
             sort::rows(),
             resolve::rows(),
             pass::rows(),
+            host::rows(),
         ];
         Registry {
             axes: AXES.to_vec(),

@@ -2,8 +2,8 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, KeepDefault, Pass, Repeat, Resource, Row,
-    Step, Technique, TextureFormat, Until,
+    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, HostCall, HostFunction, KeepDefault, Pass,
+    Repeat, Resource, Row, Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -13,6 +13,7 @@ pub(super) fn registry() -> Registry {
         .with_axis(allocation, "overflow")
         .with(Row::new("allocation", "as_said", "what the description says", ""))
         .with(predict_k())
+        .with(Row { host: Some(HostFunction(deepest)), ..Row::new("host", "deepest", "the last bin with a pixel", "") })
         .with(front_to_back())
         .with(dual())
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
@@ -22,6 +23,12 @@ pub(super) fn registry() -> Registry {
             KeepDefault::Best(8),
             vec![("storage", "bounded_regions"), ("allocation", "predict_k")],
         ))
+}
+
+/// The last bin of a histogram that has a pixel, plus one.
+fn deepest(call: &HostCall<'_>) -> Vec<u64> {
+    let last = call.reads.first().and_then(|bins| bins.iter().rposition(|pixels| *pixels > 0));
+    last.map(|bin| bin as u64 + 1).into_iter().collect()
 }
 
 fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static str)>) -> Technique {
@@ -108,8 +115,7 @@ fn predict_k() -> Row {
     let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 256)", "1")
         .uses("counts", Access::Read)
         .uses("histogram", Access::Atomic);
-    let decide =
-        Host { function: "predict_k".to_owned(), reads: vec!["histogram".to_owned()], sets: vec!["k".to_owned()] };
+    let decide = Host::new("deepest").reads_all("histogram").sets("k");
     Row {
         edits: vec![
             Edit::AddResource(

@@ -100,7 +100,7 @@ pub(crate) fn explore(ground: &Ground<'_>, first: State, judge: &mut dyn Judge, 
         waiting: VecDeque::new(),
         found: Found::default(),
     };
-    let running = (0..first.fragments.len()).filter(|fragment| first.fragments[*fragment] != Status::Ended).collect();
+    let running = (0..first.fragments.len()).filter(|fragment| !first.fragments[*fragment].has_ended()).collect();
     search.visit(first, None);
     let mut failure = search.run(judge, limit);
     if failure.is_none() && search.waiting.is_empty() {
@@ -164,7 +164,8 @@ impl Search<'_, '_> {
         if running.is_empty() {
             self.ends.push(number);
             let parents = &self.parents;
-            return self.found.note(judge.end(&state.words), &state.words, || path(parents, number));
+            let words = state.left_behind(self.ground);
+            return self.found.note(judge.end(&words), &words, || path(parents, number));
         }
         for &fragment in &running {
             if self.ground.waits(&mut self.machine, state, fragment) {

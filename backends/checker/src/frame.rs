@@ -3,14 +3,13 @@
 //! In: a subject and how much room there is. Out: memory, step by step, and what a pixel holds. Nothing here runs at once
 //! with anything else.
 
-use fragbuf_codegen::FIRST_BINDING;
-use fragbuf_frame::{Decision, Symbols, resource};
+use fragbuf_codegen::{FIRST_BINDING, PassId, ResourceId, SymbolId};
+use fragbuf_frame::{Counting, Cursor, Question, Span, Turn, Values};
 use fragbuf_interpreter::{Dispatch, Exit, Machine, Program, Sequential, Space, dispatch};
-use fragbuf_templates::vocabulary::{Host, Kind, Step};
+use fragbuf_templates::vocabulary::Kind;
 
 use crate::subject::{Runnable, Subject};
 use crate::texels::{Alone, textures};
-use crate::turns::Turn;
 
 /// One row of words per binding; what is not a buffer is empty.
 pub(crate) type Memory = Vec<Vec<u32>>;
@@ -33,13 +32,16 @@ const NOTHING_OPAQUE: u32 = 1f32.to_bits();
 pub(crate) struct Frame<'s> {
     pub(crate) subject: &'s Subject,
     pub(crate) memory: Memory,
-    pub(crate) symbols: Symbols,
+    pub(crate) values: Values,
     /// The most that host steps allocate.
     pub(crate) reserved: Option<u32>,
     /// What host steps would allocate.
     pub(crate) asked: Option<u64>,
-    /// The round of the loop that ends when a word is zero.
-    round: u32,
+    cursor: Cursor,
+    /// The exchanges of the frame whose resources have changed places in memory.
+    flipped: u32,
+    /// Samples that passed in the last run of each pass.
+    samples: Vec<u32>,
 }
 
 /// How the fragments of a pass are given: one row of words per input.
@@ -47,10 +49,13 @@ pub(crate) type Fragments<'a> = dyn Fn(&Runnable) -> Vec<Vec<Vec<u32>>> + 'a;
 
 impl<'s> Frame<'s> {
     /// Memory before the first step. What no symbol sizes yet is empty.
-    pub(crate) fn new(subject: &'s Subject, symbols: Symbols) -> Result<Self, String> {
-        let count = FIRST_BINDING as usize + subject.plan.resources.len();
-        let memory = vec![Vec::new(); count];
-        let mut frame = Frame { subject, memory, symbols, reserved: None, asked: None, round: 0 };
+    pub(crate) fn new(subject: &'s Subject, values: Values) -> Result<Self, String> {
+        let plan = &subject.plan;
+        let memory = vec![Vec::new(); FIRST_BINDING as usize + plan.resources.len()];
+        // What host steps count is counted: nobody reserves anything.
+        let cursor = Cursor::new(plan, Counting::Exact, 0);
+        let samples = vec![0; plan.passes.len()];
+        let mut frame = Frame { subject, memory, values, reserved: None, asked: None, cursor, flipped: 0, samples };
         frame.memory[1] = vec![subject.uniform.to_bits(); 256];
         frame.memory[2] = vec![0; 16];
         frame.allocate()?;
@@ -61,7 +66,7 @@ impl<'s> Frame<'s> {
     fn allocate(&mut self) -> Result<(), String> {
         let plan = &self.subject.plan;
         for (planned, words) in plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
-            let size = self.symbols.evaluate(plan, &planned.words, &planned.resource.name);
+            let size = self.values.evaluate(&planned.words, &planned.resource.name);
             // What the caller brings is filled: nothing is nearer than the far plane.
             let value = if planned.is_brought() { NOTHING_OPAQUE } else { STALE };
             words.resize((size.map_err(|error| error.to_string())? as usize).max(1), value);
@@ -79,87 +84,123 @@ impl<'s> Frame<'s> {
         }
     }
 
-    /// Does turns, beginning with that of the number `from`, up to the turn `to`; whether it came to that, or to the end.
-    /// Geometry passes insert `fragments`.
-    pub(crate) fn advance(&mut self, from: usize, to: usize, fragments: &Fragments<'_>) -> Result<bool, String> {
-        let subject = self.subject;
-        let mut number = from;
-        while let Some(turn) = subject.turns.get(number) {
-            if number == to {
-                return Ok(true);
-            }
+    /// Goes on up to a run of the pass `until`; whether it came to that, or to the end of the frame. Geometry passes insert
+    /// `fragments`.
+    pub(crate) fn advance(&mut self, until: &Runnable, fragments: &Fragments<'_>) -> Result<bool, String> {
+        loop {
+            let mut ahead = self.cursor.clone();
+            let turn = ahead.next(&self.subject.plan, &self.values).map_err(|error| error.to_string())?;
             match turn {
-                Turn::Step { step, round } => {
-                    self.enter(*round)?;
-                    self.step(step, number, fragments)?;
-                    number += 1;
+                None => return Ok(false),
+                Some(Turn::Pass(run)) if until.is_of(run) => {
+                    self.samples[run.pass.0] = 0;
+                    self.arrange(run.flipped);
+                    self.enter(run.iteration)?;
+                    return Ok(true);
                 }
-                Turn::Again { from, word, at_most } => {
-                    let is_over = self.memory[FIRST_BINDING as usize + word].first().is_none_or(|word| *word == 0);
-                    let rounds = self.symbols.evaluate(&subject.plan, at_most, "the rounds of a loop");
-                    let rounds = rounds.map_err(|error| error.to_string())?;
-                    let goes_on = !is_over && u64::from(self.round) + 1 < rounds;
-                    self.round = if goes_on { self.round + 1 } else { 0 };
-                    number = if goes_on { *from } else { number + 1 };
+                Some(turn) => {
+                    self.cursor = ahead;
+                    self.turn(turn, fragments)?;
                 }
             }
         }
-        Ok(false)
     }
 
-    fn step(&mut self, step: &Step, number: usize, fragments: &Fragments<'_>) -> Result<(), String> {
-        match step {
-            Step::Clear { resource, value } => self.resource(resource)?.fill(*value),
-            Step::Pass(_) => {
-                if let Some(runnable) = self.subject.passes.iter().find(|other| other.turn == number) {
-                    self.pass(runnable, fragments)?;
-                }
-            }
-            Step::Host(host) => self.decide(host)?,
-            Step::Copy { .. } | Step::Swap(..) | Step::Repeat(_) => {
-                return Err("the checker does not run copies and exchanges yet".to_owned());
-            }
+    /// Goes past the pass that the frame stands before, in which so many samples more have passed.
+    pub(crate) fn pass_by(&mut self, samples: u32) -> Result<(), String> {
+        let turn = self.cursor.next(&self.subject.plan, &self.values).map_err(|error| error.to_string())?;
+        if let Some(Turn::Pass(run)) = turn {
+            self.samples[run.pass.0] += samples;
         }
         Ok(())
     }
 
-    /// Tells the programs the round of the loop that they are in.
-    pub(crate) fn enter(&mut self, round: u32) -> Result<(), String> {
-        let words = self.symbols.frame_words(&self.subject.plan, 0, self.round + round);
+    fn turn(&mut self, turn: Turn, fragments: &Fragments<'_>) -> Result<(), String> {
+        match turn {
+            Turn::Clear { resource, value } => self.physical(resource).fill(value),
+            Turn::Copy { from, to } => {
+                let words = self.physical(from).clone();
+                *self.physical(to) = words;
+            }
+            Turn::Pass(run) => {
+                self.arrange(run.flipped);
+                self.enter(run.iteration)?;
+                self.samples[run.pass.0] = 0;
+                if let Some(runnable) = self.subject.passes.iter().find(|other| other.is_of(run)) {
+                    self.pass(runnable, fragments)?;
+                }
+            }
+            Turn::Ask(question) => self.answer(question)?,
+        }
+        Ok(())
+    }
+
+    /// Puts the resources of every exchange where a pass looks for them that sees these exchanges flipped.
+    fn arrange(&mut self, flipped: u32) {
+        for (number, [a, b]) in self.subject.plan.frame.exchanges.iter().enumerate() {
+            if (self.flipped ^ flipped) >> number & 1 == 1 {
+                self.memory.swap(FIRST_BINDING as usize + a.0, FIRST_BINDING as usize + b.0);
+            }
+        }
+        self.flipped = flipped;
+    }
+
+    /// The words of a physical resource.
+    fn physical(&mut self, resource: ResourceId) -> &mut Vec<u32> {
+        let place = self.subject.plan.frame.physical(resource, self.flipped);
+        &mut self.memory[FIRST_BINDING as usize + place.0]
+    }
+
+    /// Tells the programs the iteration that they are in.
+    pub(crate) fn enter(&mut self, iteration: u32) -> Result<(), String> {
+        let words = self.values.frame_words(&self.subject.plan, 0, iteration);
         self.memory[0] = words.map_err(|error| error.to_string())?;
         Ok(())
     }
 
-    fn resource(&mut self, name: &str) -> Result<&mut Vec<u32>, String> {
-        let index = resource(&self.subject.plan, name).map_err(|error| error.to_string())?;
-        Ok(&mut self.memory[FIRST_BINDING as usize + index])
+    /// Answers what the frame must know: for the host, no more memory than is reserved.
+    fn answer(&mut self, question: Question) -> Result<(), String> {
+        let words = match &question {
+            Question::Samples(PassId(pass)) => vec![self.samples[*pass]],
+            // The scene is one object, and never dropped.
+            Question::Objects(_) => vec![1],
+            Question::Words(spans) => {
+                spans.iter().map(|span| self.words(*span)).collect::<Result<Vec<_>, _>>()?.concat()
+            }
+        };
+        let before = self.values.clone();
+        let mut values = before.clone();
+        self.cursor.answer(&self.subject.plan, &words, &mut values).map_err(|error| error.to_string())?;
+        if values == before {
+            return Ok(());
+        }
+        let decisions = self.subject.plan.frame.decisions();
+        let memory = decisions.flat_map(|decision| &decision.sets).filter(|id| **id != SymbolId::K);
+        let memory: Vec<SymbolId> = memory.copied().collect();
+        self.asked = memory.iter().filter_map(|id| values.get(*id)).max().or(self.asked);
+        if let Some(most) = self.reserved.map(u64::from) {
+            for id in memory {
+                let asked = values.get(id).unwrap_or(0);
+                values.set(id, asked.min(most));
+            }
+        }
+        self.values = values;
+        self.allocate()
     }
 
-    /// The host reads, decides, and makes room, but no more than is reserved.
-    fn decide(&mut self, host: &Host) -> Result<(), String> {
-        let plan = &self.subject.plan;
-        let decision = Decision::of(host, plan).map_err(|error| error.to_string())?;
-        let mut read = Vec::new();
-        for (resource, place) in &decision.reads {
-            let at = self.symbols.evaluate(plan, place, &host.function).map_err(|error| error.to_string())?;
-            let word = self.memory[FIRST_BINDING as usize + resource].get(at as usize);
-            read.push(*word.ok_or_else(|| format!("word {at}, which the host reads, is not there"))?);
-        }
-        decision.apply(&read, &mut self.symbols);
-        self.asked = self.symbols.counted.iter().filter_map(|(_, room)| *room).max();
-        if let Some(most) = self.reserved.map(u64::from) {
-            self.symbols.counted.iter_mut().for_each(|(_, room)| *room = room.map(|room| room.min(most)));
-        }
-        self.allocate()
+    fn words(&mut self, Span { resource, first, count }: Span) -> Result<Vec<u32>, String> {
+        let words = self.physical(resource);
+        let read = words.get(first as usize..(first + count) as usize);
+        Ok(read.ok_or_else(|| format!("word {first}, which the host reads, is not there"))?.to_vec())
     }
 
     fn pass(&mut self, runnable: &Runnable, fragments: &Fragments<'_>) -> Result<(), String> {
         match &runnable.pass.kind {
-            Kind::Compute { groups } => {
+            Kind::Compute { .. } => {
                 let mut counts = [1; 3];
-                for (count, formula) in counts.iter_mut().zip(groups) {
-                    let groups = self.symbols.evaluate(&self.subject.plan, formula, &runnable.pass.anchor);
-                    *count = groups.map_err(|error| error.to_string())? as u32;
+                for (count, groups) in counts.iter_mut().zip(&runnable.pass.groups) {
+                    let groups = self.values.word(groups, &runnable.pass.anchor);
+                    *count = groups.map_err(|error| error.to_string())?;
                 }
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {
                     dispatch(&runnable.program, counts, buffers)
@@ -183,7 +224,11 @@ impl<'s> Frame<'s> {
         let mut machine = Machine::new(&runnable.program);
         inputs.iter().enumerate().for_each(|(number, words)| machine.set_input(number, words));
         match run_alone(&mut machine, &mut self.memory)? {
-            Exit::Ended | Exit::Discarded => Ok(()),
+            Exit::Ended => {
+                self.samples[runnable.id.0] += 1;
+                Ok(())
+            }
+            Exit::Discarded => Ok(()),
             other => Err(format!("a fragment of pass `{}` does not end: {other:?}", runnable.pass.anchor)),
         }
     }

@@ -44,7 +44,6 @@ mod stream;
 mod subject;
 mod texels;
 mod trial;
-mod turns;
 mod verdict;
 mod walk;
 

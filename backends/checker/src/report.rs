@@ -211,9 +211,8 @@ fn resource(subject: &Subject, case: &crate::case::Case, memory: usize, word: u3
     let width = fields.len().max(1) as u32;
     let mut element = word / width;
     let mut parts = Vec::new();
-    for extent in planned.resource.extents.iter().rev() {
-        let length = case.room.symbols.evaluate(&subject.plan, &extent.length, &extent.name);
-        let length = length.map_or(u32::MAX, |length| length as u32).max(1);
+    for (extent, length) in planned.resource.extents.iter().zip(&planned.lengths).rev() {
+        let length = case.room.values.word(length, &extent.name).unwrap_or(u32::MAX).max(1);
         parts.push(format!("{} {}", extent.name, element % length));
         element /= length;
     }

@@ -7,8 +7,9 @@
 
 use std::ops::RangeInclusive;
 
-use fragbuf_frame::{Room as Reserve, Sizing, Symbols, symbols};
-use fragbuf_templates::vocabulary::{Fact, Step};
+use fragbuf_codegen::SymbolId;
+use fragbuf_frame::{Room as Reserve, Sizing, Values, values};
+use fragbuf_templates::vocabulary::Fact;
 
 use crate::fragments::Fragment;
 use crate::frame::WIDTH;
@@ -17,7 +18,7 @@ use crate::subject::Subject;
 /// Room for the fragments of a case.
 #[derive(Clone, Debug)]
 pub(crate) struct Room {
-    pub(crate) symbols: Symbols,
+    pub(crate) values: Values,
     /// The most that host steps allocate.
     pub(crate) reserved: Option<u32>,
     /// How many fragments of the pixel may find none.
@@ -64,9 +65,10 @@ impl Asking<'_> {
 
 /// Every room that a case is tried in. `is_behind`: a geometry pass has come before the one under test.
 pub(crate) fn rooms(subject: &Subject, asking: &Asking<'_>, is_behind: bool) -> Result<Vec<Room>, String> {
-    let is_counted = subject.plan.steps.iter().any(|step| matches!(step, Step::Host(_)));
-    let has_slots = subject.plan.frame.iter().any(|field| field == "n");
-    let is_pooled = subject.plan.frame.iter().any(|field| field == "fragments") && !is_counted;
+    let plan = &subject.plan;
+    let is_counted = plan.frame.decisions().next().is_some();
+    let has_slots = plan.has_field(SymbolId::N);
+    let is_pooled = plan.has_field(SymbolId::FRAGMENTS) && !is_counted;
     let mut rooms = match (is_counted, has_slots, is_pooled) {
         (true, _, _) => counted(subject, asking, is_behind),
         (_, true, _) => slots(subject, asking),
@@ -84,14 +86,16 @@ pub(crate) fn rooms(subject: &Subject, asking: &Asking<'_>, is_behind: bool) -> 
 }
 
 /// Room for fragments that are not there, such as are asked for the words that they become.
-pub(crate) fn plenty(subject: &Subject) -> Result<Symbols, String> {
-    Ok(enough(subject, Some(1), Sizing::Reserve(Reserve::Fragments(16)))?.symbols)
+pub(crate) fn plenty(subject: &Subject) -> Result<Values, String> {
+    Ok(enough(subject, Some(1), Sizing::Reserve(Reserve::Fragments(16)))?.values)
 }
 
 fn enough(subject: &Subject, k: Option<u32>, sizing: Sizing) -> Result<Room, String> {
-    let (symbols, _) = symbols(&subject.plan, (WIDTH, 1), sizing).map_err(|error| error.to_string())?;
-    let symbols = Symbols { k, ..symbols };
-    Ok(Room { symbols, reserved: None, short: 0..=0, neighbours_lost: 0, has_unseen: false, what: "" })
+    let (mut values, _) = values(&subject.plan, (WIDTH, 1), sizing).map_err(|error| error.to_string())?;
+    if let Some(k) = k {
+        values.set(SymbolId::K, k.into());
+    }
+    Ok(Room { values, reserved: None, short: 0..=0, neighbours_lost: 0, has_unseen: false, what: "" })
 }
 
 /// Room that the host makes for what a pass has counted: all there is, too little, and one fragment that was not counted.
@@ -159,11 +163,10 @@ fn pool(subject: &Subject, asking: &Asking<'_>) -> Result<Vec<Room>, String> {
 
 /// Fragments of the pieces in which room is given, where every pixel has one of its own even if there is room for none.
 fn page(subject: &Subject, room: &Room) -> Result<Option<u32>, String> {
-    let mut symbols = room.symbols.clone();
-    let mut words = |fragments: u32| {
-        symbols.set("fragments", fragments.into());
-        let pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions("fragments"));
-        let words = pooled.map(|planned| symbols.evaluate(&subject.plan, &planned.words, &planned.resource.name));
+    let words = |fragments: u32| {
+        let values = room.values.with(SymbolId::FRAGMENTS, fragments.into());
+        let mut pooled = subject.plan.resources.iter().filter(|planned| planned.words.mentions(SymbolId::FRAGMENTS));
+        let words = pooled.by_ref().map(|planned| values.evaluate(&planned.words, &planned.resource.name));
         words.sum::<Result<u64, _>>().map_err(|error| error.to_string())
     };
     let least = words(0)?;

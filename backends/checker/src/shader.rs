@@ -153,7 +153,21 @@ fn ground<'p>(program: &'p Program, memory: &Memory, model: Model) -> (Ground<'p
     let has_fences = model == Model::Late;
     let fixed = memory.clone();
     let (helper, by_submission, one_by_one) = (None, false, false);
-    (Ground { program, homes, fixed, ordered, model, has_fences, helper, by_submission, one_by_one }, words)
+    (
+        Ground {
+            program,
+            homes,
+            fixed,
+            ordered,
+            model,
+            has_fences,
+            helper,
+            by_submission,
+            one_by_one,
+            counts_samples: false,
+        },
+        words,
+    )
 }
 
 /// An invocation with inputs of its own.

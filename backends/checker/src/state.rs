@@ -30,6 +30,8 @@ pub(crate) struct Ground<'p> {
     pub(crate) by_submission: bool,
     /// Whether a fragment that has begun runs to its end before another does anything.
     pub(crate) one_by_one: bool,
+    /// Whether a loop waits for the samples of the pass, so that fragments which are discarded end otherwise.
+    pub(crate) counts_samples: bool,
 }
 
 /// Where a buffer lies.
@@ -66,7 +68,8 @@ pub(crate) enum Status {
         /// What a machine is loaded from.
         saved: Vec<u32>,
     },
-    Ended,
+    /// It has ended; whether its sample passes.
+    Ended(bool),
 }
 
 // The event follows from what is saved.
@@ -74,7 +77,7 @@ impl PartialEq for Status {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Status::Before { saved, .. }, Status::Before { saved: other, .. }) => saved == other,
-            (Status::Ended, Status::Ended) => true,
+            (Status::Ended(passes), Status::Ended(other)) => passes == other,
             _ => false,
         }
     }
@@ -82,11 +85,32 @@ impl PartialEq for Status {
 
 impl Eq for Status {}
 
+impl Status {
+    /// Whether the fragment has ended.
+    pub(crate) fn has_ended(&self) -> bool {
+        matches!(self, Status::Ended(_))
+    }
+}
+
+impl State {
+    /// What an end state leaves: the words in memory, and behind them the samples that passed, where a loop waits for them.
+    pub(crate) fn left_behind(&self, ground: &Ground<'_>) -> Vec<u32> {
+        let mut words = self.words.clone();
+        if ground.counts_samples {
+            let passes = |(number, status): (usize, &Status)| {
+                u32::from(*status == Status::Ended(true) && ground.helper != Some(number))
+            };
+            words.push(self.fragments.iter().enumerate().map(passes).sum());
+        }
+        words
+    }
+}
+
 impl Hash for Status {
     fn hash<H: Hasher>(&self, state: &mut H) {
         match self {
             Status::Before { saved, .. } => saved.hash(state),
-            Status::Ended => state.write_u8(1),
+            Status::Ended(passes) => state.write_u8(1 + u8::from(*passes)),
         }
     }
 }
@@ -176,7 +200,8 @@ impl Ground<'_> {
             return Err(Mishap::OutOfBounds(fault.at));
         }
         match exit {
-            Exit::Ended | Exit::Discarded => Ok(Status::Ended),
+            Exit::Ended => Ok(Status::Ended(true)),
+            Exit::Discarded => Ok(Status::Ended(!self.counts_samples)),
             Exit::Endless => Err(Mishap::Endless),
             Exit::Stopped(Event::Barrier) => Err(Mishap::Barrier),
             Exit::Stopped(event) => {
@@ -189,7 +214,7 @@ impl Ground<'_> {
 
     /// The fragments that have not ended and may go on.
     pub(crate) fn running(&self, state: &State) -> Vec<usize> {
-        let has_ended = |at: &usize| state.fragments[*at] == Status::Ended;
+        let has_ended = |at: &usize| state.fragments[*at].has_ended();
         match state.alone {
             Some(fragment) => vec![fragment],
             None => (0..state.fragments.len()).filter(|at| !has_ended(at)).collect(),
@@ -213,7 +238,7 @@ impl Ground<'_> {
 
     /// Whether nobody comes before a fragment who is yet to leave the interlock, if it has an order.
     fn is_next(&self, state: &State, fragment: usize) -> bool {
-        let has_left = |other: usize| state.left >> other & 1 == 1 || state.fragments[other] == Status::Ended;
+        let has_left = |other: usize| state.left >> other & 1 == 1 || state.fragments[other].has_ended();
         !self.by_submission || (0..fragment).all(has_left)
     }
 
@@ -230,9 +255,9 @@ impl Ground<'_> {
         let old = self.perform(&mut next, fragment, event, choice);
         machine.load(saved);
         next.fragments[fragment] = self.run(machine, fragment, Some(old), &mut next.words)?;
-        next.alone = Some(fragment).filter(|at| self.one_by_one && next.fragments[*at] != Status::Ended);
+        next.alone = Some(fragment).filter(|at| self.one_by_one && !next.fragments[*at].has_ended());
         if let Some(late) = &mut next.late {
-            let running: Vec<bool> = next.fragments.iter().map(|status| *status != Status::Ended).collect();
+            let running: Vec<bool> = next.fragments.iter().map(|status| !status.has_ended()).collect();
             late.forget(&running);
         }
         Ok((next, old))

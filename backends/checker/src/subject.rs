@@ -4,14 +4,16 @@
 //! a storage out. The marker functions of the templates become fences and interlocks here, as the target has them.
 
 use fragbuf_backends::{Checked, Target, check};
-use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, plan};
+use fragbuf_codegen::{
+    Action, EntryPoint, Form, LineMap, Linking, LoopUntil, PassId, Plan, PlannedPass, Stage, link, plan,
+};
+use fragbuf_frame::Run;
 use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Template, Use};
 
 use crate::stream::StreamPrograms;
-use crate::turns::{Turn, turns};
 
 /// `templates/shared/markers.wgsl`.
 pub(crate) const MARKERS: [(&str, Marker); 4] = [
@@ -42,7 +44,6 @@ pub(crate) enum Tries {
 #[derive(Debug)]
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
-    pub(crate) turns: Vec<Turn>,
     pub(crate) passes: Vec<Runnable>,
     /// The cursor after so many fragments of a pixel.
     pub(crate) walk: Program,
@@ -61,10 +62,13 @@ pub(crate) struct Subject {
 /// A pass that computes or draws.
 #[derive(Debug)]
 pub(crate) struct Runnable {
-    pub(crate) pass: Pass,
-    /// Its place among the subject's turns, and the round of the loop that has been written out around it.
-    pub(crate) turn: usize,
-    pub(crate) round: u32,
+    pub(crate) pass: PlannedPass,
+    pub(crate) id: PassId,
+    /// The iteration of the loop around it, where their number is known beforehand: each is tried by itself. Other loops come
+    /// back to the pass.
+    pub(crate) iteration: Option<u32>,
+    /// Whether a loop waits for its samples.
+    pub(crate) is_awaited: bool,
     pub(crate) program: Program,
     /// From what the rasteriser gives to words: for a geometry pass.
     pub(crate) fragment: Option<FragmentPrograms>,
@@ -119,32 +123,30 @@ impl Subject {
         let mut asking = plan.clone();
         for (anchor, is_asked) in [(READ_OUT, true), (READ_BOUND, wants_bound), (READ_STREAM, streams)] {
             if is_asked {
-                asking.steps.push(Step::Pass(question(&plan, anchor)));
+                asking.passes.push(question(&plan, anchor));
             }
         }
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let origin = &variant.name.origin;
-        let turns = turns(&plan).map_err(|error| {
-            let text = format!("the checker cannot run it: {error}");
-            Diagnostics::from(Diagnostic::new(codes::INTERNAL, origin, text, "what it runs is in its documentation"))
-        })?;
         let mut passes = Vec::new();
         let mut asked = Vec::new();
-        for (text, pass) in link(&asking, &linking, &registry)?.passes.into_iter().zip(asking.passes()) {
+        for (number, text) in link(&asking, &linking, &registry)?.passes.into_iter().enumerate() {
+            let pass = &asking.passes[number];
             let checked = check(text, target.profile, origin)?;
             match pass.anchor.as_str() {
                 READ_OUT | READ_BOUND | READ_STREAM => asked.push(checked),
                 _ if pass.kind == Kind::Fullscreen => {}
                 _ => {
-                    for (turn, round) in turns.iter().enumerate().filter_map(|(at, turn)| round_of(at, turn, pass)) {
-                        let made =
-                            runnable(&plan, pass, &checked).map_err(|faults| refused(&checked, &faults, origin))?;
-                        passes.push(Runnable { turn, round, ..made });
+                    for iteration in iterations(&plan, PassId(number)) {
+                        let id = PassId(number);
+                        let made = runnable(&plan, (pass, id), &checked);
+                        let made = made.map_err(|faults| refused(&checked, &faults, origin))?;
+                        passes.push(Runnable { iteration, ..made });
                     }
                 }
             }
         }
-        passes.sort_by_key(|runnable| runnable.turn);
+        passes.sort_by_key(|runnable| order(&plan, runnable));
         let ask = |anchor: &str, name: &str| {
             let checked = asked.iter().find(|checked| checked.pass().anchor == anchor);
             let checked: &Checked = checked.unwrap_or(&asked[0]);
@@ -167,7 +169,6 @@ impl Subject {
             has_fences: target.offers.contains(&Fact::Fences),
             has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
             uniform: 1.0,
-            turns,
             plan,
         }))
     }
@@ -198,12 +199,40 @@ impl Subject {
     }
 }
 
-/// The turn's number and round, if it is of the pass.
-fn round_of(at: usize, turn: &Turn, pass: &Pass) -> Option<(usize, u32)> {
-    match turn {
-        Turn::Step { step: Step::Pass(other), round } if other.anchor == pass.anchor => Some((at, *round)),
-        _ => None,
+impl Runnable {
+    /// Whether a run of a frame is this.
+    pub(crate) fn is_of(&self, run: Run) -> bool {
+        self.id == run.pass && self.iteration.is_none_or(|iteration| iteration == run.iteration)
     }
+}
+
+/// The loops around a command, the innermost last.
+fn around(plan: &Plan, command: usize) -> impl Iterator<Item = &fragbuf_codegen::Loop> {
+    plan.frame.loops.iter().filter(move |looped| (looped.begin..looped.end).contains(&command))
+}
+
+/// The command that runs a pass.
+fn command(plan: &Plan, id: PassId) -> usize {
+    let is_run = |command: &fragbuf_codegen::Command| command.action == Action::Pass(id);
+    plan.frame.commands.iter().position(is_run).unwrap_or(0)
+}
+
+/// The iterations in which a pass is tried: each of a loop whose number of them is known when code is generated; one that
+/// stands for all of any other loop, or for none.
+fn iterations(plan: &Plan, id: PassId) -> Vec<Option<u32>> {
+    let Some(looped) = around(plan, command(plan, id)).last() else { return vec![None] };
+    let count = plan.symbols.evaluate(&looped.at_most, &|_| None);
+    match (looped.until, count.ok().and_then(|count| u32::try_from(count).ok())) {
+        (LoopUntil::Times, Some(count)) => (0..count).map(Some).collect(),
+        _ => vec![None],
+    }
+}
+
+/// Where a runnable comes in a frame: the passes of a loop come once in every iteration.
+fn order(plan: &Plan, runnable: &Runnable) -> (usize, u32, usize) {
+    let at = command(plan, runnable.id);
+    let outermost = around(plan, at).next().map_or(at, |looped| looped.begin);
+    (outermost, runnable.iteration.unwrap_or(0), at)
 }
 
 /// Sets every number of rows that lock to its least; whether there was one.
@@ -225,9 +254,9 @@ fn row(key: &str, text: &'static str, path: &'static str) -> Row {
 }
 
 /// A pass that reads everything that the plan's passes touch, with their roles.
-fn question(plan: &Plan, anchor: &str) -> Pass {
+fn question(plan: &Plan, anchor: &str) -> PlannedPass {
     let mut pass = Pass::compute(anchor, anchor, "1", "1");
-    let mut passes = plan.passes();
+    let mut passes: Vec<&PlannedPass> = plan.passes.iter().collect();
     // What reads a pixel out in the frame itself may count: its resources are touched as there.
     if let Some(resolve) = passes.iter().rposition(|pass| pass.kind == Kind::Fullscreen) {
         let resolve = passes.remove(resolve);
@@ -247,10 +276,10 @@ fn question(plan: &Plan, anchor: &str) -> Pass {
             }
         }
     }
-    pass
+    PlannedPass { pass, groups: Vec::new(), reference: None, samples: None }
 }
 
-fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
+fn runnable(plan: &Plan, (pass, id): (&PlannedPass, PassId), checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
     let (module, info) = (checked.module(), checked.info());
     let options = Options { markers: &MARKERS };
     let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
@@ -269,7 +298,8 @@ fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec
         _ => None,
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
-    Ok(Runnable { pass: pass.clone(), turn: 0, round: 0, program, fragment, source })
+    let is_awaited = plan.frame.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(id));
+    Ok(Runnable { pass: pass.clone(), id, iteration: None, is_awaited, program, fragment, source })
 }
 
 /// The program, if it reads no textures but those that the caller brings.

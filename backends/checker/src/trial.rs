@@ -97,7 +97,7 @@ impl<'s> Trial<'s> {
             neighbours_lost: case.room.neighbours_lost,
             hidden: u32::from(subject.hides()),
         };
-        let mut frame = Frame::new(subject, case.room.symbols.clone())?;
+        let mut frame = Frame::new(subject, case.room.values.clone())?;
         frame.reserved = case.room.reserved;
         let program = &subject.passes[case.pass].program;
         let hidden = farthest(case.prior.iter().chain(&case.new), program).filter(|_| subject.hides());
@@ -106,9 +106,10 @@ impl<'s> Trial<'s> {
         }
         let (neighbour, hidden) = (neighbour.clone(), hidden.map(|(_, behind)| behind));
         let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour, hidden, policy, wanted };
-        let turn = trial.runnable().turn;
         let seen = trial.case.new.len() - usize::from(trial.case.room.has_unseen || trial.case.has_helper);
-        frame.advance(0, turn, &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))?;
+        if !frame.advance(trial.runnable(), &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))? {
+            return Err(format!("the frame never comes to the pass `{}`", trial.runnable().pass.anchor));
+        }
         trial.begin(frame, None, search)?;
         Ok(trial)
     }
@@ -135,12 +136,12 @@ impl<'s> Trial<'s> {
     ) -> Result<(), String> {
         let (model, one_by_one) = (search.model, search.one_by_one);
         let runnable = self.runnable();
-        frame.enter(runnable.round)?;
         for inputs in self.inputs(runnable, &[]) {
             frame.insert(runnable, &inputs)?;
         }
         let (mut ground, words) = ground(self.subject, &runnable.program, &frame.memory, model);
         ground.one_by_one = one_by_one;
+        ground.counts_samples = runnable.is_awaited;
         ground.helper = self.case.has_helper.then(|| self.case.new.len() - 1);
         let new = self.case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, self.case.pixel));
         let machines = new.map(|fragment| machine(&runnable.program, &fragment.inputs)).collect();
@@ -213,7 +214,21 @@ fn ground<'s>(subject: &Subject, program: &'s Program, memory: &Memory, model: M
     let by_submission = subject.has_ordered_interlock;
     let fixed = memory.clone();
     let (helper, one_by_one) = (None, false);
-    (Ground { program, homes, fixed, ordered, model, has_fences, helper, by_submission, one_by_one }, words)
+    (
+        Ground {
+            program,
+            homes,
+            fixed,
+            ordered,
+            model,
+            has_fences,
+            helper,
+            by_submission,
+            one_by_one,
+            counts_samples: false,
+        },
+        words,
+    )
 }
 
 /// (memory, first moving word, words) for every buffer that moves.
@@ -254,8 +269,10 @@ impl<'s> EndJudge<'_, 's> {
         let trial = self.trial;
         let mut frame = self.frame_of(words);
         let real = &trial.case.new[..trial.case.new.len() - usize::from(trial.case.has_helper)];
-        let turn = trial.runnable().turn;
-        if frame.advance(turn + 1, turn, &|runnable| trial.inputs(runnable, real))? {
+        // Behind the words in memory stand the samples that passed, where a loop waits for them.
+        let moving: usize = self.homes.iter().map(|(_, _, count)| count).sum();
+        frame.pass_by(words.get(moving).copied().unwrap_or(0))?;
+        if frame.advance(trial.runnable(), &|runnable| trial.inputs(runnable, real))? {
             self.goes_on.insert(words.to_vec(), frame);
             return Ok(End::GoesOn);
         }

@@ -185,7 +185,7 @@ fn try_all(
     if drawn == 0 {
         return Err("no pass of the plan draws the scene".to_owned());
     }
-    let capacity = subject.plan.bound.value("capacity").unwrap_or(1) as u32;
+    let capacity = subject.plan.capacity();
     let entries: Vec<Option<u32>> = match subject.keeps_best() {
         true => limits.entries.iter().copied().filter(|k| *k <= capacity).map(Some).collect(),
         false => vec![None],

@@ -53,7 +53,8 @@ impl<'p> Walker<'_, 'p> {
             }
             let running = self.ground.running(&state);
             if running.is_empty() {
-                return Ok(Some((judge.end(&state.words), state.words)));
+                let words = state.left_behind(self.ground);
+                return Ok(Some((judge.end(&words), words)));
             }
             let able: Vec<usize> = running
                 .iter()

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
 use fragbuf_backends::check;
-use fragbuf_codegen::{Form, Linking, link, plan};
+use fragbuf_codegen::{Form, Linking, SymbolId, link, plan};
 use fragbuf_interpreter::{Event, Exit, Machine, Options, Place, Program, Reply, Shared};
 use fragbuf_model::Origin;
 use fragbuf_templates::Registry;
@@ -66,7 +66,7 @@ impl Pixel {
         let checked = check(store, wgsl.profile, &Origin::new("test", 1, 1)).unwrap();
         let program = Program::entry_point(checked.module(), checked.info(), "store", &Options::default()).unwrap();
         let words = |name: &str| match name {
-            "frame" => plan.frame.iter().map(|field| if field == "k" { k as u32 } else { 1 }).collect(),
+            "frame" => plan.fields.iter().map(|field| if *field == SymbolId::K { k as u32 } else { 1 }).collect(),
             "keys" => vec![EMPTY; k],
             "entries" => vec![0; k],
             other => panic!("the store pass touches `{other}`"),
@@ -75,7 +75,7 @@ impl Pixel {
         let mut empty: Vec<Vec<u32>> = program.buffers.iter().map(|buffer| words(&buffer.name)).collect();
         let number = |name: &str| program.buffers.iter().position(|buffer| buffer.name == name).unwrap();
         let (keys, entries, frame) = (number("keys"), number("entries"), number("frame"));
-        empty[frame][plan.frame.iter().position(|field| field == "first_row").unwrap()] = 0;
+        empty[frame][plan.fields.iter().position(|field| *field == SymbolId::FIRST_ROW).unwrap()] = 0;
         Pixel { k, empty, keys, entries, program }
     }
 

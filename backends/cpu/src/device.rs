@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{
-    Counters, Counting, Looped, PassTime, Sizing, Symbols, Value, resource, set, symbols, unsupported, zeros,
+    Counters, Counting, Looped, PassTime, Sizing, Value, Values, resource, room_after, set, unsupported, values, zeros,
 };
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
@@ -78,7 +78,7 @@ pub struct Picture {
 pub struct Device {
     pub(crate) code: Arc<Code>,
     pub(crate) settings: Settings,
-    pub(crate) symbols: Symbols,
+    pub(crate) values: Values,
     pub(crate) counting: Counting,
     pub(crate) memory: Memory,
     pub(crate) uniforms: Vec<u32>,
@@ -98,14 +98,14 @@ impl Device {
             let wanted = format!("from 1 to {LARGEST} pixels along each side");
             return Err(fragbuf_frame::Error::BadValue { name: "the frame's size".to_owned(), wanted }.into());
         }
-        let (symbols, counting) = symbols(&code.plan, (settings.width, settings.height), settings.sizing)?;
+        let (values, counting) = values(&code.plan, (settings.width, settings.height), settings.sizing)?;
         let mut memory = Memory::default();
-        memory.resize(&code.plan, &symbols)?;
+        memory.resize(&code.plan, &values)?;
         let uniforms = zeros(&code.plan.variant.uniforms);
         let resources = code.plan.resources.iter().enumerate();
         let missing = resources.filter(|(_, planned)| planned.is_brought()).map(|(index, _)| index).collect();
         let (camera, objects) = (Vec::new(), Vec::new());
-        let mut device = Device { code, settings, symbols, counting, memory, uniforms, camera, objects, missing };
+        let mut device = Device { code, settings, values, counting, memory, uniforms, camera, objects, missing };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -129,7 +129,7 @@ impl Device {
     /// row after row from the top. It is only read, from the next frame on, until another takes its place.
     pub fn set_texture(&mut self, name: &str, texels: &[f32]) -> Result<(), Error> {
         let plan = &self.code.plan;
-        let index = resource(plan, name)?;
+        let index = resource(plan, name)?.0;
         let (width, height) = (self.settings.width, self.settings.height);
         let is_float =
             |element| matches!(element, Element::Texture(TextureFormat::Depth32Float | TextureFormat::R32Float));
@@ -170,18 +170,18 @@ impl Device {
 
     /// All words of a resource, as the last frame left them. `None`: the plan does not have it.
     pub fn words(&self, name: &str) -> Option<Vec<u32>> {
-        let index = resource(&self.code.plan, name).ok()?;
-        self.memory.resources.get(index).map(|words| read(words))
+        let id = resource(&self.code.plan, name).ok()?;
+        self.memory.resources.get(id.0).map(|words| read(words))
     }
 
     /// The value of a symbol of the plan's formulas.
     pub fn symbol(&self, name: &str) -> Option<u64> {
-        self.symbols.value(&self.code.plan, name)
+        self.values.named(name)
     }
 
     /// Fragments that a pixel keeps; `None`: all.
     pub fn k(&self) -> Option<u32> {
-        self.symbols.k
+        self.values.k()
     }
 
     /// Bytes of all resources.
@@ -191,7 +191,7 @@ impl Device {
 
     /// Room, in fragments, after a frame that lost `short` of them for want of it.
     pub fn room_after(&self, short: u32) -> u64 {
-        self.symbols.room_after(&self.code.plan, short)
+        room_after(&self.code.plan, &self.values, short)
     }
 }
 

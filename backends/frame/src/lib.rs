@@ -1,34 +1,31 @@
-//! The arithmetic of a frame, the same for every device that runs a plan: values of the symbols in formulas, sizes of
-//! buffers, room for fragments that nobody has counted yet, decisions of the host, uniform words, counters.
+//! A frame of a plan, for every device that runs one: the cursor that steps through its commands, values of the symbols in
+//! formulas, sizes of buffers, memory for fragments that nobody has counted yet, uniform words, counters.
 //!
-//! In: a plan and the frame's size. Out: numbers and words. Nothing here knows a device, and nothing is allocated.
+//! In: a plan and the frame's size. Out: turns, numbers and words. No device is named here, and nothing is allocated.
 
 mod counters;
+mod cursor;
 mod error;
-mod host;
 mod looped;
 mod pass_time;
 mod room;
-mod symbols;
 mod uniforms;
-mod unrolled;
+mod values;
 
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTLY_COVERED, POOL_EXHAUSTED};
+pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations, pass_of};
 pub use error::Error;
-pub use host::Decision;
 pub use looped::{LoopEnd, Looped};
 pub use pass_time::PassTime;
-pub use room::{Counting, Room, Sizing, bytes, reserve, symbols};
-pub use symbols::Symbols;
+pub use room::{Counting, Room, Sizing, bytes, decided, reserve, room_after, values};
 pub use uniforms::{Value, set, zeros};
-pub use unrolled::{Turn, rounds, unrolled};
+pub use values::Values;
 
-use fragbuf_codegen::Plan;
+use fragbuf_codegen::{Plan, ResourceId};
 
-/// The index of a resource of the plan.
-pub fn resource(plan: &Plan, name: &str) -> Result<usize, Error> {
-    let index = plan.resources.iter().position(|planned| planned.resource.name == name);
-    index.ok_or_else(|| unsupported(format!("`{name}`, which the plan does not have")))
+/// The handle of a resource by name, for what comes from outside.
+pub fn resource(plan: &Plan, name: &str) -> Result<ResourceId, Error> {
+    plan.resource_id(name).ok_or_else(|| unsupported(format!("`{name}`, which the plan does not have")))
 }
 
 /// A refusal of something that a plan says and no device here does.

@@ -1,10 +1,9 @@
 //! Room for fragments whose number no one knows when the frame is allocated.
 
-use fragbuf_codegen::Plan;
-use fragbuf_templates::vocabulary::Step;
+use fragbuf_codegen::{Plan, SymbolId};
+use fragbuf_templates::vocabulary::When;
 
-use crate::symbols::counted_symbols;
-use crate::{Error, Symbols};
+use crate::{Error, Values};
 
 /// How much room is made for fragments whose number no one knows beforehand. Plans without such resources ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,58 +40,93 @@ pub enum Counting {
     Reserved,
 }
 
-/// The symbols of the first frame, and whether host steps will count.
-pub fn symbols(plan: &Plan, (width, height): (u32, u32), sizing: Sizing) -> Result<(Symbols, Counting), Error> {
-    let k = plan.frame.iter().any(|field| field == "k").then_some(plan.variant.keep).flatten();
-    let mut symbols = Symbols { width, height, rows: height, k, counted: Vec::new() };
-    let names = counted_symbols(plan);
-    let exact = match sizing {
-        Sizing::Auto => names.iter().all(|name| decided(&plan.steps, name)),
-        Sizing::Exact => true,
-        Sizing::Reserve(_) => false,
+/// The values of the first frame, and whether host steps will count.
+pub fn values(plan: &Plan, size: (u32, u32), sizing: Sizing) -> Result<(Values, Counting), Error> {
+    let mut values = Values::new(plan, size);
+    if let Some(k) = plan.variant.keep {
+        values.set(SymbolId::K, k.into());
+    }
+    let counted = counted(plan);
+    let undecided = counted.iter().find(|id| !is_decided(plan, **id));
+    let counting = match (sizing, undecided) {
+        (Sizing::Auto, None) | (Sizing::Exact, None) => Counting::Exact,
+        (Sizing::Exact, Some(id)) => {
+            return Err(Error::Unsupported {
+                what: format!("exact sizing of `{}`, which no step of this plan counts", plan.symbols.get(*id).name),
+                hint: "reserve: `Sizing::Reserve(Room::Bytes(…))`".to_owned(),
+            });
+        }
+        (Sizing::Auto, Some(_)) | (Sizing::Reserve(_), _) => Counting::Reserved,
     };
-    if let Some(name) = names.iter().find(|name| exact && !decided(&plan.steps, name)) {
-        return Err(Error::Unsupported {
-            what: format!("exact sizing of `{name}`, which no step of this plan counts"),
-            hint: "reserve: `Sizing::Reserve(Room::Bytes(…))`".to_owned(),
-        });
+    for id in counted {
+        match counting {
+            Counting::Exact => values.set(id, 0),
+            Counting::Reserved => values.set_per_pixel(id, Sizing::AUTO_PER_PIXEL),
+        }
     }
-    symbols.counted = names.into_iter().map(|name| (name, exact.then_some(0))).collect();
     if let Sizing::Reserve(room) = sizing {
-        reserve(plan, &mut symbols, room)?;
+        reserve(plan, &mut values, room)?;
     }
-    Ok((symbols, if exact { Counting::Exact } else { Counting::Reserved }))
+    Ok((values, counting))
+}
+
+/// The symbols whose values are known only once fragments have been counted: fields of the frame that neither its size nor
+/// the caller decides. Slots per pixel stand for the fragments of the frame, unless a host step sets them.
+fn counted(plan: &Plan) -> Vec<SymbolId> {
+    let fields = plan.fields.iter().copied().filter(|id| plan.symbols.get(*id).when == When::Readback);
+    let mut counted: Vec<SymbolId> = Vec::new();
+    for id in fields {
+        let id = if id == SymbolId::N && !is_decided(plan, id) { SymbolId::FRAGMENTS } else { id };
+        if !counted.contains(&id) {
+            counted.push(id);
+        }
+    }
+    counted
 }
 
 /// Whether a host step sets the symbol.
-fn decided(steps: &[Step], symbol: &str) -> bool {
-    steps.iter().any(|step| match step {
-        Step::Host(host) => host.sets.iter().any(|set| set == symbol),
-        Step::Repeat(repeat) => decided(&repeat.body, symbol),
-        _ => false,
-    })
+fn is_decided(plan: &Plan, id: SymbolId) -> bool {
+    plan.frame.decisions().any(|decision| decision.sets.contains(&id))
 }
 
-/// Sets what is counted to the room that the caller makes.
-pub fn reserve(plan: &Plan, symbols: &mut Symbols, room: Room) -> Result<(), Error> {
+/// Sets what is counted to the memory that the caller reserves.
+pub fn reserve(plan: &Plan, values: &mut Values, room: Room) -> Result<(), Error> {
     let fragments = match room {
         Room::Fragments(fragments) => fragments,
-        Room::Bytes(bytes) => fragments_in(plan, symbols, bytes)?,
+        Room::Bytes(bytes) => fragments_in(plan, values, bytes)?,
     };
-    fill(symbols, fragments);
+    fill(plan, values, fragments);
     Ok(())
 }
 
-fn fill(symbols: &mut Symbols, fragments: u32) {
-    symbols.counted.iter_mut().for_each(|(_, value)| *value = Some(fragments.into()));
+/// Fragments that there is to be memory for after a frame that lost `short` of them for want of it: exactly enough where a
+/// pool was too small, twice as much where every pixel has slots of its own and only the deepest ran out.
+pub fn room_after(plan: &Plan, values: &Values, short: u32) -> u64 {
+    let now = values.get(SymbolId::FRAGMENTS).unwrap_or(0);
+    if plan.has_field(SymbolId::N) { (2 * now).max(values.pixels()) } else { now + u64::from(short) }
+}
+
+/// The counted symbols that a host step has just decided and their values, those apart that keep the memory there is: a
+/// little more than is needed is kept, more than twice as much is given back.
+pub fn decided(plan: &Plan, now: &Values, decided: &mut Values) {
+    for id in counted(plan) {
+        let (Some(room), Some(needed)) = (now.get(id), decided.get(id)) else { continue };
+        if needed <= room && room <= 2 * needed {
+            decided.set(id, room);
+        }
+    }
+}
+
+fn fill(plan: &Plan, values: &mut Values, fragments: u32) {
+    counted(plan).into_iter().for_each(|id| values.set(id, fragments.into()));
 }
 
 /// The most fragments for which the buffers grow by no more than `room` bytes.
-fn fragments_in(plan: &Plan, symbols: &Symbols, room: u64) -> Result<u32, Error> {
+fn fragments_in(plan: &Plan, values: &Values, room: u64) -> Result<u32, Error> {
     let total = |fragments: u32| -> Result<u64, Error> {
-        let mut symbols = symbols.clone();
-        fill(&mut symbols, fragments);
-        Ok(bytes(plan, &symbols)?.iter().map(|(_, bytes)| bytes).sum())
+        let mut values = values.clone();
+        fill(plan, &mut values, fragments);
+        Ok(bytes(plan, &values)?.iter().map(|(_, bytes)| bytes).sum())
     };
     let empty = total(0)?;
     let fits = |fragments: u32| Ok(total(fragments)? - empty <= room);
@@ -107,11 +141,11 @@ fn fragments_in(plan: &Plan, symbols: &Symbols, room: u64) -> Result<u32, Error>
     Ok(yes)
 }
 
-/// Name and bytes of every resource. What is counted later has no room yet.
-pub fn bytes<'a>(plan: &'a Plan, symbols: &Symbols) -> Result<Vec<(&'a str, u64)>, Error> {
+/// Name and bytes of every resource. What is counted later has no memory yet.
+pub fn bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a str, u64)>, Error> {
     let sizes = plan.resources.iter().map(|planned| {
         let name = &planned.resource.name;
-        Ok((name.as_str(), symbols.evaluate(plan, &planned.words, &format!("`{name}`"))?.saturating_mul(4)))
+        Ok((name.as_str(), values.evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4)))
     });
     sizes.collect()
 }

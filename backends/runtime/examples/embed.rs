@@ -11,7 +11,7 @@ use fragbuf_backends::{Request, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_model::{Draft, Origin, check};
 use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
-use fragbuf_runtime::{Output, Recorded, Renderer, Settings, Shaders, block_on};
+use fragbuf_runtime::{Call, Output, Recorded, Renderer, Settings, Shaders, block_on};
 use fragbuf_templates::Registry;
 
 const SIZE: u32 = 512;
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     host_pass(&mut encoder, &screen, &floor, wgpu::LoadOp::Clear(wgpu::Color::BLACK));
     let mut frame = renderer.begin()?;
     let output = Output { view: screen.view(), load: wgpu::LoadOp::Load };
-    let mut draw = |pass: &mut wgpu::RenderPass<'_>, _: &_| {
+    let mut draw = |pass: &mut wgpu::RenderPass<'_>, _: &Call<'_>| {
         pass.set_vertex_buffer(0, sheets.slice(..));
         pass.draw(0..9, 0..1);
     };

@@ -5,14 +5,14 @@
 
 use std::collections::BTreeMap;
 
-use fragbuf_frame::resource as index;
-use fragbuf_templates::vocabulary::{Access, Pass};
+use fragbuf_codegen::{PlannedPass, ResourceId};
+use fragbuf_templates::vocabulary::Access;
 
 use crate::texture::{OUTPUT, color_of, depth_of};
 use crate::{Output, Renderer};
 
-/// Words that textures are to be cleared to, by resource.
-pub(crate) type Clears = BTreeMap<usize, u32>;
+/// Words that textures are to be cleared to, by physical resource.
+pub(crate) type Clears = BTreeMap<ResourceId, u32>;
 
 /// The views that a pass is attached to. They must outlive its descriptor.
 pub(crate) struct Attachments {
@@ -34,10 +34,11 @@ pub(crate) enum Written {
 }
 
 impl Attachments {
-    /// Those of `pass`. Clears that they begin with are taken out of `clears`.
+    /// Those of `pass`, where the exchanges of the bit mask `flipped` are flipped. Clears that they begin with are taken out of
+    /// `clears`.
     pub(crate) fn of(
         renderer: &Renderer,
-        pass: &Pass,
+        (pass, flipped): (&PlannedPass, u32),
         output: &Output<'_>,
         (clears, written): (&mut Clears, &mut Written),
     ) -> Self {
@@ -50,15 +51,15 @@ impl Attachments {
                 colors.push(Some((output.view.clone(), stored(load))));
                 continue;
             }
-            colors.push(texture(renderer, &target.resource).map(|(number, texture)| {
-                let clear = clears.remove(&number).map(|word| color_of(texture.format(), word));
+            colors.push(texture(renderer, &target.resource, flipped).map(|(id, texture)| {
+                let clear = clears.remove(&id).map(|word| color_of(texture.format(), word));
                 (view(texture), stored(clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear)))
             }));
         }
         let tested = state.depth.as_ref().map(|depth| &depth.resource);
         let tested = tested.or(state.stencil.as_ref().map(|stencil| &stencil.resource));
         let only_read = state.stencil.is_none() && state.depth.as_ref().is_some_and(|depth| !depth.write);
-        let mut depth_stencil = tested.and_then(|name| DepthStencil::of(renderer, name, clears));
+        let mut depth_stencil = tested.and_then(|name| DepthStencil::of(renderer, (name, flipped), clears));
         if let Some(attached) = depth_stencil.as_mut().filter(|attached| only_read && attached.is_loaded()) {
             // Without operations an attachment is read alone: the caller's own texture may be read elsewhere meanwhile.
             (attached.depth, attached.stencil) = (None, None);
@@ -100,48 +101,67 @@ impl DepthStencil {
         self.depth.is_none_or(|depth| matches!(depth.load, wgpu::LoadOp::Load))
     }
 
-    fn of(renderer: &Renderer, name: &str, clears: &mut Clears) -> Option<Self> {
-        let (number, texture) = texture(renderer, name)?;
-        let (format, clear) = (texture.format(), clears.remove(&number));
+    fn of(renderer: &Renderer, (name, flipped): (&str, u32), clears: &mut Clears) -> Option<Self> {
+        let (id, texture) = texture(renderer, name, flipped)?;
+        Some(Self::cleared(texture, clears.remove(&id)))
+    }
+
+    /// A texture that begins with being cleared to a word, or with what it holds.
+    fn cleared(texture: &wgpu::Texture, clear: Option<u32>) -> Self {
+        let format = texture.format();
         let depth = clear.map_or(wgpu::LoadOp::Load, |word| wgpu::LoadOp::Clear(depth_of(format, word)));
         let stencil = clear.map_or(wgpu::LoadOp::Load, |word| wgpu::LoadOp::Clear(word & 0xff));
-        Some(DepthStencil {
+        DepthStencil {
             view: view(texture),
             depth: format.has_depth_aspect().then_some(stored(depth)),
             stencil: format.has_stencil_aspect().then_some(stored(stencil)),
-        })
+        }
     }
 }
 
 /// Clears what `pass` reads, and no pass has begun with clearing.
-pub(crate) fn clear_sampled(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, pass: &Pass, clears: &mut Clears) {
+pub(crate) fn clear_sampled(
+    renderer: &Renderer,
+    encoder: &mut wgpu::CommandEncoder,
+    (pass, flipped): (&PlannedPass, u32),
+    clears: &mut Clears,
+) {
     for usage in pass.uses.iter().filter(|usage| usage.access == Access::Sampled) {
-        let Some((number, texture)) = texture(renderer, &usage.resource) else { continue };
-        if !clears.contains_key(&number) {
-            continue;
+        if let Some((id, _)) = texture(renderer, &usage.resource, flipped) {
+            clear_now(renderer, encoder, id, clears);
         }
-        let attached = match texture.format().is_depth_stencil_format() {
-            true => {
-                Attachments { colors: Vec::new(), depth_stencil: DepthStencil::of(renderer, &usage.resource, clears) }
-            }
-            false => {
-                let word = clears.remove(&number).unwrap_or(0);
-                let load = wgpu::LoadOp::Clear(color_of(texture.format(), word));
-                Attachments { colors: vec![Some((view(texture), stored(load)))], depth_stencil: None }
-            }
-        };
-        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("fragbuf clear"),
-            color_attachments: &attached.colors(),
-            depth_stencil_attachment: attached.depth_stencil(),
-            ..wgpu::RenderPassDescriptor::default()
-        }));
     }
 }
 
-fn texture<'a>(renderer: &'a Renderer, name: &str) -> Option<(usize, &'a wgpu::Texture)> {
-    let number = index(renderer.plan(), name).ok()?;
-    Some((number, renderer.sized.memory.texture(number)?))
+/// Clears a texture by a pass of its own, if that is still to be done.
+pub(crate) fn clear_now(
+    renderer: &Renderer,
+    encoder: &mut wgpu::CommandEncoder,
+    resource: ResourceId,
+    clears: &mut Clears,
+) {
+    let Some(texture) = renderer.sized.memory.texture(resource.0) else { return };
+    let Some(word) = clears.remove(&resource) else { return };
+    let attached = match texture.format().is_depth_stencil_format() {
+        true => Attachments { colors: Vec::new(), depth_stencil: Some(DepthStencil::cleared(texture, Some(word))) },
+        false => {
+            let load = wgpu::LoadOp::Clear(color_of(texture.format(), word));
+            Attachments { colors: vec![Some((view(texture), stored(load)))], depth_stencil: None }
+        }
+    };
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("fragbuf clear"),
+        color_attachments: &attached.colors(),
+        depth_stencil_attachment: attached.depth_stencil(),
+        ..wgpu::RenderPassDescriptor::default()
+    }));
+}
+
+/// The physical texture that a name stands for.
+fn texture<'a>(renderer: &'a Renderer, name: &str, flipped: u32) -> Option<(ResourceId, &'a wgpu::Texture)> {
+    let plan = renderer.plan();
+    let id = plan.frame.physical(plan.resource_id(name)?, flipped);
+    Some((id, renderer.sized.memory.texture(id.0)?))
 }
 
 fn view(texture: &wgpu::Texture) -> wgpu::TextureView {

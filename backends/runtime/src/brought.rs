@@ -3,22 +3,22 @@
 //! In: a plan and a texture of the caller's. Out: whether the frame can take it, or what it must be. Nothing here writes to one.
 
 use fragbuf_codegen::{Plan, Planned};
-use fragbuf_frame::{Symbols, resource as index};
+use fragbuf_frame::{Values, resource};
 use fragbuf_templates::vocabulary::{Access, Element};
 
 use crate::Error;
 use crate::texture::{samples, texture_format};
 
 /// The number of the resource `name`, if it is brought and `texture` can be it.
-pub(crate) fn accept(plan: &Plan, symbols: &Symbols, name: &str, texture: &wgpu::Texture) -> Result<usize, Error> {
-    let number = index(plan, name)?;
+pub(crate) fn accept(plan: &Plan, values: &Values, name: &str, texture: &wgpu::Texture) -> Result<usize, Error> {
+    let number = resource(plan, name)?.0;
     let planned = &plan.resources[number];
     let Element::Texture(format) = planned.resource.element else { return Err(not_brought(name)) };
     if !planned.is_brought() {
         return Err(not_brought(name));
     }
-    let size = wgpu::Extent3d { width: symbols.width, height: symbols.height, depth_or_array_layers: 1 };
-    let (format, samples, usage) = (texture_format(format), samples(plan, &planned.resource)?, usage(plan, planned));
+    let size = wgpu::Extent3d { width: values.width(), height: values.height(), depth_or_array_layers: 1 };
+    let (format, samples, usage) = (texture_format(format), samples(plan, planned)?, usage(plan, planned));
     let is_plain = texture.dimension() == wgpu::TextureDimension::D2 && texture.mip_level_count() == 1;
     let fits = texture.size() == size && texture.format() == format && texture.sample_count() == samples;
     if is_plain && fits && texture.usage().contains(usage) {
@@ -57,7 +57,7 @@ fn not_brought(name: &str) -> Error {
 
 /// What the plan's passes do with it.
 fn usage(plan: &Plan, planned: &Planned) -> wgpu::TextureUsages {
-    let uses = plan.passes().into_iter().flat_map(|pass| &pass.uses);
+    let uses = plan.passes.iter().flat_map(|pass| &pass.uses);
     let own = uses.filter(|usage| usage.resource == planned.resource.name);
     let usages = own.map(|usage| match usage.access {
         Access::Attachment => wgpu::TextureUsages::RENDER_ATTACHMENT,

@@ -2,14 +2,15 @@
 //!
 //! In: the state of a pass and the plan's textures. Out: wgpu's descriptors. Nothing here knows what the state is for.
 
-use fragbuf_codegen::Plan;
+use fragbuf_codegen::{Plan, PlannedPass, SymbolId};
+use fragbuf_frame::Values;
 use fragbuf_templates::vocabulary::{
-    Blend, Compare, Element, Formula, Pass, Samples, StencilOperation, StencilState, Target, TextureFormat,
+    Blend, Compare, Element, Pass, StencilOperation, StencilState, Target, TextureFormat,
 };
 
 use crate::Error;
 use crate::pipeline::no_target;
-use crate::texture::{OUTPUT, at_most, texture_format};
+use crate::texture::{OUTPUT, texture_format};
 
 /// The state of one pipeline.
 pub(crate) struct FixedFunction {
@@ -21,16 +22,16 @@ pub(crate) struct FixedFunction {
 /// The states of a pass: one, or one for each round where its sample mask changes with the round.
 pub(crate) fn fixed_functions(
     plan: &Plan,
-    pass: &Pass,
+    pass: &PlannedPass,
     output: wgpu::TextureFormat,
     rounds: u32,
 ) -> Result<Vec<FixedFunction>, Error> {
-    let changes = pass.state.samples.as_ref().is_some_and(|samples| samples.mask.mentions("iteration"));
+    let changes = pass.samples.as_ref().is_some_and(|[_, mask]| mask.mentions(SymbolId::ITERATION));
     let states = (0..if changes { rounds } else { 1 }).map(|round| {
         Ok(FixedFunction {
             targets: targets(plan, pass, output),
             depth_stencil: depth_stencil(plan, pass),
-            multisample: multisample(plan, pass.state.samples.as_ref(), round)?,
+            multisample: multisample(plan, pass, round)?,
         })
     });
     states.collect()
@@ -83,18 +84,18 @@ fn stencil_state(state: &StencilState) -> wgpu::StencilState {
 }
 
 /// Samples of a pixel in a pass.
-pub(crate) fn sample_count(plan: &Plan, pass: &Pass) -> Result<u32, Error> {
-    let count = pass.state.samples.as_ref().map(|samples| &samples.count);
-    count.map_or(Ok(1), |count| at_most(plan, count, None, "the samples of a pass"))
+pub(crate) fn sample_count(plan: &Plan, pass: &PlannedPass) -> Result<u32, Error> {
+    let Some([count, _]) = &pass.samples else { return Ok(1) };
+    Ok(Values::of_code(plan).word(count, "the samples of a pass")?)
 }
 
-/// The samples of a pass in one round of a loop.
-pub(crate) fn multisample(plan: &Plan, samples: Option<&Samples>, round: u32) -> Result<wgpu::MultisampleState, Error> {
-    let Some(samples) = samples else { return Ok(wgpu::MultisampleState::default()) };
-    let value = |formula: &Formula, what: &str| at_most(plan, formula, Some(round), what);
+/// The samples of a pass in one iteration of a loop.
+pub(crate) fn multisample(plan: &Plan, pass: &PlannedPass, iteration: u32) -> Result<wgpu::MultisampleState, Error> {
+    let Some([count, mask]) = &pass.samples else { return Ok(wgpu::MultisampleState::default()) };
+    let code = Values::of_code(plan).in_iteration(iteration);
     Ok(wgpu::MultisampleState {
-        count: value(&samples.count, "the samples of a pass")?,
-        mask: value(&samples.mask, "the sample mask of a pass")?.into(),
+        count: code.word(count, "the samples of a pass")?,
+        mask: code.word(mask, "the sample mask of a pass")?.into(),
         alpha_to_coverage_enabled: false,
     })
 }

@@ -7,17 +7,15 @@
 //!
 //! A frame is handed on from call to call, so that a segment cannot be recorded twice or out of order.
 
-use std::collections::BTreeSet;
+use fragbuf_codegen::{PassId, PlannedPass, ResourceId};
+use fragbuf_frame::{COUNTERS_RESOURCE, Looped, Question, Run, Span, Turn};
+use fragbuf_templates::vocabulary::{Access, Kind, Objects, Pass};
 
-use fragbuf_frame::{COUNTERS_RESOURCE, Decision};
-use fragbuf_templates::vocabulary::{Formula, Kind, Pass};
-
-use crate::action::{Action, Run};
-use crate::attachments::{Attachments, Clears, Written, clear_sampled};
+use crate::attachments::{Attachments, Clears, Written, clear_now, clear_sampled};
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
-use crate::walk::{Ends, Place, Question, Step, segment};
+use crate::walk::{Place, Step, segment};
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
@@ -28,15 +26,16 @@ pub struct Frame {
     written: Written,
     /// Textures that the next pass attached to them begins with clearing.
     clears: Clears,
-    /// The first query of every run so far.
-    timed: BTreeSet<u32>,
+    /// The runs of passes so far.
+    runs: Vec<PassId>,
 }
 
 /// What [`Frame::record`] came to.
 #[must_use = "a cut frame goes on with `Cut::resume`"]
 pub enum Recorded {
-    /// The frame is whole once this has been submitted.
-    Finished,
+    /// The frame is whole once this has been submitted. Also: how its loops have ended whose ends are found out while it runs;
+    /// nothing where memory was reserved, because then nobody asks.
+    Finished(Vec<Looped>),
     /// Submit what was recorded, then resume.
     Cut(Cut),
 }
@@ -45,7 +44,23 @@ pub enum Recorded {
 pub struct Cut {
     frame: Frame,
     question: Question,
-    reads: Vec<Pending<Vec<u32>>>,
+    reads: Vec<Read>,
+}
+
+/// What the host reads.
+enum Read {
+    Pending(Pending<Vec<u32>>),
+    /// So many words of an empty resource.
+    Nothing(u64),
+}
+
+/// One draw that is the caller's.
+#[derive(Clone, Copy, Debug)]
+pub struct Call<'a> {
+    /// The pass.
+    pub pass: &'a Pass,
+    /// The objects to draw, by their numbers in [`Renderer::set_objects`]; `None`: all.
+    pub objects: Option<&'a [u32]>,
 }
 
 /// Where frames are resolved into.
@@ -60,11 +75,12 @@ pub struct Output<'a> {
 
 /// The caller's draw function: called for each geometry pass of each slice, with the pipeline, the bind group and the
 /// scissor rectangle set, which is the slice.
-pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Pass) + 'a;
+pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Call<'_>) + 'a;
 
 impl Frame {
-    pub(crate) fn new(id: u64) -> Self {
-        Frame { id, at: Place::default(), written: Written::No, clears: Clears::new(), timed: BTreeSet::new() }
+    pub(crate) fn new(renderer: &Renderer) -> Self {
+        let at = Place::new(renderer);
+        Frame { id: renderer.frame_id, at, written: Written::No, clears: Clears::new(), runs: Vec::new() }
     }
 
     /// Records everything up to the next decision of the host, or to the end.
@@ -79,50 +95,57 @@ impl Frame {
             return Err(Error::StaleFrame);
         }
         // Whatever can fail does so before anything is recorded.
-        let segment = segment(renderer, self.at)?;
-        let places = segment.question.as_ref().map(|question| places(renderer, question)).transpose()?;
+        let segment = segment(renderer, self.at.clone())?;
         for step in &segment.steps {
-            match step.action {
-                Action::Clear { resource, value } if renderer.sized.memory.texture(*resource).is_some() => {
-                    self.clears.insert(*resource, *value);
-                }
-                Action::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
-                Action::Copy { from, to } => copy(renderer, encoder, *from, *to),
-                Action::Pass(run) => self.pass(renderer, encoder, (*run, step), output, draw),
-                Action::Host(_) | Action::Again(_) => {}
-            }
-            if let Ends::Slice = step.ends {
-                tally(renderer, encoder, step.slice);
+            match step {
+                Step::SliceEnd(slice) => tally(renderer, encoder, *slice),
+                Step::Turn { slice, turn, groups, reference } => match turn {
+                    Turn::Clear { resource, value } if renderer.sized.memory.texture(resource.0).is_some() => {
+                        self.clears.insert(*resource, *value);
+                    }
+                    Turn::Clear { resource, value } => clear(renderer, encoder, *resource, *value),
+                    Turn::Copy { from, to } => self.copy(renderer, encoder, *from, *to),
+                    Turn::Pass(run) => {
+                        let recording = Recording { run: *run, slice: *slice, groups: *groups, reference: *reference };
+                        self.pass(renderer, encoder, &recording, output, draw);
+                    }
+                    Turn::Ask(_) => {}
+                },
             }
         }
         self.at = segment.end;
-        let (Some(question), Some(places)) = (segment.question, places) else {
+        let Some(question) = segment.question else {
             if let Some(timing) = &renderer.sized.timing {
-                timing.resolve(encoder, &self.timed);
+                timing.resolve(encoder, &self.runs);
             }
-            return Ok(Recorded::Finished);
+            renderer.leave_flipped(self.at.flipped);
+            return Ok(Recorded::Finished(self.at.loops));
         };
-        let device = &renderer.device;
-        let reads =
-            places.into_iter().map(|(buffer, place)| Pending::record(device, encoder, buffer, place, 4, |words| words));
-        Ok(Recorded::Cut(Cut { reads: reads.collect(), question, frame: self }))
+        let reads = reads(renderer, encoder, &question);
+        Ok(Recorded::Cut(Cut { reads, question, frame: self }))
+    }
+
+    fn copy(&mut self, renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: ResourceId, to: ResourceId) {
+        clear_now(renderer, encoder, from, &mut self.clears);
+        self.clears.remove(&to);
+        copy(renderer, encoder, from, to);
     }
 
     fn pass(
         &mut self,
         renderer: &Renderer,
         encoder: &mut wgpu::CommandEncoder,
-        (run, step): (Run, &Step<'_>),
+        recording: &Recording,
         output: &Output<'_>,
         draw: &mut Draw<'_>,
     ) {
-        let (sized, slice) = (&renderer.sized, step.slice);
-        let round = sized.slices.get(slice as usize).and_then(|rounds| rounds.get((run.round + step.round) as usize));
-        let group = round.and_then(|round| round.groups.get(run.pass));
-        let (Some(prepared), Some(group)) = (renderer.made().passes.get(run.pass), group) else { return };
-        let number = run.number + step.round as usize * run.stride;
-        let times = sized.timing.as_ref().map(|timing| timing.of(number, slice));
-        self.timed.extend(times.map(|(_, begin, _)| begin));
+        let Recording { run, slice, .. } = recording;
+        let sized = &renderer.sized;
+        let Some(prepared) = renderer.made().passes.get(run.pass.0) else { return };
+        let Some(group) = sized.group(run.pass.0, prepared, run.flipped) else { return };
+        let offset = sized.frames.offset(*slice, run.iteration);
+        let times = sized.timing.as_ref().and_then(|timing| timing.of(self.runs.len()));
+        self.runs.push(run.pass);
         let label = Some(prepared.pass.anchor.as_str());
         if let Pipeline::Compute(pipeline) = &prepared.pipeline {
             let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
@@ -132,9 +155,14 @@ impl Frame {
             });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(renderer.made().group, group, &[]);
-            let [x, y, z] = step.groups;
-            pass.dispatch_workgroups(x, y, z);
+            pass.set_bind_group(renderer.made().group, group, &[offset]);
+            match arguments(renderer, &prepared.pass, run.flipped) {
+                Some(arguments) => pass.dispatch_workgroups_indirect(arguments, 0),
+                None => {
+                    let [x, y, z] = recording.groups;
+                    pass.dispatch_workgroups(x, y, z);
+                }
+            }
             return;
         }
         let timestamp_writes = times.map(|(query_set, begin, end)| wgpu::RenderPassTimestampWrites {
@@ -142,72 +170,146 @@ impl Frame {
             beginning_of_pass_write_index: Some(begin),
             end_of_pass_write_index: Some(end),
         });
-        clear_sampled(renderer, encoder, &prepared.pass, &mut self.clears);
+        clear_sampled(renderer, encoder, (&prepared.pass, run.flipped), &mut self.clears);
         let state = (&mut self.clears, &mut self.written);
-        let attachments = Attachments::of(renderer, &prepared.pass, output, state);
+        let attachments = Attachments::of(renderer, (&prepared.pass, run.flipped), output, state);
+        let asks = prepared.is_awaited || prepared.pass.objects == Objects::Boxes;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
             color_attachments: &attachments.colors(),
             depth_stencil_attachment: attachments.depth_stencil(),
             timestamp_writes,
+            occlusion_query_set: renderer.queries.as_ref().filter(|_| asks).map(|queries| &queries.set),
             ..wgpu::RenderPassDescriptor::default()
         });
         if let Pipeline::Render(pipelines) = &prepared.pipeline
-            && let Some(pipeline) = pipelines.get((run.round + step.round) as usize).or(pipelines.first())
+            && let Some(pipeline) = pipelines.get(run.iteration as usize).or(pipelines.first())
         {
             pass.set_pipeline(pipeline);
         }
-        pass.set_stencil_reference(step.reference);
-        pass.set_bind_group(renderer.made().group, group, &[]);
+        pass.set_stencil_reference(recording.reference);
+        pass.set_bind_group(renderer.made().group, group, &[offset]);
         // Beyond the slice there is no memory: a greater output is left as it is, a smaller one refused.
-        let symbols = &sized.symbols;
-        let first_row = slice * symbols.rows;
-        pass.set_scissor_rect(0, first_row, symbols.width, symbols.rows.min(symbols.height - first_row));
-        match prepared.pass.kind {
-            Kind::Geometry => draw(&mut pass, &prepared.pass),
-            _ => pass.draw(0..3, 0..1),
+        let values = &sized.values;
+        let first_row = slice * values.rows();
+        pass.set_scissor_rect(0, first_row, values.width(), values.rows().min(values.height() - first_row));
+        if prepared.is_awaited {
+            pass.begin_occlusion_query(0);
+        }
+        self.draw(renderer, &mut pass, (&prepared.pass, *run), draw);
+        if prepared.is_awaited {
+            pass.end_occlusion_query();
         }
     }
+
+    fn draw(
+        &self,
+        renderer: &Renderer,
+        pass: &mut wgpu::RenderPass<'_>,
+        (planned, run): (&PlannedPass, Run),
+        draw: &mut Draw<'_>,
+    ) {
+        match (&planned.kind, &planned.objects) {
+            (Kind::Geometry, Objects::Boxes) => self.boxes(renderer, pass, run.pass),
+            (Kind::Geometry, Objects::All) => draw(pass, &Call { pass: planned, objects: None }),
+            (Kind::Geometry, Objects::Visible(query)) => {
+                let seen = self.visible(renderer, query);
+                draw(pass, &Call { pass: planned, objects: seen.as_deref() });
+            }
+            _ => match arguments(renderer, planned, run.flipped) {
+                Some(arguments) => pass.draw_indirect(arguments, 0),
+                None => pass.draw(0..3, 0..1),
+            },
+        }
+    }
+
+    /// A query for the box of every object. Of one that has been dropped it is empty.
+    fn boxes(&self, renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, query: PassId) {
+        let Some(objects) = &renderer.objects else { return };
+        for object in 0..objects.boxes().len() as u32 {
+            pass.begin_occlusion_query(object);
+            if !self.at.cursor.is_dropped(query, object as usize) {
+                objects.draw(pass, object);
+            }
+            pass.end_occlusion_query();
+        }
+    }
+
+    /// The objects that a query has not dropped; `None`: the scene is one object.
+    fn visible(&self, renderer: &Renderer, query: &str) -> Option<Vec<u32>> {
+        let count = renderer.objects.as_ref()?.boxes().len() as u32;
+        let query = PassId(renderer.plan().passes.iter().position(|pass| pass.anchor == query)?);
+        Some((0..count).filter(|object| !self.at.cursor.is_dropped(query, *object as usize)).collect())
+    }
+}
+
+/// What a run of a pass is recorded with.
+struct Recording {
+    run: Run,
+    slice: u32,
+    groups: [u32; 3],
+    reference: u32,
+}
+
+/// The buffer that says what a pass draws or dispatches, where there is one.
+fn arguments<'a>(renderer: &'a Renderer, pass: &PlannedPass, flipped: u32) -> Option<&'a wgpu::Buffer> {
+    let usage = pass.uses.iter().find(|usage| usage.access == Access::Indirect)?;
+    let plan = renderer.plan();
+    let id = plan.frame.physical(plan.resource_id(&usage.resource)?, flipped);
+    renderer.sized.memory.filled(id.0)
 }
 
 impl Cut {
     /// Whether everything has arrived: resuming will not wait for the device.
     pub fn is_ready(&self) -> bool {
-        self.reads.iter().all(Pending::is_ready)
+        self.reads.iter().all(|read| match read {
+            Read::Pending(pending) => pending.is_ready(),
+            Read::Nothing(_) => true,
+        })
     }
 
     /// Waits for what the host reads, decides, and makes room. On an error the frame is over, and the renderer as it was.
     pub async fn resume(self, renderer: &mut Renderer) -> Result<Frame, Error> {
         let mut words = Vec::with_capacity(self.reads.len());
         for read in self.reads {
-            words.extend(read.await?);
+            match read {
+                Read::Pending(pending) => words.extend(pending.await?),
+                Read::Nothing(count) => words.resize(words.len() + count as usize, 0),
+            }
         }
-        if self.frame.id != renderer.frame_id {
+        let mut frame = self.frame;
+        if frame.id != renderer.frame_id {
             return Err(Error::StaleFrame);
         }
-        let decision = match self.question {
-            Question::Decision(decision) => decision,
-            Question::Round(again, bound) => {
-                let word = words.first().copied().unwrap_or(0);
-                return Ok(Frame { at: self.frame.at.answered(&again, bound, word), ..self.frame });
-            }
-        };
-        let mut symbols = renderer.sized.symbols.clone();
-        decision.apply(&words, &mut symbols);
-        // Room for a little more than is needed is kept; room for more than twice as much is given back.
-        for (name, needed) in &mut symbols.counted {
-            let room = renderer.sized.symbols.counted(name).unwrap_or(0);
-            *needed = needed.map(|needed| if needed <= room && room <= 2 * needed { room } else { needed });
+        if let Question::Objects(_) = self.question {
+            words = seen(renderer, words);
         }
-        renderer.reallocate(symbols).await?;
-        renderer.write_frame()?;
-        Ok(Frame { id: renderer.frame_id, ..self.frame })
+        let (before, mut values) = (renderer.live(), renderer.live());
+        let plan = renderer.plan();
+        frame.at.cursor.answer(plan, &words, &mut values)?;
+        if values != before {
+            renderer.decide(values).await?;
+            frame.id = renderer.frame_id;
+        }
+        Ok(frame)
+    }
+}
+
+/// One word per object: whether a sample of its box passed, or no query can judge it.
+fn seen(renderer: &Renderer, words: Vec<u32>) -> Vec<u32> {
+    match &renderer.objects {
+        None => vec![1],
+        Some(objects) => {
+            let boxes = objects.boxes().iter().zip(words);
+            boxes.map(|(one, word)| word | u32::from(renderer.crosses_near_plane(one))).collect()
+        }
     }
 }
 
 impl Renderer {
-    /// A whole frame, submitted; blocks where the host must read. Not for browsers: there, record segments and await.
-    pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<(), Error> {
+    /// A whole frame, submitted; blocks where the host must read. Not for browsers: there, record segments and await. What
+    /// comes back is how its loops have ended ([`Recorded::Finished`]).
+    pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<Vec<Looped>, Error> {
         let mut frame = self.begin()?;
         loop {
             let device = self.device.clone();
@@ -219,7 +321,10 @@ impl Renderer {
                 Ok::<_, Error>(recorded)
             };
             let recorded = crate::block_on(&device, scoped(&device, "the frame's commands", 0, segment))??;
-            let Recorded::Cut(cut) = recorded? else { return Ok(()) };
+            let cut = match recorded? {
+                Recorded::Finished(loops) => return Ok(loops),
+                Recorded::Cut(cut) => cut,
+            };
             frame = crate::block_on(&device, cut.resume(self))??;
         }
     }
@@ -232,24 +337,35 @@ fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
     }
 }
 
-/// Buffer and byte of each word that the host reads.
-fn places<'a>(renderer: &'a Renderer, question: &Question) -> Result<Vec<(&'a wgpu::Buffer, u64)>, Error> {
-    let filled = |resource: usize| renderer.sized.memory.filled(resource);
-    let reads: &[(usize, Formula)] = match question {
-        Question::Decision(Decision { reads, .. }) => reads,
-        Question::Round(again, _) => return Ok(filled(again.zero).into_iter().map(|buffer| (buffer, 0)).collect()),
+/// Records the readback of what a question asks for.
+fn reads(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, question: &Question) -> Vec<Read> {
+    let device = &renderer.device;
+    let queries = |encoder: &mut wgpu::CommandEncoder, count: u32| {
+        let pending = renderer.queries.as_ref().map(|queries| queries.read(device, encoder, count));
+        pending.map(Read::Pending).into_iter().collect()
     };
-    let places = reads.iter().filter_map(|(resource, place)| {
-        let buffer = filled(*resource)?;
-        let name = || renderer.plan().resources.get(*resource).map_or(String::new(), |p| p.resource.name.clone());
-        let word = renderer.sized.symbols.evaluate(renderer.plan(), place, &format!("the index into `{}`", name()));
-        Some(word.map(|word| (buffer, 4 * word)).map_err(Error::from))
-    });
-    places.collect()
+    match question {
+        Question::Samples(_) => queries(encoder, 1),
+        Question::Objects(_) => match &renderer.objects {
+            None => Vec::new(),
+            Some(objects) => queries(encoder, objects.boxes().len() as u32),
+        },
+        Question::Words(spans) => spans.iter().map(|span| read(renderer, encoder, *span)).collect(),
+    }
 }
 
-fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usize, value: u32) {
-    let Some(buffer) = renderer.sized.memory.filled(resource) else { return };
+fn read(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, Span { resource, first, count }: Span) -> Read {
+    let filled = renderer.sized.memory.filled(resource.0);
+    match filled.filter(|buffer| count > 0 && 4 * (first + count) <= buffer.size()) {
+        None => Read::Nothing(count),
+        Some(buffer) => {
+            Read::Pending(Pending::record(&renderer.device, encoder, buffer, 4 * first, 4 * count, |words| words))
+        }
+    }
+}
+
+fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: ResourceId, value: u32) {
+    let Some(buffer) = renderer.sized.memory.filled(resource.0) else { return };
     let Some((_, pattern)) = renderer.made().patterns.iter().find(|(known, _)| *known == value) else {
         encoder.clear_buffer(buffer, 0, None);
         return;
@@ -259,12 +375,12 @@ fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, resource: usiz
     }
 }
 
-fn copy(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: usize, to: usize) {
+fn copy(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, from: ResourceId, to: ResourceId) {
     let memory = &renderer.sized.memory;
-    if let (Some(from), Some(to)) = (memory.texture(from), memory.texture(to)) {
+    if let (Some(from), Some(to)) = (memory.texture(from.0), memory.texture(to.0)) {
         encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
     }
-    if let (Some(from), Some(to)) = (memory.filled(from), memory.filled(to)) {
+    if let (Some(from), Some(to)) = (memory.filled(from.0), memory.filled(to.0)) {
         encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size().min(to.size()));
     }
 }

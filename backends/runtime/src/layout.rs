@@ -5,6 +5,7 @@
 //! the plan's numbers, and only in a dense layout are both the same.
 
 use fragbuf_codegen::{FIRST_BINDING, Plan};
+use fragbuf_frame::Values;
 use fragbuf_templates::vocabulary::{Access, Element, Extent, Kind, Pass};
 
 use crate::Error;
@@ -19,6 +20,7 @@ const CAMERA: usize = 2;
 pub(crate) enum Slot {
     /// Nothing that the pass touches.
     Filler,
+    /// The frame's block; which slice's and iteration's is a dynamic offset.
     Frame,
     Uniforms,
     Camera,
@@ -65,6 +67,7 @@ pub(crate) fn slots(plan: &Plan, pass: &Pass) -> Vec<Slot> {
             continue;
         }
         // An element without words is declared nowhere: all of it is the key.
+        let usage = usage.filter(|usage| usage.access != Access::Indirect);
         if let Some(usage) = usage.filter(|_| planned.binding >= FIRST_BINDING && has_words(plan, index)) {
             slots.resize(slots.len().max(binding + 1), Slot::Filler);
             slots[binding] = Slot::Resource { index, read_only: usage.access == Access::Read };
@@ -77,8 +80,9 @@ pub(crate) fn slots(plan: &Plan, pass: &Pass) -> Vec<Slot> {
 pub(crate) fn has_words(plan: &Plan, index: usize) -> bool {
     let words = plan.resources.get(index).map(|planned| &planned.words);
     // Pages of many fragments are no memory for one.
-    let any_size = |symbol: &str| plan.bound.value(symbol).or(Some(4096));
-    words.is_some_and(|words| words.evaluate(&any_size) != Ok(0))
+    let mut any_size = Values::of_code(plan);
+    plan.symbols.iter().for_each(|(id, _)| any_size.set(id, 4096));
+    words.is_some_and(|words| any_size.evaluate(words, "") != Ok(0))
 }
 
 /// The layout of a pass's bind group.
@@ -93,6 +97,7 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device, pass: &Pass, slots: &[Slo
 }
 
 fn entry(binding: u32, slot: Slot, main: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    let has_dynamic_offset = slot == Slot::Frame;
     let (visibility, ty) = match slot {
         Slot::Texture { sample_type, samples, .. } => {
             let multisampled = samples == Samples::Several;
@@ -111,7 +116,7 @@ fn entry(binding: u32, slot: Slot, main: wgpu::ShaderStages) -> wgpu::BindGroupL
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
         count: None,
     }
 }

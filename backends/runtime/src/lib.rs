@@ -14,7 +14,6 @@
 //! Nothing here knows a technique by name, and nothing blocks, apart from [`Renderer::render`], [`block_on`] and
 //! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
 
-mod action;
 mod attachments;
 mod blocking;
 mod blocks;
@@ -26,10 +25,13 @@ mod frame;
 pub mod headless;
 mod layout;
 mod memory;
+mod objects;
 mod pattern;
 mod pipeline;
 mod pipelines;
+mod queries;
 mod readback;
+mod refusals;
 mod renderer;
 mod room;
 mod scope;
@@ -45,8 +47,9 @@ mod words;
 pub use blocking::block_on;
 pub use buckets::Buckets;
 pub use error::Error;
-pub use fragbuf_frame::{Counter, Counters, PassTime, Room, Sizing, Value};
-pub use frame::{Cut, Draw, Frame, Output, Recorded};
+pub use fragbuf_frame::{Counter, Counters, LoopEnd, Looped, PassTime, Room, Sizing, Value};
+pub use frame::{Call, Cut, Draw, Frame, Output, Recorded};
+pub use objects::ObjectBox;
 pub use pipelines::Pipelines;
 pub use readback::Pending;
 pub use renderer::Renderer;

@@ -2,8 +2,8 @@
 //! formula says; textures are as large as the frame, whatever its slices. Textures that the caller brings are held, not made.
 
 use fragbuf_codegen::{Plan, Planned};
-use fragbuf_frame::{Symbols, bytes};
-use fragbuf_templates::vocabulary::Element;
+use fragbuf_frame::{Values, bytes};
+use fragbuf_templates::vocabulary::{Access, Element};
 
 use crate::Error;
 use crate::scope::scoped;
@@ -35,18 +35,18 @@ enum Kind {
 const PLACEHOLDER: u64 = 16;
 
 impl Memory {
-    /// Memory for `symbols`. What has the right size already is taken over from `old`.
+    /// Memory for `values`. What has the right size already is taken over from `old`.
     pub(crate) async fn allocate(
         device: &wgpu::Device,
         plan: &Plan,
-        symbols: &Symbols,
+        values: &Values,
         old: Option<&Memory>,
     ) -> Result<Self, Error> {
-        let sizes = checked_sizes(plan, symbols, &device.limits())?;
+        let sizes = checked_sizes(plan, values, &device.limits())?;
         let mut held = Vec::with_capacity(sizes.len());
         for (index, (size, planned)) in sizes.into_iter().zip(&plan.resources).enumerate() {
             let old = old.and_then(|old| old.held.get(index));
-            held.push(hold(device, plan, planned, (symbols, size), old).await?);
+            held.push(hold(device, plan, planned, (values, size), old).await?);
         }
         Ok(Memory { held })
     }
@@ -108,14 +108,14 @@ async fn hold(
     device: &wgpu::Device,
     plan: &Plan,
     planned: &Planned,
-    (symbols, size): (&Symbols, u64),
+    (values, size): (&Values, u64),
     old: Option<&Held>,
 ) -> Result<Held, Error> {
     let what = format!("`{}`", planned.resource.name);
     if let Element::Texture(format) = planned.resource.element {
         let brought = planned.is_brought();
-        let size = if brought { 0 } else { texture_bytes(plan, planned, symbols)? };
-        let frame = (symbols.width, symbols.height);
+        let size = if brought { 0 } else { texture_bytes(planned, values)? };
+        let frame = (values.width(), values.height());
         let same = |texture: &wgpu::Texture| (texture.width(), texture.height()) == frame;
         let memory = match old.map(|old| &old.memory) {
             Some(Kind::Texture(texture)) if same(texture) => Kind::Texture(texture.clone()),
@@ -133,21 +133,31 @@ async fn hold(
     let memory = match old.filter(|held| held.size == size).map(|held| &held.memory) {
         Some(kept @ Kind::Buffer(_)) => kept.clone(),
         _ => {
-            let make = || create(device, &planned.resource.name, if size == 0 { PLACEHOLDER } else { size });
+            let size = if size == 0 { PLACEHOLDER } else { size };
+            let make = || create(device, &planned.resource.name, size, is_indirect(plan, planned));
             Kind::Buffer(scoped(device, &what, size, make).await?)
         }
     };
     Ok(Held { memory, size })
 }
 
-fn create(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+/// Whether a pass takes the arguments of its draw or dispatch from a resource.
+fn is_indirect(plan: &Plan, planned: &Planned) -> bool {
+    let mut uses = plan.passes.iter().flat_map(|pass| &pass.uses);
+    uses.any(|usage| usage.resource == planned.resource.name && usage.access == Access::Indirect)
+}
+
+fn create(device: &wgpu::Device, name: &str, size: u64, is_indirect: bool) -> wgpu::Buffer {
+    let mut usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+    if is_indirect {
+        usage |= wgpu::BufferUsages::INDIRECT;
+    }
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
 }
 
 /// Bytes of every resource, each within the limits. Textures have limits of their own.
-pub(crate) fn checked_sizes(plan: &Plan, symbols: &Symbols, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
-    let sizes = bytes(plan, symbols)?.into_iter().zip(&plan.resources);
+pub(crate) fn checked_sizes(plan: &Plan, values: &Values, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
+    let sizes = bytes(plan, values)?.into_iter().zip(&plan.resources);
     let checked = sizes.map(|((name, bytes), planned)| match planned.resource.element {
         Element::Texture(_) => Ok(bytes),
         _ => check(limits, name, bytes).map(|()| bytes),

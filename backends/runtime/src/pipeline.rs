@@ -1,7 +1,7 @@
 //! Pipelines: one per pass, from the plan's state and the shaders' entry points.
 
-use fragbuf_codegen::{EntryPoint, Stage};
-use fragbuf_templates::vocabulary::{Kind, Pass};
+use fragbuf_codegen::{EntryPoint, PlannedPass, Stage};
+use fragbuf_templates::vocabulary::{Kind, Objects, Pass};
 
 use crate::fixed_function::{FixedFunction, fixed_functions};
 use crate::scope::scoped;
@@ -25,7 +25,8 @@ pub(crate) struct Maker<'a> {
     pub(crate) shaders: &'a Shaders,
     pub(crate) settings: &'a Settings,
     pub(crate) vertices: &'a [VertexBuffer],
-    /// The most rounds of any loop.
+    pub(crate) interleaved: VertexBuffer,
+    /// The most iterations of any loop.
     pub(crate) rounds: u32,
 }
 
@@ -37,7 +38,7 @@ struct Entry {
 
 impl Maker<'_> {
     /// The pipeline of `pass` over the bind group of `layout`.
-    pub(crate) async fn make(&self, pass: &Pass, layout: &wgpu::BindGroupLayout) -> Result<Pipeline, Error> {
+    pub(crate) async fn make(&self, pass: &PlannedPass, layout: &wgpu::BindGroupLayout) -> Result<Pipeline, Error> {
         let what = format!("the pipeline of pass `{}`", pass.anchor);
         let is_callers = pass.kind == Kind::Geometry && !self.shaders.modules.iter().any(|m| m.pass == pass.anchor);
         if is_callers {
@@ -132,8 +133,10 @@ impl Maker<'_> {
         fixed: &FixedFunction,
     ) -> wgpu::RenderPipeline {
         let geometry = pass.kind == Kind::Geometry;
-        let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> = self
-            .vertices
+        // Boxes of objects are drawn by the runtime, whatever the caller's vertices are like.
+        let boxes = pass.objects == Objects::Boxes;
+        let vertices = if boxes { std::slice::from_ref(&self.interleaved) } else { self.vertices };
+        let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> = vertices
             .iter()
             .filter(|_| geometry)
             .map(|buffer| {
@@ -144,7 +147,7 @@ impl Maker<'_> {
                 })
             })
             .collect();
-        let primitive = if geometry { self.settings.primitive } else { wgpu::PrimitiveState::default() };
+        let primitive = if geometry && !boxes { self.settings.primitive } else { wgpu::PrimitiveState::default() };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&pass.anchor),
             layout: Some(layout),

@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
-use fragbuf_codegen::Plan;
-use fragbuf_templates::vocabulary::Pass;
+use fragbuf_codegen::{LoopUntil, PassId, Plan, PlannedPass, ResourceId};
+use fragbuf_frame::{most_iterations, unsupported};
+use fragbuf_templates::vocabulary::Objects;
 
-use crate::action::{Actions, actions};
 use crate::layout::{Slot, bind_group_layout, check, slots};
 use crate::pattern::patterns;
 use crate::pipeline::{Maker, Pipeline};
 use crate::scope::scoped;
-use crate::{Error, Settings, Shaders, VertexInputs};
+use crate::{Error, Settings, Shaders, VertexInputs, refusals};
 
 /// The pipelines of one plan on one device. Cloning it is cheap.
 #[derive(Clone)]
@@ -20,7 +20,8 @@ pub struct Pipelines(pub(crate) Arc<Made>);
 pub(crate) struct Made {
     pub(crate) plan: Plan,
     pub(crate) group: u32,
-    pub(crate) actions: Actions,
+    /// The most iterations of any loop.
+    pub(crate) iterations: u32,
     pub(crate) passes: Vec<Prepared>,
     /// Words of 64 KiB each, for clears to something else than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
@@ -28,16 +29,24 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// The pass of every run, by its number.
-    pub(crate) fn run_names(&self) -> Vec<String> {
-        let name = |pass: &usize| self.passes.get(*pass).map_or(String::new(), |made| made.pass.anchor.clone());
-        self.actions.runs.iter().map(name).collect()
+    /// Runs of passes in a slice at most.
+    pub(crate) fn most_runs(&self) -> u64 {
+        self.plan.passes.len() as u64 * u64::from(self.iterations)
+    }
+
+    /// Whether a loop waits for the samples of a pass, or a pass asks for objects by their boxes.
+    pub(crate) fn has_queries(&self) -> bool {
+        self.passes.iter().any(|prepared| prepared.is_awaited || prepared.pass.objects == Objects::Boxes)
     }
 }
 
 /// A pass and what it runs with.
 pub(crate) struct Prepared {
-    pub(crate) pass: Pass,
+    pub(crate) pass: PlannedPass,
+    /// The exchanges of the frame that it uses resources of, by their numbers.
+    pub(crate) exchanges: Vec<usize>,
+    /// Whether a loop waits for its samples.
+    pub(crate) is_awaited: bool,
     pub(crate) slots: Vec<Slot>,
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) pipeline: Pipeline,
@@ -49,7 +58,8 @@ impl Pipelines {
     /// plan has a step that the runtime does not run, and where the device lacks a feature.
     pub async fn new(device: &wgpu::Device, shaders: &Shaders, settings: &Settings) -> Result<Self, Error> {
         let plan = shaders.plan.clone();
-        let actions = actions(&plan)?;
+        refusals::check(&plan)?;
+        let iterations = most_iterations(&plan)?;
         let missing = shaders.features() - device.features();
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
@@ -58,23 +68,45 @@ impl Pipelines {
         let inputs = VertexInputs::of(&plan);
         let own = settings.vertices.clone();
         let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
-        let maker = Maker { device, shaders, settings, vertices: &vertices, rounds: actions.rounds };
+        let interleaved = inputs.interleaved();
+        let maker = Maker { device, shaders, settings, vertices: &vertices, interleaved, rounds: iterations };
         let mut passes = Vec::new();
-        for pass in plan.passes() {
+        for (number, pass) in plan.passes.iter().enumerate() {
             let slots = slots(&plan, pass);
             check(device, pass, &slots)?;
             let what = format!("the bind group layout of pass `{}`", pass.anchor);
             let layout = scoped(device, &what, 0, || bind_group_layout(device, pass, &slots)).await?;
             let pipeline = maker.make(pass, &layout).await?;
-            passes.push(Prepared { pass: pass.clone(), slots, layout, pipeline });
+            let exchanges = exchanges(&plan, pass)?;
+            let is_awaited = is_awaited(&plan, PassId(number));
+            passes.push(Prepared { pass: pass.clone(), exchanges, is_awaited, slots, layout, pipeline });
         }
-        let patterns =
-            scoped(device, "the buffers to clear with", 0, || patterns(device, &plan, &actions.list)).await?;
-        Ok(Pipelines(Arc::new(Made { plan, group: shaders.group, actions, passes, patterns, inputs })))
+        let patterns = scoped(device, "the buffers to clear with", 0, || patterns(device, &plan)).await?;
+        Ok(Pipelines(Arc::new(Made { plan, group: shaders.group, iterations, passes, patterns, inputs })))
     }
 
     /// The greatest k that they serve; 0 where every fragment is kept.
     pub fn capacity(&self) -> u32 {
-        self.0.plan.bound.value("capacity").and_then(|capacity| u32::try_from(capacity).ok()).unwrap_or(0)
+        self.0.plan.capacity()
     }
+}
+
+/// Exchanges that one pass may use resources of: a bind group is made for every way to flip them.
+const MOST_EXCHANGES: usize = 6;
+
+/// The exchanges that a pass uses resources of.
+fn exchanges(plan: &Plan, pass: &PlannedPass) -> Result<Vec<usize>, Error> {
+    let uses = |pair: &[ResourceId; 2]| pair.iter().any(|id| pass.touches(&plan.resources[id.0].resource.name));
+    let pairs = plan.frame.exchanges.iter().enumerate();
+    let used: Vec<usize> = pairs.filter(|(_, pair)| uses(pair)).map(|(number, _)| number).collect();
+    if used.len() > MOST_EXCHANGES {
+        let what = format!("pass `{}`: {} exchanged pairs of resources", pass.anchor, used.len());
+        return Err(unsupported(what).into());
+    }
+    Ok(used)
+}
+
+/// Whether a loop waits for the samples of a pass.
+fn is_awaited(plan: &Plan, pass: PassId) -> bool {
+    plan.frame.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(pass))
 }

@@ -3,20 +3,27 @@
 //! In: a device, a queue, shaders and settings. Out: frames to record ([`Renderer::begin`]), and what they kept, counted
 //! and took. Nothing here submits anything, apart from [`Renderer::render`].
 
-use fragbuf_codegen::Plan;
-use fragbuf_frame::{COUNTERS_RESOURCE, Counting, Symbols, reserve, resource as index, set, symbols, zeros};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use fragbuf_codegen::{Plan, ResourceId, SymbolId};
+use fragbuf_frame::{COUNTERS_RESOURCE, Counting, Values, decided, reserve, room_after, set, values, zeros};
 
 use crate::blocks::{Blocks, IDENTITY};
 use crate::brought::{accept, missing};
 use crate::fixed_function::multisample;
+use crate::objects::Objects;
 use crate::pipeline::no_target;
 use crate::pipelines::Made;
+use crate::queries::Queries;
 use crate::room::rows;
 use crate::scope::{is_lost, scoped};
 use crate::sized::{Fixed, Sized, Timed};
 use crate::texture::read_texture;
 use crate::words::to_bytes;
-use crate::{Counters, Error, Frame, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs};
+use crate::{
+    Counters, Error, Frame, ObjectBox, PassTime, Pending, Pipelines, Room, Settings, Shaders, Value, VertexInputs,
+};
 
 /// Runs one plan on one device.
 pub struct Renderer {
@@ -24,7 +31,7 @@ pub struct Renderer {
     pub(crate) queue: wgpu::Queue,
     pub(crate) pipelines: Pipelines,
     /// Whether host steps are carried out; else what they set has been reserved.
-    pub(crate) exact: bool,
+    pub(crate) counting: Counting,
     pub(crate) sized: Sized,
     pub(crate) frame_id: u64,
     /// Rows of a slice as the caller wants them.
@@ -33,6 +40,12 @@ pub struct Renderer {
     blocks: Blocks,
     uniforms: Vec<u32>,
     k: Option<u32>,
+    camera: Mutex<[f32; 16]>,
+    /// The exchanges of the plan that the last frame has left flipped.
+    flipped: AtomicU32,
+    pub(crate) queries: Option<Queries>,
+    /// The caller's objects; `None`: the scene is one, and always drawn.
+    pub(crate) objects: Option<Objects>,
 }
 
 impl Renderer {
@@ -59,18 +72,19 @@ impl Renderer {
         let made = &pipelines.0;
         let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let timed = if timed { Timed::Yes } else { Timed::No };
-        let (mut symbols, counting) = symbols(&made.plan, (settings.width, settings.height), settings.sizing)?;
-        symbols.rows = rows(&made.plan, &symbols, settings.slice, &device.limits())?;
-        let k = symbols.k;
+        let (values, counting) = values(&made.plan, (settings.width, settings.height), settings.sizing)?;
+        let values = values.with_rows(rows(&made.plan, &values, settings.slice, &device.limits())?);
+        let k = values.k();
         let uniforms = zeros(&made.plan.variant.uniforms);
         let blocks = scoped(device, "the uniform buffers", 0, || Blocks::new(device, &uniforms)).await?;
         let fixed = Fixed { device, queue, made, blocks: &blocks, timed };
-        let sized = Sized::new(&fixed, symbols, None).await?;
+        let sized = Sized::new(&fixed, values, None).await?;
+        let queries = if made.has_queries() { Some(Queries::new(device, 1).await?) } else { None };
         let renderer = Renderer {
             device: device.clone(),
             queue: queue.clone(),
             pipelines: pipelines.clone(),
-            exact: counting == Counting::Exact,
+            counting,
             sized,
             frame_id: 0,
             slice: settings.slice,
@@ -78,6 +92,10 @@ impl Renderer {
             blocks,
             uniforms,
             k,
+            camera: Mutex::new(IDENTITY),
+            flipped: AtomicU32::new(0),
+            queries,
+            objects: None,
         };
         renderer.set_camera(&IDENTITY);
         renderer.write_uniforms();
@@ -95,19 +113,19 @@ impl Renderer {
         }
         self.write_frame()?;
         self.frame_id += 1;
-        Ok(Frame::new(self.frame_id))
+        Ok(Frame::new(self))
     }
 
     /// Resizes the frame to `width` × `height` pixels. On an error the old size stays.
     pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        self.resized(Symbols { width, height, ..self.sized.symbols.clone() }).await
+        self.resized(self.sized.values.resized(width, height)).await
     }
 
     /// Keeps `k` fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers are
     /// reallocated only for more than there ever was room for.
     pub async fn set_k(&mut self, k: u32) -> Result<(), Error> {
         let name = || "k".to_owned();
-        let Some(room) = self.sized.symbols.k else {
+        let Some(room) = self.sized.values.k() else {
             return Err(Error::BadValue {
                 name: name(),
                 wanted: "left alone: this plan keeps every fragment".to_owned(),
@@ -120,7 +138,7 @@ impl Renderer {
             });
         }
         if k > room {
-            self.resized(Symbols { k: Some(k), ..self.sized.symbols.clone() }).await?;
+            self.resized(self.sized.values.with(SymbolId::K, k.into())).await?;
         }
         self.frame_id += 1;
         self.k = Some(k);
@@ -131,13 +149,10 @@ impl Renderer {
     /// stay, and so does everything on an error.
     pub(crate) async fn switch(&mut self, pipelines: &Pipelines, k: u32) -> Result<(), Error> {
         let before = std::mem::replace(&mut self.pipelines, pipelines.clone());
-        let mut symbols = Symbols { k: Some(k), ..self.sized.symbols.clone() };
-        let fits = rows(self.plan(), &symbols, self.slice, &self.device.limits());
+        let values = self.sized.values.of_plan(self.plan()).with(SymbolId::K, k.into());
+        let fits = rows(self.plan(), &values, self.slice, &self.device.limits());
         let replaced = match fits {
-            Ok(rows) => {
-                symbols.rows = rows;
-                self.replace(symbols).await
-            }
+            Ok(rows) => self.replace(values.with_rows(rows)).await,
             Err(error) => Err(error),
         };
         if let Err(error) = replaced {
@@ -150,22 +165,38 @@ impl Renderer {
 
     /// Makes room, where the plan needs it, and no host step does from now on.
     pub async fn reserve(&mut self, room: Room) -> Result<(), Error> {
-        let mut symbols = self.sized.symbols.clone();
-        reserve(self.plan(), &mut symbols, room)?;
-        self.resized(symbols).await?;
-        self.exact = false;
+        let mut values = self.sized.values.clone();
+        reserve(self.plan(), &mut values, room)?;
+        self.resized(values).await?;
+        self.counting = Counting::Reserved;
         Ok(())
     }
 
     /// Room, in fragments, after a frame that lost `short` of them for want of it: exactly enough where a pool was too small,
     /// twice as much where every pixel has slots of its own and only the deepest ran out.
     pub fn room_after(&self, short: u32) -> u64 {
-        self.sized.symbols.room_after(self.plan(), short)
+        room_after(self.plan(), &self.sized.values, short)
     }
 
     /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&self, view_projection: &[f32; 16]) {
+        *self.camera.lock().unwrap_or_else(PoisonError::into_inner) = *view_projection;
         self.queue.write_buffer(&self.blocks.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
+    }
+
+    /// The boxes of the caller's objects, for passes that draw them or those that are still seen ([`Call::objects`]): in the
+    /// order of the numbers by which draws are asked for them. None: the scene is one object, and always drawn.
+    pub async fn set_objects(&mut self, boxes: &[ObjectBox]) -> Result<(), Error> {
+        if self.queries.is_some() {
+            self.queries = Some(Queries::new(&self.device, boxes.len() as u32).await?);
+        }
+        let inputs = &self.made().inputs;
+        self.objects = match boxes.is_empty() {
+            true => None,
+            false => Some(Objects::new(&self.device, &self.queue, inputs, boxes).await?),
+        };
+        self.frame_id += 1;
+        Ok(())
     }
 
     /// One of the description's own uniforms, from the next submission on.
@@ -179,15 +210,13 @@ impl Renderer {
     /// the whole frame's size, whatever its slices, with the usages that the plan's passes need. It is only read, from the next
     /// frame on, until another takes its place or the frame gets another size.
     pub async fn set_texture(&mut self, name: &str, texture: &wgpu::Texture) -> Result<(), Error> {
-        let number = accept(self.plan(), &self.sized.symbols, name, texture)?;
+        let number = accept(self.plan(), &self.sized.values, name, texture)?;
         let mut memory = self.sized.memory.clone();
         memory.bring(number, texture);
         let fixed = self.fixed();
         let what = format!("the bind groups with `{name}`");
         let bound = scoped(&self.device, &what, 0, || self.sized.bound(&fixed, &memory)).await?;
-        for (round, groups) in self.sized.slices.iter_mut().flatten().zip(bound.into_iter().flatten()) {
-            round.groups = groups;
-        }
+        self.sized.groups = bound;
         self.sized.memory = memory;
         self.frame_id += 1;
         Ok(())
@@ -195,7 +224,7 @@ impl Renderer {
 
     /// Slices that the frame is made of, one after the other.
     pub fn slices(&self) -> u32 {
-        self.sized.symbols.slices()
+        self.sized.values.slices()
     }
 
     /// Bytes of all buffers of the plan's resources, as wgpu has them: what the plan's formulas say for a slice, for the
@@ -206,7 +235,7 @@ impl Renderer {
 
     /// The value of a symbol of the plan's formulas that the buffers were sized with; `height` is that of a slice.
     pub fn symbol(&self, name: &str) -> Option<u64> {
-        self.sized.symbols.value(self.plan(), name)
+        self.sized.values.named(name)
     }
 
     /// The greatest k that needs no new pipelines.
@@ -243,7 +272,7 @@ impl Renderer {
     /// no such pass.
     pub fn multisample(&self, anchor: &str) -> wgpu::MultisampleState {
         let pass = self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor);
-        let samples = pass.and_then(|prepared| multisample(self.plan(), prepared.pass.state.samples.as_ref(), 0).ok());
+        let samples = pass.and_then(|prepared| multisample(self.plan(), &prepared.pass, 0).ok());
         samples.unwrap_or_default()
     }
 
@@ -290,35 +319,55 @@ impl Renderer {
 
     /// The texture of a resource. `None`: the plan does not have it, it is a buffer, or the caller has not brought it.
     pub fn texture(&self, resource: &str) -> Option<&wgpu::Texture> {
-        self.sized.memory.texture(index(self.plan(), resource).ok()?)
+        self.sized.memory.texture(self.physical(resource)?.0)
     }
 
     /// The buffer of a resource. `None`: the plan does not have it, or it is empty.
     pub fn buffer(&self, resource: &str) -> Option<&wgpu::Buffer> {
-        self.sized.memory.filled(index(self.plan(), resource).ok()?)
+        self.sized.memory.filled(self.physical(resource)?.0)
+    }
+
+    /// What a resource stands for after the last frame.
+    fn physical(&self, resource: &str) -> Option<ResourceId> {
+        Some(self.plan().frame.physical(self.plan().resource_id(resource)?, self.flipped()))
+    }
+
+    /// The exchanges that the last frame has left flipped.
+    pub(crate) fn flipped(&self) -> u32 {
+        self.flipped.load(Ordering::Relaxed)
+    }
+
+    /// Notes the exchanges that a frame leaves flipped.
+    pub(crate) fn leave_flipped(&self, flipped: u32) {
+        self.flipped.store(flipped, Ordering::Relaxed);
+    }
+
+    /// Whether a query can judge an object at all: its box does not cross the near plane.
+    pub(crate) fn crosses_near_plane(&self, object: &ObjectBox) -> bool {
+        object.crosses_near_plane(&self.camera.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     pub(crate) fn made(&self) -> &Made {
         &self.pipelines.0
     }
 
-    /// Gives the frame the size of `symbols` and slices that fit, or leaves everything as it is.
-    async fn resized(&mut self, mut symbols: Symbols) -> Result<(), Error> {
-        symbols.rows = rows(self.plan(), &symbols, self.slice, &self.device.limits())?;
-        self.reallocate(symbols).await
+    /// Gives the frame the size of `values` and slices that fit, or leaves everything as it is.
+    async fn resized(&mut self, values: Values) -> Result<(), Error> {
+        let rows = rows(self.plan(), &values, self.slice, &self.device.limits())?;
+        self.reallocate(values.with_rows(rows)).await
     }
 
-    /// Gives the buffers the sizes of `symbols`, or leaves everything as it is.
-    pub(crate) async fn reallocate(&mut self, symbols: Symbols) -> Result<(), Error> {
-        if symbols != self.sized.symbols {
-            self.replace(symbols).await?;
+    /// Gives the buffers the sizes of `values`, or leaves everything as it is.
+    pub(crate) async fn reallocate(&mut self, values: Values) -> Result<(), Error> {
+        if values != self.sized.values {
+            self.replace(values).await?;
         }
         self.frame_id += 1;
         Ok(())
     }
 
-    async fn replace(&mut self, symbols: Symbols) -> Result<(), Error> {
-        self.sized = Sized::new(&self.fixed(), symbols, Some(&self.sized)).await?;
+    async fn replace(&mut self, values: Values) -> Result<(), Error> {
+        self.sized = Sized::new(&self.fixed(), values, Some(&self.sized)).await?;
         self.frame_id += 1;
         Ok(())
     }
@@ -330,17 +379,31 @@ impl Renderer {
     /// Writes the uniform buffers of the slices, ahead of the next submission.
     pub(crate) fn write_frame(&self) -> Result<(), Error> {
         let live = self.live();
-        for (slice, rounds) in (0..).zip(&self.sized.slices) {
-            for (number, round) in (0..).zip(rounds) {
-                self.queue.write_buffer(&round.frame, 0, &to_bytes(&live.frame_words(self.plan(), slice, number)?));
-            }
-        }
+        let words = |slice, iteration| Ok(live.frame_words(self.plan(), slice, iteration)?);
+        let bytes = self.sized.frames.bytes(self.slices(), &words)?;
+        self.queue.write_buffer(&self.sized.frames.buffer, 0, &bytes);
         Ok(())
     }
 
+    /// Takes over the values that a host step has decided: k may change up to what memory there is for, anything else is
+    /// memory that is made.
+    pub(crate) async fn decide(&mut self, mut values: Values) -> Result<(), Error> {
+        decided(self.plan(), &self.sized.values, &mut values);
+        let (k, room) = (values.k(), self.sized.values.k());
+        if let (Some(k), Some(room)) = (k, room) {
+            values.set(SymbolId::K, k.max(room).into());
+        }
+        self.reallocate(values).await?;
+        self.k = k;
+        self.write_frame()
+    }
+
     /// What the buffers were sized with, for the k of the frames from now on.
-    pub(crate) fn live(&self) -> Symbols {
-        Symbols { k: self.k, ..self.sized.symbols.clone() }
+    pub(crate) fn live(&self) -> Values {
+        match self.k {
+            Some(k) => self.sized.values.with(SymbolId::K, k.into()),
+            None => self.sized.values.clone(),
+        }
     }
 
     fn write_uniforms(&self) {

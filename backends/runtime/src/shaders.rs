@@ -7,8 +7,8 @@ use fragbuf_backends::{Generation, target};
 use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
 use fragbuf_templates::vocabulary::{Access, Fact};
 
-use crate::action::actions;
-use crate::texture::at_most;
+use crate::fixed_function::sample_count;
+use crate::refusals::check;
 use crate::words::from_bytes;
 use crate::{Error, Interlock};
 
@@ -89,16 +89,14 @@ impl Shaders {
     pub fn features(&self) -> wgpu::Features {
         let mut features = wgpu::Features::empty();
         let passed_through = self.modules.iter().any(|module| matches!(module.code, Code::SpirV(_)));
-        let passes = self.plan.passes();
+        let passes = &self.plan.passes;
         let coherent = passes.iter().any(|pass| pass.uses.iter().any(|usage| usage.access == Access::Coherent));
         if passed_through {
             features |= wgpu::Features::PASSTHROUGH_SHADERS;
         } else if coherent && self.profile == Profile::Native {
             features |= wgpu::Features::MEMORY_DECORATION_COHERENT;
         }
-        let several = passes.iter().filter_map(|pass| pass.state.samples.as_ref());
-        let counts = several.filter_map(|samples| at_most(&self.plan, &samples.count, None, "samples").ok());
-        for count in counts {
+        for count in passes.iter().filter_map(|pass| sample_count(&self.plan, pass).ok()) {
             // One and four are what every device has.
             if count != 1 && count != 4 {
                 features |= wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
@@ -116,7 +114,7 @@ impl Shaders {
 
     /// Whether the runtime runs such plans on some device: `Err` names the step or the resource that it does not know.
     pub fn check(&self) -> Result<(), Error> {
-        actions(&self.plan).map(|_| ())
+        check(&self.plan)
     }
 
     /// Whether a device with or without interlock runs these shaders. wgpu has no feature for it.

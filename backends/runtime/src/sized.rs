@@ -2,12 +2,11 @@
 //! passes without a target.
 //! It is made whole and replaced as one, so that a failure leaves the old one standing.
 
-use fragbuf_codegen::Plan;
-use fragbuf_frame::{COUNTERS_RESOURCE, Symbols, resource as index};
-use fragbuf_templates::vocabulary::Pass;
+use fragbuf_codegen::{Plan, PlannedPass, ResourceId};
+use fragbuf_frame::{COUNTERS_RESOURCE, Values};
 
 use crate::Error;
-use crate::blocks::{Blocks, block};
+use crate::blocks::Blocks;
 use crate::fixed_function::sample_count;
 use crate::layout::Slot;
 use crate::memory::Memory;
@@ -16,13 +15,16 @@ use crate::pipelines::{Made, Prepared};
 use crate::scope::scoped;
 use crate::texture::sampled_view;
 use crate::timing::Timing;
+use crate::words::to_bytes;
 
 /// Everything that depends on the size of the frame, replaced as one.
 pub(crate) struct Sized {
-    pub(crate) symbols: Symbols,
+    pub(crate) values: Values,
     pub(crate) memory: Memory,
-    /// By slice and round.
-    pub(crate) slices: Vec<Vec<Round>>,
+    /// The shaders' `frame` of every slice and iteration.
+    pub(crate) frames: Frames,
+    /// The bind groups of every pass, one for each way to flip the exchanges that it uses.
+    pub(crate) groups: Vec<Vec<wgpu::BindGroup>>,
     /// The attachments of passes without a target.
     dummies: Vec<Dummy>,
     pub(crate) timing: Option<Timing>,
@@ -38,12 +40,15 @@ struct Dummy {
     view: wgpu::TextureView,
 }
 
-/// What passes see in one round of a slice.
-pub(crate) struct Round {
-    /// The uniform buffer with the slice's first row and the round's number.
-    pub(crate) frame: wgpu::Buffer,
-    /// One bind group per pass.
-    pub(crate) groups: Vec<wgpu::BindGroup>,
+/// The uniform block `frame`, once for every iteration of every slice, in one buffer.
+#[derive(Clone)]
+pub(crate) struct Frames {
+    pub(crate) buffer: wgpu::Buffer,
+    /// Bytes of the block.
+    size: u64,
+    /// Bytes from one to the next.
+    stride: u64,
+    iterations: u32,
 }
 
 /// What does not change with the size.
@@ -63,54 +68,107 @@ pub(crate) enum Timed {
 }
 
 impl Sized {
-    /// For `symbols`, whose slices have their height already. What has the right size is taken over from `old`.
-    pub(crate) async fn new(fixed: &Fixed<'_>, symbols: Symbols, old: Option<&Sized>) -> Result<Self, Error> {
+    /// For `values`, whose slices have their height already. What has the right size is taken over from `old`.
+    pub(crate) async fn new(fixed: &Fixed<'_>, values: Values, old: Option<&Sized>) -> Result<Self, Error> {
         let Fixed { device, queue, made, timed, .. } = fixed;
-        check_size(device, &symbols)?;
-        let memory = Memory::allocate(device, &made.plan, &symbols, old.map(|old| &old.memory)).await?;
-        let round = || {
-            let frame = block(device, "fragbuf frame", made.plan.frame.len());
-            Round { groups: bind_groups(fixed, &frame, &memory), frame }
-        };
-        let rounds = made.actions.rounds;
-        let slices = || (0..symbols.slices()).map(|_| (0..rounds).map(|_| round()).collect()).collect();
-        let slices = scoped(device, "the bind groups", 0, slices).await?;
-        let same = old.filter(|old| (old.symbols.width, old.symbols.height) == (symbols.width, symbols.height));
-        let dummies = match same {
+        check_size(device, &values)?;
+        let memory = Memory::allocate(device, &made.plan, &values, old.map(|old| &old.memory)).await?;
+        let frames = Frames::new(device, made, values.slices()).await?;
+        let groups = scoped(device, "the bind groups", 0, || bind_groups(fixed, &frames, &memory)).await?;
+        let size = |values: &Values| (values.width(), values.height());
+        let dummies = match old.filter(|old| size(&old.values) == size(&values)) {
             Some(old) => old.dummies.clone(),
-            None => dummies(device, made, &symbols).await?,
+            None => dummies(device, made, &values).await?,
         };
         // What earlier slices of a frame that was cut have counted and taken must not be lost.
-        let same = old.filter(|old| old.symbols.slices() == symbols.slices());
+        let same = old.filter(|old| old.values.slices() == values.slices());
         let (timing, tally) = match same {
             Some(old) => (old.timing.clone(), old.tally.clone()),
             None => {
                 let timing = match timed {
-                    Timed::Yes => Some(Timing::new(device, queue, made.run_names(), symbols.slices()).await?),
+                    Timed::Yes => {
+                        let passes = made.plan.passes.iter().map(|pass| pass.anchor.clone()).collect();
+                        let runs = made.most_runs() * u64::from(values.slices());
+                        Some(Timing::new(device, queue, passes, runs).await?)
+                    }
                     Timed::No => None,
                 };
-                (timing, tally(device, made, &memory, symbols.slices()).await?)
+                (timing, tally(device, made, &memory, values.slices()).await?)
             }
         };
-        Ok(Sized { symbols, memory, slices, dummies, timing, tally })
+        Ok(Sized { values, memory, frames, groups, dummies, timing, tally })
     }
 
     /// What a pass of the plan is attached to that has no target.
-    pub(crate) fn dummy(&self, plan: &Plan, pass: &Pass) -> Option<wgpu::TextureView> {
+    pub(crate) fn dummy(&self, plan: &Plan, pass: &PlannedPass) -> Option<wgpu::TextureView> {
         let samples = sample_count(plan, pass).ok()?;
         self.dummies.iter().find(|dummy| dummy.samples == samples).map(|dummy| dummy.view.clone())
     }
 
-    /// The bind groups once more, by slice and round, for other memory.
-    pub(crate) fn bound(&self, fixed: &Fixed<'_>, memory: &Memory) -> Vec<Vec<Vec<wgpu::BindGroup>>> {
-        let rounds = self.slices.iter().map(|rounds| rounds.iter());
-        rounds.map(|rounds| rounds.map(|round| bind_groups(fixed, &round.frame, memory)).collect()).collect()
+    /// The bind groups once more, for other memory.
+    pub(crate) fn bound(&self, fixed: &Fixed<'_>, memory: &Memory) -> Vec<Vec<wgpu::BindGroup>> {
+        bind_groups(fixed, &self.frames, memory)
+    }
+
+    /// The bind group of a pass where these exchanges are flipped.
+    pub(crate) fn group(&self, pass: usize, prepared: &Prepared, flipped: u32) -> Option<&wgpu::BindGroup> {
+        let bit = |(bit, number): (usize, &usize)| (flipped >> number & 1) << bit;
+        let way: u32 = prepared.exchanges.iter().enumerate().map(bit).sum();
+        self.groups.get(pass)?.get(way as usize)
     }
 }
 
-fn bind_groups(fixed: &Fixed<'_>, frame: &wgpu::Buffer, memory: &Memory) -> Vec<wgpu::BindGroup> {
-    let group = |prepared| bind_group(fixed.device, prepared, frame, fixed.blocks, memory);
-    fixed.made.passes.iter().map(group).collect()
+impl Frames {
+    async fn new(device: &wgpu::Device, made: &Made, slices: u32) -> Result<Self, Error> {
+        let size = (4 * made.plan.fields.len() as u64).next_multiple_of(16);
+        let stride = size.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment).max(16));
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("fragbuf frame"),
+            size: stride * u64::from(slices) * u64::from(made.iterations),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        let make = || device.create_buffer(&descriptor);
+        let buffer = scoped(device, "the uniform blocks of the frame", descriptor.size, make).await?;
+        Ok(Frames { buffer, size, stride, iterations: made.iterations })
+    }
+
+    /// The dynamic offset of the block of an iteration of a slice.
+    pub(crate) fn offset(&self, slice: u32, iteration: u32) -> u32 {
+        let block = u64::from(slice) * u64::from(self.iterations) + u64::from(iteration.min(self.iterations - 1));
+        u32::try_from(block * self.stride).unwrap_or(u32::MAX)
+    }
+
+    /// The bytes of all blocks, by what the words of one are.
+    pub(crate) fn bytes(
+        &self,
+        slices: u32,
+        words: &dyn Fn(u32, u32) -> Result<Vec<u32>, Error>,
+    ) -> Result<Vec<u8>, Error> {
+        let mut bytes = vec![0; self.buffer.size() as usize];
+        for slice in 0..slices {
+            for iteration in 0..self.iterations {
+                let block = to_bytes(&words(slice, iteration)?);
+                let at = self.offset(slice, iteration) as usize;
+                if let Some(place) = bytes.get_mut(at..at + block.len()) {
+                    place.copy_from_slice(&block);
+                }
+            }
+        }
+        Ok(bytes)
+    }
+}
+
+fn bind_groups(fixed: &Fixed<'_>, frames: &Frames, memory: &Memory) -> Vec<Vec<wgpu::BindGroup>> {
+    let groups = |prepared: &Prepared| {
+        let ways = 0..1u32 << prepared.exchanges.len();
+        let flipped = |way: u32| {
+            let bit = |(bit, number): (usize, &usize)| (way >> bit & 1) << number;
+            prepared.exchanges.iter().enumerate().map(bit).sum::<u32>()
+        };
+        ways.map(|way| bind_group(fixed, prepared, (frames, memory), flipped(way))).collect()
+    };
+    fixed.made.passes.iter().map(groups).collect()
 }
 
 /// Room for the counters of every slice.
@@ -120,7 +178,7 @@ async fn tally(
     memory: &Memory,
     slices: u32,
 ) -> Result<Option<wgpu::Buffer>, Error> {
-    let counters = index(&made.plan, COUNTERS_RESOURCE).ok().and_then(|index| memory.filled(index));
+    let counters = made.plan.resource_id(COUNTERS_RESOURCE).and_then(|id| memory.filled(id.0));
     let Some(counters) = counters.filter(|_| slices > 1) else { return Ok(None) };
     let descriptor = wgpu::BufferDescriptor {
         label: Some("fragbuf counters of all slices"),
@@ -133,13 +191,13 @@ async fn tally(
 }
 
 /// One attachment for every number of samples that a pass of the plan has.
-async fn dummies(device: &wgpu::Device, made: &Made, symbols: &Symbols) -> Result<Vec<Dummy>, Error> {
+async fn dummies(device: &wgpu::Device, made: &Made, values: &Values) -> Result<Vec<Dummy>, Error> {
     let mut dummies: Vec<Dummy> = Vec::new();
     for prepared in &made.passes {
         let samples = sample_count(&made.plan, &prepared.pass)?;
         if dummies.iter().all(|dummy| dummy.samples != samples) {
-            let bytes = u64::from(samples) * u64::from(symbols.width) * u64::from(symbols.height);
-            let make = || dummy(device, symbols, samples);
+            let bytes = u64::from(samples) * u64::from(values.width()) * u64::from(values.height());
+            let make = || dummy(device, values, samples);
             let view = scoped(device, "the attachment of geometry passes", bytes, make).await?;
             dummies.push(Dummy { samples, view });
         }
@@ -148,10 +206,10 @@ async fn dummies(device: &wgpu::Device, made: &Made, symbols: &Symbols) -> Resul
 }
 
 /// What passes without a target are attached to. Nothing is ever written to it, and tilers give it no memory.
-fn dummy(device: &wgpu::Device, symbols: &Symbols, samples: u32) -> wgpu::TextureView {
+fn dummy(device: &wgpu::Device, values: &Values, samples: u32) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("fragbuf no target"),
-        size: wgpu::Extent3d { width: symbols.width, height: symbols.height, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: values.width(), height: values.height(), depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
@@ -162,9 +220,9 @@ fn dummy(device: &wgpu::Device, symbols: &Symbols, samples: u32) -> wgpu::Textur
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn check_size(device: &wgpu::Device, symbols: &Symbols) -> Result<(), Error> {
+fn check_size(device: &wgpu::Device, values: &Values) -> Result<(), Error> {
     let limit = device.limits().max_texture_dimension_2d;
-    for (what, size) in [("the frame's width", symbols.width), ("the frame's height", symbols.height)] {
+    for (what, size) in [("the frame's width", values.width()), ("the frame's height", values.height())] {
         if size == 0 {
             return Err(Error::BadValue { name: what.to_owned(), wanted: "at least 1".to_owned() });
         }
@@ -182,28 +240,31 @@ fn check_size(device: &wgpu::Device, symbols: &Symbols) -> Result<(), Error> {
 }
 
 fn bind_group(
-    device: &wgpu::Device,
+    fixed: &Fixed<'_>,
     prepared: &Prepared,
-    frame: &wgpu::Buffer,
-    blocks: &Blocks,
-    memory: &Memory,
+    (frames, memory): (&Frames, &Memory),
+    flipped: u32,
 ) -> wgpu::BindGroup {
+    let Fixed { device, made, blocks, .. } = fixed;
+    let physical = |index: usize| made.plan.frame.physical(ResourceId(index), flipped).0;
     let view = |slot: &Slot| match *slot {
-        Slot::Texture { index, .. } => memory.bound_texture(index).map(sampled_view),
+        Slot::Texture { index, .. } => memory.bound_texture(physical(index)).map(sampled_view),
         _ => None,
     };
     let views: Vec<Option<wgpu::TextureView>> = prepared.slots.iter().map(view).collect();
     let buffer = |slot: &Slot| match *slot {
         Slot::Filler | Slot::Texture { .. } => &blocks.filler,
-        Slot::Frame => frame,
+        Slot::Frame => &frames.buffer,
         Slot::Uniforms => &blocks.own,
         Slot::Camera => &blocks.camera,
-        Slot::Resource { index, .. } => memory.buffer(index).unwrap_or(&blocks.filler),
+        Slot::Resource { index, .. } => memory.buffer(physical(index)).unwrap_or(&blocks.filler),
     };
     let slots = (0..).zip(prepared.slots.iter().zip(&views));
     let entries: Vec<wgpu::BindGroupEntry<'_>> = slots
         .map(|(binding, (slot, view))| {
-            let buffer = || buffer(slot).as_entire_binding();
+            let size = (*slot == Slot::Frame).then(|| wgpu::BufferSize::new(frames.size)).flatten();
+            let buffer =
+                || wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer(slot), offset: 0, size });
             let resource = view.as_ref().map_or_else(buffer, wgpu::BindingResource::TextureView);
             wgpu::BindGroupEntry { binding, resource }
         })

@@ -1,8 +1,8 @@
 //! Textures of a plan on wgpu: formats, sizes, samples, and what a word of the plan is in a load operation.
 
 use fragbuf_codegen::{Plan, Planned};
-use fragbuf_frame::{Symbols, unsupported};
-use fragbuf_templates::vocabulary::{Formula, Resource, TextureFormat};
+use fragbuf_frame::Values;
+use fragbuf_templates::vocabulary::TextureFormat;
 
 use crate::{Error, Pending};
 
@@ -45,27 +45,17 @@ pub(crate) fn sampled_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor { aspect, ..wgpu::TextureViewDescriptor::default() })
 }
 
-/// A formula of what is fixed when pipelines are made: k is the greatest that they serve.
-pub(crate) fn at_most(plan: &Plan, formula: &Formula, round: Option<u32>, what: &str) -> Result<u32, Error> {
-    let value = formula.evaluate(&|symbol| match symbol {
-        "k" => plan.bound.value("capacity"),
-        "iteration" => round.map(u64::from),
-        _ => plan.bound.value(symbol),
-    });
-    let value = value.map_err(|error| Error::Formula { what: what.to_owned(), error })?;
-    u32::try_from(value).map_err(|_| unsupported(format!("{what}: {value} are too many")).into())
-}
-
 /// Samples of a pixel of a texture.
-pub(crate) fn samples(plan: &Plan, resource: &Resource) -> Result<u32, Error> {
-    let extent = resource.extents.iter().find(|extent| extent.name == SAMPLE);
-    extent.map_or(Ok(1), |extent| at_most(plan, &extent.length, None, &format!("the samples of `{}`", resource.name)))
+pub(crate) fn samples(plan: &Plan, planned: &Planned) -> Result<u32, Error> {
+    let mut extents = planned.resource.extents.iter().zip(&planned.lengths);
+    let Some((_, length)) = extents.find(|(extent, _)| extent.name == SAMPLE) else { return Ok(1) };
+    Ok(Values::of_code(plan).word(length, &format!("the samples of `{}`", planned.resource.name))?)
 }
 
 /// Bytes of a texture of the whole frame.
-pub(crate) fn texture_bytes(plan: &Plan, planned: &Planned, symbols: &Symbols) -> Result<u64, Error> {
-    let whole = Symbols { rows: symbols.height, ..symbols.clone() };
-    let words = whole.evaluate(plan, &planned.words, &format!("`{}`", planned.resource.name))?;
+pub(crate) fn texture_bytes(planned: &Planned, values: &Values) -> Result<u64, Error> {
+    let whole = values.with_rows(values.height());
+    let words = whole.evaluate(&planned.words, &format!("`{}`", planned.resource.name))?;
     Ok(words.saturating_mul(4))
 }
 
@@ -77,7 +67,7 @@ pub(crate) fn create_texture(
     format: TextureFormat,
     (width, height): (u32, u32),
 ) -> Result<wgpu::Texture, Error> {
-    let sample_count = samples(plan, &planned.resource)?;
+    let sample_count = samples(plan, planned)?;
     let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     // Several samples cannot be copied to a buffer.
     if sample_count == 1 {

@@ -108,7 +108,7 @@ fn a_material_of_the_callers_own_stores_fragments() {
 
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-    let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {
+    let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &fragbuf_runtime::Call<'_>| {
         pass.set_pipeline(&material);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..sheets().len() as u32);

@@ -2,7 +2,7 @@
 
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
 use fragbuf_runtime::{Code, Error, Interlock, Output, Recorded, Renderer, Room, Settings, Sizing, Value, block_on};
-use fragbuf_templates::vocabulary::{Host, Step};
+use fragbuf_templates::vocabulary::{Access, Use};
 
 use crate::quads::{Quad, SIZE};
 use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
@@ -77,18 +77,15 @@ fn missing_features_are_named() {
     }
 }
 
+/// The caller draws the scene, so the arguments of that draw are the caller's too.
 #[test]
-fn steps_that_do_not_run_are_named() {
+fn passes_that_do_not_run_are_named() {
     let stage = device();
-    let host = Host { function: "meditate".to_owned(), reads: Vec::new(), sets: Vec::new() };
-    let steps =
-        [(Step::Swap("keys".to_owned(), "locks".to_owned()), "exchange of `keys`"), (Step::Host(host), "`meditate`")];
-    for (step, named) in steps {
-        let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
-        shaders.plan.steps.push(step);
-        let error = message(renderer(&stage, &shaders, &settings()));
-        assert!(error.contains(named), "{error}");
-    }
+    let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
+    let store = shaders.plan.passes.iter_mut().find(|pass| pass.anchor == "store").unwrap();
+    store.pass.uses.push(Use::new("locks", Access::Indirect));
+    let error = message(renderer(&stage, &shaders, &settings()));
+    assert!(error.contains("pass `store`: `locks` as Indirect"), "{error}");
 }
 
 #[test]

@@ -122,7 +122,7 @@ pub fn kept(renderer: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<V
             }
             "stencil_routed" => {
                 let word = |name: &str, sample: usize| buffer(name)[sample * PIXELS + pixel];
-                let routed = 256 - plan.bound.value("capacity").unwrap() as u32;
+                let routed = 256 - plan.capacity();
                 let fields = || std::iter::once("key").chain(plan.layout.beside.iter().map(|word| word.field.as_str()));
                 let samples = (0..k).take_while(|sample| word("routing", *sample) < routed);
                 samples

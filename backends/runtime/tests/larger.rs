@@ -1,9 +1,9 @@
 //! Frames of more pixels than one workgroup, or one round of the prefix sums, goes over; and frames in slices. The quads
 //! are the same as everywhere, on a grid of 16 × 16 cells of many pixels each.
 
+use fragbuf_codegen::{Action, Command};
 use fragbuf_runtime::headless::{Headless, Offscreen};
 use fragbuf_runtime::{PassTime, Renderer, Settings};
-use fragbuf_templates::vocabulary::Step;
 
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, fragments, picture};
@@ -83,7 +83,7 @@ fn slices_make_the_same_picture() {
         assert_eq!((one.slices(), four.slices()), (1, 4), "{key}");
         assert!(whole == sliced, "{key}: slices are seen");
         assert_eq!(counted, counted_in_slices, "{key}");
-        assert_eq!(times.len(), four.plan().passes().len(), "{key}");
+        assert_eq!(times.len(), four.plan().passes.len(), "{key}");
         assert_eq!((one.symbol("pixels"), four.symbol("pixels")), (Some(16 * 16), Some(5 * 16)));
     }
 }
@@ -143,7 +143,9 @@ fn what_no_buffer_can_hold_is_sliced_unasked() {
 fn every_word_of_a_resource_is_cleared_to_what_a_step_says() {
     let stage = device();
     let mut shaders = shaders(&technique("kplus_array", &[("k", "2")]), "wgsl");
-    shaders.plan.steps.push(Step::Clear { resource: "locks".to_owned(), value: 0x0123_4567 });
+    let resource = shaders.plan.resource_id("locks").unwrap();
+    let action = Action::Clear { resource, value: 0x0123_4567 };
+    shaders.plan.frame.commands.push(Command { action, parities: Vec::new() });
     for (width, height) in [(1, 1), (128, 128), (150, 301)] {
         let mut renderer = renderer(&stage, &shaders, &Settings { width, height, ..settings() }).unwrap();
         let offscreen = Offscreen::new(&stage.device, FORMAT, width, height).unwrap();

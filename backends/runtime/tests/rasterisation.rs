@@ -22,7 +22,7 @@ fn depths(triangles: &[[[f32; 3]; 3]]) -> Vec<Vec<f32>> {
     let buffer = crate::stage::vertex_buffer(&stage, &bytes);
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-    let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {
+    let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &fragbuf_runtime::Call<'_>| {
         pass.set_vertex_buffer(0, buffer.slice(..));
         pass.draw(0..3 * triangles.len() as u32, 0..1);
     };

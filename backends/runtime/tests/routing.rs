@@ -211,7 +211,7 @@ fn a_driver_routes_partly_covered_fragments_sample_by_sample() {
             let buffer = crate::stage::vertex_buffer(&stage, &bytes);
             let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
             let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-            let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {
+            let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &fragbuf_runtime::Call<'_>| {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..3 * triangles.len() as u32, 0..1);
             };

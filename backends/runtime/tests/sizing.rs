@@ -1,5 +1,6 @@
 //! Room: how much is made, when a frame is cut for it, and what happens when it runs out.
 
+use fragbuf_codegen::Planned;
 use fragbuf_runtime::headless::{Headless, Offscreen};
 use fragbuf_runtime::{Buckets, Error, Output, Recorded, Renderer, Room, Settings, Sizing, block_on};
 
@@ -49,15 +50,11 @@ fn allocated_bytes_are_what_the_papers_say() {
         let mut renderer = open(&stage, key, &[("k", k)], sizing).unwrap();
         see(&stage, &mut renderer, &quads);
         assert_eq!(renderer.allocated_bytes(), 4 * words, "{key} {sizing:?}");
-        let by_formula = renderer
-            .plan()
-            .resources
-            .iter()
-            .map(|planned| 4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap());
+        let by_formula = renderer.plan().resources.iter().map(|planned| 4 * words_of(&renderer, planned));
         assert_eq!(renderer.allocated_bytes(), by_formula.sum::<u64>(), "{key} {sizing:?}");
         for planned in &renderer.plan().resources {
             let bytes = renderer.buffer(&planned.resource.name).map_or(0, wgpu::Buffer::size);
-            assert_eq!(bytes, 4 * planned.words.evaluate(&|symbol| renderer.symbol(symbol)).unwrap());
+            assert_eq!(bytes, 4 * words_of(&renderer, planned));
         }
     }
 }
@@ -272,4 +269,9 @@ fn several_frames_in_flight_see_their_own_scenes() {
         let alone = see(&stage, &mut renderer, quads).pixels;
         assert_eq!(target.colors(&stage.device, &stage.queue).unwrap(), alone);
     }
+}
+
+/// The words of a resource, as its formula says.
+fn words_of(renderer: &Renderer, planned: &Planned) -> u64 {
+    planned.words.formula().evaluate(&|symbol| renderer.symbol(symbol)).unwrap()
 }

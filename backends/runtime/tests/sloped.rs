@@ -133,7 +133,7 @@ fn every_technique_keeps_the_best_of_what_was_captured() {
             let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
             let [r, g, b] = crate::stage::BACKGROUND;
             let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-            let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &_| {
+            let draw = &mut |pass: &mut wgpu::RenderPass<'_>, _: &fragbuf_runtime::Call<'_>| {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..3 * count, 0..1);
             };

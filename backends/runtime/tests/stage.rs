@@ -126,5 +126,6 @@ pub fn draw_over(
     renderer.render(&output, &mut |pass, _| {
         pass.set_vertex_buffer(0, buffer.slice(..));
         pass.draw(0..6 * quads.len() as u32, 0..1);
-    })
+    })?;
+    Ok(())
 }

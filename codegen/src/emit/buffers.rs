@@ -4,9 +4,9 @@
 use std::fmt::Write;
 
 use fragbuf_model::mangled;
-use fragbuf_templates::vocabulary::{Access, Element, Expression, Formula, Pass, Resource, Use};
+use fragbuf_templates::vocabulary::{Access, Element, Pass, Resource, Use};
 
-use crate::{Linking, Plan, Planned, Profile};
+use crate::{Linking, Plan, PlanValue, Planned, Profile, SymbolId, Term};
 
 pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> String {
     let mut text = uniform_blocks(plan, linking);
@@ -27,8 +27,8 @@ fn is_buffer(resource: &Resource, usage: &Use) -> bool {
 
 fn uniform_blocks(plan: &Plan, linking: &Linking) -> String {
     let mut text = String::from("/// The size of the frame and what else the host sets for it.\nstruct Frame {\n");
-    for field in &plan.frame {
-        let _ = writeln!(text, "    {field}: u32,");
+    for field in &plan.fields {
+        let _ = writeln!(text, "    {}: u32,", plan.symbols.get(*field).name);
     }
     let _ = writeln!(text, "}}\n\n@group({}) @binding(0) var<uniform> frame: Frame;\n", linking.group);
     if !plan.variant.uniforms.is_empty() {
@@ -99,10 +99,9 @@ impl Accessors<'_> {
 
     /// Words of one element.
     fn words(&self) -> u64 {
-        let bound = |symbol| self.plan.bound.value(symbol).unwrap_or(0);
         match self.planned.resource.element {
-            Element::Entry => bound("entry_words"),
-            Element::Beside => bound("beside_words"),
+            Element::Entry => self.plan.layout.entry_words().into(),
+            Element::Beside => self.plan.layout.beside_words().into(),
             _ => 1,
         }
     }
@@ -221,30 +220,26 @@ impl Accessors<'_> {
     /// The element's number: the first index part is slowest.
     fn index(&self) -> String {
         let mut index = String::from("0u");
-        for (position, extent) in self.planned.resource.extents.iter().enumerate() {
+        let extents = self.planned.resource.extents.iter().zip(&self.planned.lengths);
+        for (position, (extent, length)) in extents.enumerate() {
             index = match position {
                 0 => extent.name.clone(),
-                _ => format!("{} * {} + {}", parenthesised(&index), self.length(&extent.length), extent.name),
+                _ => format!("{} * {} + {}", parenthesised(&index), self.written(length.term()), extent.name),
             };
         }
         index
     }
 
-    /// A length as WGSL. Symbols that are bound by now are numbers, the others the frame's fields.
-    fn length(&self, formula: &Formula) -> String {
-        // A formula that cannot be read has been refused when the plan was made.
-        formula.read().map_or_else(|_| "1u".to_owned(), |expression| self.written(&expression))
-    }
-
-    fn written(&self, expression: &Expression) -> String {
-        match expression {
-            Expression::Number(number) => format!("{number}u"),
-            Expression::Symbol(symbol) if symbol == "pixels" => "pixel_count()".to_owned(),
-            Expression::Symbol(symbol) => match self.plan.bound.value(symbol) {
-                Some(value) => format!("{value}u"),
-                None => format!("frame.{symbol}"),
+    /// A length as WGSL. Symbols of generation time are numbers, the others the frame's fields.
+    fn written(&self, term: &Term) -> String {
+        match term {
+            Term::Number(number) => format!("{number}u"),
+            Term::Symbol(SymbolId::PIXELS) => "pixel_count()".to_owned(),
+            Term::Symbol(id) => match &self.plan.symbols.get(*id).value {
+                PlanValue::Number(number) => format!("{number}u"),
+                _ => format!("frame.{}", self.plan.symbols.get(*id).name),
             },
-            Expression::Apply(operator, arguments) => {
+            Term::Apply(operator, arguments) => {
                 let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
                 match (*operator, parts.as_slice()) {
                     ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),

@@ -2,19 +2,17 @@
 
 use std::fmt::{Display, Formatter, Result, Write};
 
-use fragbuf_templates::vocabulary::{
-    Access, Coverage, Element, Init, Kind, Life, Loads, Objects, Pass, State, Step, Until,
-};
+use fragbuf_templates::vocabulary::{Access, Coverage, Element, Init, Kind, Life, Loads, Objects, Pass, State};
 
 use super::{Plan, Planned};
-use crate::Key;
+use crate::{Action, Command, Decision, Key, Loop, LoopUntil, Parity, Range, ResourceId};
 
 impl Display for Plan {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let technique = self.variant.technique.as_deref().unwrap_or("no preset");
         writeln!(f, "plan {} ({technique})", self.variant.name.value)?;
         match self.variant.keep {
-            Some(k) => writeln!(f, "  keep       {k} of capacity {}", self.bound.value("capacity").unwrap_or(0))?,
+            Some(k) => writeln!(f, "  keep       {k} of capacity {}", self.capacity())?,
             None => writeln!(f, "  keep       all")?,
         }
         let key = if self.layout.key == Key::Depth { "depth" } else { "criterion" };
@@ -22,7 +20,7 @@ impl Display for Plan {
         writeln!(f, "  entry      {} words: key ({key}) {}", self.layout.entry_words(), beside.join(" "))?;
         writeln!(f, "  axes       {}", self.selection.describe())?;
         writeln!(f, "  memory     {} words per pixel", self.words_per_pixel)?;
-        for definition in &self.defined {
+        for definition in self.selection.rows.iter().flat_map(|selected| &selected.row.defines) {
             writeln!(f, "  {:<10} {}", definition.symbol, definition.value)?;
         }
         writeln!(f, "  geometry   {} passes", self.geometry_passes)?;
@@ -34,13 +32,14 @@ impl Display for Plan {
         }
         let constants: Vec<String> = self.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         writeln!(f, "  constants  {}", constants.join(", "))?;
-        writeln!(f, "  frame      {}", self.frame.join(" "))?;
+        let fields: Vec<&str> = self.fields.iter().map(|id| &*self.symbols.get(*id).name).collect();
+        writeln!(f, "  frame      {}", fields.join(" "))?;
         writeln!(f, "resources")?;
         for planned in &self.resources {
             writeln!(f, "  {}", resource(planned))?;
         }
         writeln!(f, "steps")?;
-        steps(f, &self.steps, 1)
+        commands(f, self)
     }
 }
 
@@ -72,28 +71,75 @@ fn resource(planned: &Planned) -> String {
     format!("@{binding} {name}{index}: {element} ({words} words), {init}{life} — {}", resource.summary)
 }
 
-fn steps(f: &mut Formatter<'_>, list: &[Step], depth: usize) -> Result {
-    let indent = "  ".repeat(depth);
-    for step in list {
-        match step {
-            Step::Pass(pass) => pass_lines(f, pass, &indent)?,
-            Step::Clear { resource, value } => writeln!(f, "{indent}clear {resource} to {value:#x}")?,
-            Step::Copy { from, to } => writeln!(f, "{indent}copy {from} to {to}")?,
-            Step::Swap(a, b) => writeln!(f, "{indent}swap {a} and {b}")?,
-            Step::Host(host) => {
-                let (function, reads, sets) = (&host.function, host.reads.join(", "), host.sets.join(", "));
-                writeln!(f, "{indent}host {function}: reads {reads}; sets {sets}")?;
-            }
-            Step::Repeat(repeat) => {
-                let until = match &repeat.until {
-                    Until::Times(times) => format!("{times} times"),
-                    Until::Zero(counter) => format!("until {counter} is 0"),
-                    Until::NoSamples(pass) => format!("until no sample passes in {pass}"),
-                };
-                writeln!(f, "{indent}repeat {until}, at most {}", repeat.at_most)?;
-                steps(f, &repeat.body, depth + 1)?;
-            }
+fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {
+    let mut depth = 1;
+    for command in &plan.frame.commands {
+        if let Action::LoopEnd(_) = command.action {
+            depth -= 1;
+            continue;
         }
+        let indent = "  ".repeat(depth);
+        let name = |id: ResourceId| &plan.resources[id.0].resource.name;
+        match &command.action {
+            Action::Pass(id) => pass_lines(f, &plan.passes[id.0], &indent)?,
+            Action::Clear { resource, value } => writeln!(f, "{indent}clear {} to {value:#x}", name(*resource))?,
+            Action::Copy { from, to } => writeln!(f, "{indent}copy {} to {}", name(*from), name(*to))?,
+            Action::Host(decision) => writeln!(f, "{indent}host {}", host(decision, plan))?,
+            Action::Loop(id) => {
+                let Loop { until, at_most, .. } = &plan.frame.loops[id.0];
+                let until = match until {
+                    LoopUntil::Times => "repeat".to_owned(),
+                    LoopUntil::WordIsZero(word) => format!("repeat until {} is 0,", name(*word)),
+                    LoopUntil::NoSamples(pass) => {
+                        format!("repeat until no sample passes in {},", plan.passes[pass.0].anchor)
+                    }
+                };
+                let most = if until == "repeat" { "" } else { "at most " };
+                writeln!(f, "{indent}{until} {most}{at_most} times")?;
+                depth += 1;
+            }
+            Action::LoopEnd(_) => {}
+        }
+        flipped(f, command, plan, &indent)?;
+    }
+    Ok(())
+}
+
+fn host(decision: &Decision, plan: &Plan) -> String {
+    let read = |range: &Range| {
+        let name = &plan.resources[range.resource.0].resource.name;
+        let (first, count) = (range.first.to_string(), range.count.to_string());
+        match (first.as_str(), count.as_str()) {
+            (first, "1") => format!("{name}[{first}]"),
+            ("0", count) => format!("{name}[0, {count} words]"),
+            (first, count) => format!("{name}[{first}, {count} words]"),
+        }
+    };
+    let reads: Vec<String> = decision.reads.iter().map(read).collect();
+    let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
+    format!("{}: reads {}; sets {}", decision.name, reads.join(", "), sets.join(", "))
+}
+
+/// Which resources stand for each other at a command that uses them.
+fn flipped(f: &mut Formatter<'_>, command: &Command, plan: &Plan, indent: &str) -> Result {
+    for ([a, b], parity) in plan.frame.exchanges.iter().zip(&command.parities) {
+        let names = [a, b].map(|id| &plan.resources[id.0].resource.name);
+        let uses = match &command.action {
+            Action::Pass(id) => plan.passes[id.0].touches(names[0]) || plan.passes[id.0].touches(names[1]),
+            Action::Clear { resource, .. } => [a, b].contains(&resource),
+            Action::Copy { from, to } => [a, b].iter().any(|id| [from, to].contains(id)),
+            _ => false,
+        };
+        if !uses || *parity == Parity::default() {
+            continue;
+        }
+        let loops: Vec<String> = parity.loops.iter().map(|id| format!("loop {}", id.0)).collect();
+        let when = match (parity.is_odd, loops.is_empty()) {
+            (_, true) => String::new(),
+            (false, false) => format!(" after an odd number of iterations of {}", loops.join(" and ")),
+            (true, false) => format!(" after an even number of iterations of {}", loops.join(" and ")),
+        };
+        writeln!(f, "{indent}  {} and {} exchanged{when}", names[0], names[1])?;
     }
     Ok(())
 }

@@ -3,9 +3,11 @@
 //! In: a plan. Out: formulas in the papers' notation, and words. Everything follows from facts, hazards and steps; nothing here
 //! knows a technique.
 
-use fragbuf_templates::vocabulary::{Effect, Fact, Kind, Order, Pass, Polynomial, Repeat, Soundness, Step, Until};
+use fragbuf_templates::vocabulary::{Effect, Fact, Kind, Order, Pass, Polynomial, Soundness};
 
-use super::{Bound, Plan, Planned};
+use super::{Plan, Planned};
+use crate::frame::Lowered;
+use crate::{Action, LoweredFrame, PlannedPass, Quantity, SymbolTable};
 
 /// What a picture depends on beside the fragments themselves, as long as the counters say that nothing was lost for want of
 /// room or time.
@@ -40,29 +42,26 @@ impl Plan {
 
     /// Draws and dispatches of a frame, as a formula over the bounds of loops.
     pub fn pass_count(&self) -> Polynomial {
-        passes(&self.steps, &self.bound, &|_| true)
+        runs(&self.frame, &self.passes, &self.symbols, &|_| true)
     }
 
     /// Draws of a frame: the scene's, and triangles over the whole frame.
     pub fn draw_count(&self) -> Polynomial {
-        passes(&self.steps, &self.bound, &|pass| !matches!(pass.kind, Kind::Compute { .. }))
+        runs(&self.frame, &self.passes, &self.symbols, &|pass| !matches!(pass.kind, Kind::Compute { .. }))
     }
 
     /// Bytes per pixel, in the notation of [`Plan::words_per_pixel`].
     pub fn bytes_per_pixel(&self) -> Polynomial {
-        words_per_pixel(&self.resources, &self.bound).times(&Polynomial::number(4))
+        words_per_pixel(&self.resources, &self.symbols).times(&Polynomial::number(4))
     }
 }
 
 /// What grows with the pixels, per pixel: pools grow with the fragments of all pixels, so they count f words per word of a
 /// node, and f/4 per word of a page of four. Sizes that grow with neither, or with a fraction of the pixels, are left to the
 /// list of resources, and so is what the caller brings.
-pub(super) fn words_per_pixel(resources: &[Planned], bound: &Bound) -> Polynomial {
+pub(super) fn words_per_pixel(resources: &[Planned], symbols: &SymbolTable) -> Polynomial {
     let own = resources.iter().filter(|planned| !planned.is_brought());
-    let total = own.fold(Polynomial::default(), |total, planned| {
-        let words = planned.words.read().map(|words| words.polynomial(&|symbol| bound.value(symbol)));
-        words.map_or_else(|_| total.clone(), |words| total.plus(&words, 1))
-    });
+    let total = own.fold(Polynomial::default(), |total, planned| total.plus(&polynomial(&planned.words, symbols), 1));
     total
         .coefficient("pixels")
         .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
@@ -71,17 +70,34 @@ pub(super) fn words_per_pixel(resources: &[Planned], bound: &Bound) -> Polynomia
 }
 
 /// Runs of the passes that are `meant`, as a formula over the bounds of loops.
-pub(super) fn passes(steps: &[Step], bound: &Bound, meant: &dyn Fn(&Pass) -> bool) -> Polynomial {
-    steps.iter().fold(Polynomial::default(), |sum, step| match step {
-        Step::Pass(pass) if meant(pass) => sum.plus(&Polynomial::number(1), 1),
-        Step::Repeat(Repeat { body, until, at_most }) => {
-            let rounds = if let Until::Times(times) = until { times } else { at_most };
-            let rounds = rounds.read().map_or_else(
-                |_| Polynomial::symbol(&rounds.0),
-                |rounds| rounds.polynomial(&|symbol| bound.value(symbol)),
-            );
-            sum.plus(&passes(body, bound, meant).times(&rounds), 1)
+pub(super) fn passes(lowered: &Lowered, symbols: &SymbolTable, meant: &dyn Fn(&Pass) -> bool) -> Polynomial {
+    runs(&lowered.frame, &lowered.passes, symbols, meant)
+}
+
+fn runs(
+    frame: &LoweredFrame,
+    passes: &[PlannedPass],
+    symbols: &SymbolTable,
+    meant: &dyn Fn(&Pass) -> bool,
+) -> Polynomial {
+    let mut sum = Polynomial::default();
+    // The product of the bounds of all loops around a command.
+    let mut times = vec![Polynomial::number(1)];
+    for command in &frame.commands {
+        let now = times.last().cloned().unwrap_or_default();
+        match command.action {
+            Action::Pass(id) if meant(&passes[id.0]) => sum = sum.plus(&now, 1),
+            Action::Loop(id) => times.push(now.times(&polynomial(&frame.loops[id.0].at_most, symbols))),
+            Action::LoopEnd(_) => drop(times.pop()),
+            _ => {}
         }
-        _ => sum,
-    })
+    }
+    sum
+}
+
+/// A formula in normal form. What cannot be read has been refused when the plan was made.
+fn polynomial(quantity: &Quantity, symbols: &SymbolTable) -> Polynomial {
+    let expression = quantity.formula().read();
+    expression
+        .map_or_else(|_| Polynomial::default(), |expression| expression.polynomial(&|name| symbols.number_of(name)))
 }

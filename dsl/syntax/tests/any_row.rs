@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
 
 use fragbuf_syntax::row;
-use fragbuf_templates::vocabulary::{Access, Element, Fact, Init, Loads, Soundness, Step};
+use fragbuf_templates::vocabulary::{Access, Element, Fact, Host, Init, Loads, Soundness, Step};
 
 const GOOD: &str = "// What it is.\n\
     //: storage -- all of it\n\
@@ -40,10 +40,7 @@ fn a_row_says_what_its_lines_say() {
     assert_eq!((store.anchor.as_str(), store.skeleton.as_str()), ("again", "store"));
     let uses: Vec<_> = store.uses.iter().map(|usage| (usage.resource.as_str(), usage.access, usage.loads)).collect();
     assert_eq!(uses, [("heads", Access::Atomic, Loads::Rechecked), ("rest", Access::Coherent, Loads::Exact)]);
-    assert_eq!(
-        (host.reads.as_slice(), host.sets.as_slice()),
-        (&["heads[pixels]".to_owned()][..], &["fragments".to_owned()][..])
-    );
+    assert_eq!(*host, Host::new("allocate").reads_word("heads", "pixels").sets("fragments"));
     assert_eq!(row.offers, [Fact::KeepsBest, Fact::BoundAnyInstant]);
     assert_eq!(
         (row.requires.as_slice(), row.implies.as_slice()),

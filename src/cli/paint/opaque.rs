@@ -52,7 +52,7 @@ fn nearest(registry: &Registry) -> Option<&str> {
 
 /// The texture that a plan leaves its depths in: the one that a pass tests and writes.
 pub(super) fn depths(plan: &Plan) -> Result<String, Failure> {
-    let mut tests = plan.passes().into_iter().filter_map(|pass| pass.state.depth.as_ref());
+    let mut tests = plan.passes.iter().filter_map(|pass| pass.state.depth.as_ref());
     let written = tests.find(|test| test.write).map(|test| test.resource.clone());
     written.ok_or_else(|| Failure::Input("the opaque surfaces leave no depth behind".to_owned()))
 }

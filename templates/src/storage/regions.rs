@@ -106,10 +106,6 @@ fn counted_steps(symbol: &str) -> Vec<Step> {
         Step::Pass(
             scan("scan_add", "ceil_div(pixels, 1024)").uses("offsets", Access::Plain).uses("block_sums", Access::Read),
         ),
-        Step::Host(Host {
-            function: "allocate".to_owned(),
-            reads: vec!["offsets[pixels]".to_owned()],
-            sets: vec![symbol.to_owned()],
-        }),
+        Step::Host(Host::new("allocate").reads_word("offsets", "pixels").sets(symbol)),
     ]
 }

@@ -1,10 +1,8 @@
 //! Sizes as formulas: the same text in a row, in a plan's dump and in the manifest.
 //!
 //! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
-//! Symbols by binding time: generation (`entry_words beside_words capacity samples workgroup`, and parameters of the chosen
-//! rows by their constants, such as `PAGE_ENTRIES`), allocation (`width height
-//! pixels`), frame (`k iteration`), readback (`fragments kept`). All values are unsigned. `pixels` is `width * height`
-//! unless the addressing pads rows or columns: pixels of the frame and of its padding.
+//! Symbols are those of [`SYMBOLS`](super::SYMBOLS), and parameters of the chosen rows by their constants, such as
+//! `PAGE_ENTRIES`. All values are unsigned.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -132,7 +130,8 @@ impl Expression {
     }
 }
 
-fn apply(operator: &str, values: &[u64]) -> Option<u64> {
+/// An operator or function of formulas, applied; `None`: a division by zero, or a result beyond 64 bits.
+pub fn apply(operator: &str, values: &[u64]) -> Option<u64> {
     match (operator, values) {
         ("+", [a, b]) => a.checked_add(*b),
         ("-", [a, b]) => a.checked_sub(*b),

@@ -8,11 +8,13 @@ mod edit;
 mod effect;
 mod fact;
 mod formula;
+mod host;
 mod pass;
 mod polynomial;
 mod resource;
 mod row;
 mod state;
+mod symbol;
 mod technique;
 
 /// A text that a row includes, or that a user's file gave.
@@ -22,10 +24,12 @@ pub use classes::Classes;
 pub use edit::Edit;
 pub use effect::Effect;
 pub use fact::Fact;
-pub use formula::{Expression, Formula, FormulaError};
-pub use pass::{Access, Host, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Role, Step, Until, Use};
+pub use formula::{Expression, Formula, FormulaError, apply};
+pub use host::{Host, HostCall, HostFunction, Read, Words};
+pub use pass::{Access, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Role, Step, Until, Use};
 pub use polynomial::Polynomial;
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
 pub use row::{Axis, Carried, Definition, Hazard, Order, Parameter, Row, Soundness, Takes, Template};
 pub use state::{Blend, Compare, Coverage, DepthState, Samples, State, StencilOperation, StencilState, Target};
+pub use symbol::{SYMBOLS, SetBy, Symbol, When};
 pub use technique::{KeepDefault, Technique};

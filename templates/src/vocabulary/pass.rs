@@ -1,6 +1,6 @@
 //! What a technique does: passes and the steps around them.
 
-use super::{Blend, Formula, State, Target};
+use super::{Blend, Formula, Host, State, Target};
 
 /// One step of a frame, in order.
 #[allow(clippy::large_enum_variant, reason = "a plan has a dozen steps, and most are passes")]
@@ -50,17 +50,6 @@ pub enum Until {
     Zero(String),
     /// When no sample passed in the pass with this anchor.
     NoSamples(String),
-}
-
-/// A decision of the host between two submissions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Host {
-    /// The host function, a key of the axis `host`.
-    pub function: String,
-    /// Resources it reads back, with the part it needs: `offsets[pixels]`.
-    pub reads: Vec<String>,
-    /// Symbols it binds.
-    pub sets: Vec<String>,
 }
 
 /// One draw or dispatch.
@@ -232,6 +221,15 @@ impl Pass {
         let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: Memory::Borrowed };
         self.roles.push(Role { contract: name.to_owned(), instance });
         self
+    }
+
+    /// Whether it uses, tests or draws to `resource`.
+    pub fn touches(&self, resource: &str) -> bool {
+        let state = &self.state;
+        self.uses.iter().any(|usage| usage.resource == resource)
+            || state.targets.iter().any(|target| target.resource == resource)
+            || state.depth.as_ref().is_some_and(|depth| depth.resource == resource)
+            || state.stencil.as_ref().is_some_and(|stencil| stencil.resource == resource)
     }
 
     /// Writes to `resource` with `blend`.

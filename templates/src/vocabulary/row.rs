@@ -1,6 +1,6 @@
 //! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
 
-use super::{Edit, Fact, Formula, Resource, Step, Text, Use};
+use super::{Edit, Fact, Formula, HostFunction, Resource, Step, Text, Use};
 
 /// One way to choose: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +60,8 @@ pub struct Row {
     pub soundness: Soundness,
     /// The order it imposes on fragments with equal keys, for an axis that says so.
     pub order: Option<Order>,
+    /// The function that the host calls, for a row of the axis `host`.
+    pub host: Option<HostFunction>,
 }
 
 /// A whole WGSL file.
@@ -224,6 +226,7 @@ impl Row {
             hazards: Vec::new(),
             soundness: Soundness::Atomics,
             order: None,
+            host: None,
         }
     }
 }

@@ -6,10 +6,11 @@
 
 use std::ops::Range;
 
-use fragbuf_frame::{resource, unsupported};
-use fragbuf_templates::vocabulary::{Access, Formula, Kind, Objects, Pass};
+use fragbuf_codegen::PlannedPass;
+use fragbuf_frame::{Values, resource, unsupported};
+use fragbuf_templates::vocabulary::{Access, Kind, Objects, Pass};
 
-use super::{Frame, number};
+use super::Frame;
 use crate::Error;
 use crate::draw::Call;
 use crate::memory::read;
@@ -39,13 +40,13 @@ pub(super) fn call(frame: &Frame<'_>, pass: &Pass) -> Result<Call, Error> {
 }
 
 /// The workgroups of a dispatch.
-pub(super) fn workgroups(frame: &Frame<'_>, pass: &Pass, groups: &[Formula; 3], round: u32) -> Result<[u32; 3], Error> {
+pub(super) fn workgroups(frame: &Frame<'_>, pass: &PlannedPass, values: &Values) -> Result<[u32; 3], Error> {
     let mut counts = [0; 3];
     match arguments(frame, pass)? {
         Some(words) => counts.iter_mut().zip(words).for_each(|(count, word)| *count = word),
         None => {
-            for (count, formula) in counts.iter_mut().zip(groups) {
-                *count = number(&frame.code.plan, &frame.device.symbols, formula, round, "the workgroups of a pass")?;
+            for (count, groups) in counts.iter_mut().zip(&pass.groups) {
+                *count = values.word(groups, "the workgroups of a pass")?;
             }
         }
     }
@@ -58,7 +59,7 @@ fn arguments(frame: &Frame<'_>, pass: &Pass) -> Result<Option<Vec<u32>>, Error> 
     if pass.objects != Objects::All {
         return Err(unsupported(format!("pass `{}`: arguments in a buffer for several objects", pass.anchor)).into());
     }
-    let words = read(&frame.device.memory.resources[resource(&frame.code.plan, &usage.resource)?]);
+    let words = read(&frame.device.memory.resources[resource(&frame.code.plan, &usage.resource)?.0]);
     let needed = match pass.kind {
         Kind::Compute { .. } => 3,
         Kind::Fullscreen => 4,

@@ -4,24 +4,13 @@
 //! failed once stays dropped until the frame ends: what is peeled away does not come back. A box is drawn as it is, as on a GPU: what
 //! lies beyond by less than its depths are rounded by may be dropped with it.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-use fragbuf_templates::vocabulary::Pass;
+use fragbuf_codegen::PassId;
+use fragbuf_frame::unsupported;
 
 use super::Frame;
 use crate::Error;
-
-/// Which objects a query has not dropped, by its anchor. A query that has not been asked has dropped nothing.
-#[derive(Debug, Default)]
-pub(super) struct Visible(BTreeMap<String, Vec<Verdict>>);
-
-/// What a query has found out about an object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
-    Seen,
-    Dropped,
-}
 
 /// Corners of a box as vertices.
 pub(super) struct Corners {
@@ -36,17 +25,10 @@ pub(super) const FACES: [u32; 36] =
 impl Frame<'_> {
     /// The objects that the query `anchor` has not dropped.
     pub(super) fn objects(&self, anchor: &str) -> Result<Vec<Range<u32>>, Error> {
-        if !self.code.plan.passes().iter().any(|pass| pass.anchor == anchor) {
-            return Err(fragbuf_frame::unsupported(format!("the query of `{anchor}`, which is no pass")).into());
-        }
-        let all = self.mesh_objects();
-        Ok(match self.visible.0.get(anchor) {
-            None => all,
-            Some(verdicts) => {
-                let seen = all.into_iter().zip(verdicts).filter(|(_, verdict)| **verdict == Verdict::Seen);
-                seen.map(|(object, _)| object).collect()
-            }
-        })
+        let query = self.code.plan.passes.iter().position(|pass| pass.anchor == anchor).map(PassId);
+        let query = query.ok_or_else(|| unsupported(format!("the query of `{anchor}`, which is no pass")))?;
+        let all = self.mesh_objects().into_iter().enumerate();
+        Ok(all.filter(|(number, _)| !self.cursor.is_dropped(query, *number)).map(|(_, object)| object).collect())
     }
 
     /// All objects; a mesh that names none is one.
@@ -55,16 +37,6 @@ impl Frame<'_> {
         let clipped = |object: &Range<u32>| object.start.min(end)..object.end.min(end);
         let objects = &self.device.objects;
         if objects.is_empty() { std::iter::once(0..end).collect() } else { objects.iter().map(clipped).collect() }
-    }
-
-    /// What has been found out before; everything is seen until it is not.
-    pub(super) fn verdicts(&self, pass: &Pass) -> Vec<Verdict> {
-        let known = self.visible.0.get(&pass.anchor).cloned();
-        known.unwrap_or_else(|| vec![Verdict::Seen; self.mesh_objects().len()])
-    }
-
-    pub(super) fn judge(&mut self, pass: &Pass, verdicts: Vec<Verdict>) {
-        self.visible.0.insert(pass.anchor.clone(), verdicts);
     }
 
     /// The box around an object; `None`: it has no vertices.

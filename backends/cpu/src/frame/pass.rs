@@ -1,18 +1,19 @@
 //! One pass of a frame: its programs with the memory that they see, drawn or dispatched.
 //!
-//! In: a pass and its round. Out: changed memory, the samples that passed, the time it took. What the pass says and this device does
+//! In: a run of a pass. Out: changed memory, the samples that passed, the time it took. What the pass says and this device does
 //! not run is refused by name before anything is changed.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use fragbuf_frame::{resource, unsupported};
+use fragbuf_codegen::{PassId, PlannedPass};
+use fragbuf_frame::{Run, Values, unsupported};
 use fragbuf_interpreter::{Program, Space};
 use fragbuf_templates::vocabulary::{Access, Coverage, Kind, Objects, Pass};
 
+use super::Frame;
 use super::call::{call, workgroups};
-use super::objects::{FACES, Verdict};
-use super::{Frame, number};
+use super::objects::FACES;
 use crate::Error;
 use crate::attachment::Attachments;
 use crate::code::PassCode;
@@ -29,23 +30,26 @@ use crate::view::View;
 type Stages<'a> = (&'a Program, &'a Program);
 
 impl Frame<'_> {
-    /// Runs the pass of this number.
-    pub(super) fn pass(&mut self, pass: &Pass, at: usize, round: u32) -> Result<(), Error> {
+    /// Runs a pass.
+    pub(super) fn pass(&mut self, run: Run) -> Result<(), Error> {
+        let code = self.code;
+        let (pass, at) = (&code.plan.passes[run.pass.0], run.pass.0);
         check(pass)?;
         let start = Instant::now();
-        let code = self.code;
-        let uniforms = words(&self.device.symbols.frame_words(&code.plan, 0, round)?);
+        self.device.memory.arrange(&code.plan, run.flipped);
+        let values = self.device.values.in_iteration(run.iteration);
+        let uniforms = words(&values.frame_words(&code.plan, 0, run.iteration)?);
         let fault = match (&code.passes[at], &pass.kind) {
-            (PassCode::Compute(program), Kind::Compute { groups }) => {
-                let counts = workgroups(self, pass, groups, round)?;
+            (PassCode::Compute(program), Kind::Compute { .. }) => {
+                let counts = workgroups(self, pass, &values)?;
                 let view = self.view(program, &uniforms)?;
                 compute(program, &view, counts).map_err(|how| Error::Stuck { pass: pass.anchor.clone(), how })?
             }
             (PassCode::Draw { vertex, fragment }, Kind::Geometry | Kind::Fullscreen) => {
                 let stages = (vertex, fragment);
                 let drawn = match pass.objects {
-                    Objects::Boxes => self.boxes(pass, round, stages, &uniforms)?,
-                    _ => self.scene(pass, round, stages, &uniforms)?,
+                    Objects::Boxes => self.boxes(run.pass, &values, stages, &uniforms)?,
+                    _ => self.scene(pass, &values, stages, &uniforms)?,
                 };
                 self.samples[at] = drawn.samples;
                 drawn.fault
@@ -62,12 +66,13 @@ impl Frame<'_> {
     }
 
     /// The scene, or a triangle over the whole frame.
-    fn scene(&self, pass: &Pass, round: u32, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
+    fn scene(&self, pass: &PlannedPass, values: &Values, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
         let (vertices, indices) = match pass.kind {
             Kind::Geometry => (self.mesh.vertices, Some(self.mesh.indices)),
             _ => (&[][..], None),
         };
-        let call = Draw { vertices, indices, call: call(self, pass)?, ..self.prepared(pass, round, stages, uniforms)? };
+        let call =
+            Draw { vertices, indices, call: call(self, pass)?, ..self.prepared(pass, values, stages, uniforms)? };
         // Millionths, so that threads can add them up.
         let done = AtomicU64::new(0);
         let report = |part: f64| {
@@ -77,15 +82,19 @@ impl Frame<'_> {
         draw(&call, &report).map_err(|what| refused(pass, what))
     }
 
-    /// The box of every object that has not been dropped; those of which no sample passes are dropped. The samples of all.
-    fn boxes(&mut self, pass: &Pass, round: u32, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
-        let mut verdicts = self.verdicts(pass);
+    /// The box of every object that has not been dropped; what is found out of each is kept for the cursor. The samples of
+    /// all.
+    fn boxes(&mut self, query: PassId, values: &Values, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
+        let pass = &self.code.plan.passes[query.0];
         let mut all = Drawn::default();
-        let prepared = self.prepared(pass, round, stages, uniforms)?;
+        let mut found = Vec::new();
+        let prepared = self.prepared(pass, values, stages, uniforms)?;
         let varyings = Varyings::of(stages.0).map_err(|what| refused(pass, what))?;
         let stride = vertices::stride(stages.0);
-        for (object, verdict) in self.mesh_objects().iter().zip(&mut verdicts) {
-            let Some(corners) = self.corners(object, stride).filter(|_| *verdict == Verdict::Seen) else { continue };
+        for (number, object) in self.mesh_objects().iter().enumerate() {
+            found.push(1);
+            let is_asked = !self.cursor.is_dropped(query, number);
+            let Some(corners) = self.corners(object, stride).filter(|_| is_asked) else { continue };
             let placed = vertices::run((stages.0, &prepared.vertex.1), &corners.vertices, 8, 0);
             let placed = placed.map_err(|what| refused(pass, what))?;
             let crosses = placed.chunks(varyings.stride).any(|vertex| {
@@ -105,36 +114,33 @@ impl Frame<'_> {
             let drawn = draw(&call, &|_| {}).map_err(|what| refused(pass, what))?;
             all.samples += drawn.samples;
             all.fault = all.fault.or(drawn.fault);
-            if drawn.samples == 0 && !crosses {
-                *verdict = Verdict::Dropped;
-            }
+            found[number] = u32::from(drawn.samples > 0 || crosses);
         }
-        self.judge(pass, verdicts);
+        self.objects = found;
         Ok(all)
     }
 
     /// A draw of nothing: stages, attachments and what else the pass says.
     fn prepared<'v>(
         &'v self,
-        pass: &Pass,
-        round: u32,
+        pass: &PlannedPass,
+        values: &Values,
         (vertex, fragment): (&'v Program, &'v Program),
         uniforms: &'v Words,
     ) -> Result<Draw<'v>, Error> {
         let plan = &self.code.plan;
         let settings = self.device.settings;
-        let number = |formula, what| number(plan, &self.device.symbols, formula, round, what);
-        let (mut numbers, mut coverage) = ([1, u32::MAX, 0], Coverage::PerSample);
-        if let Some(samples) = &pass.state.samples {
-            numbers[0] = number(&samples.count, "the samples of a pass")?;
-            numbers[1] = number(&samples.mask, "the sample mask of a pass")?;
-            coverage = samples.coverage;
+        let mut numbers = [1, u32::MAX, 0];
+        if let Some([count, mask]) = &pass.samples {
+            numbers[0] = values.word(count, "the samples of a pass")?;
+            numbers[1] = values.word(mask, "the sample mask of a pass")?;
         }
-        if let Some(stencil) = &pass.state.stencil {
-            numbers[2] = number(&stencil.reference, "the stencil's reference of a pass")?;
+        if let Some(reference) = &pass.reference {
+            numbers[2] = values.word(reference, "the stencil's reference of a pass")?;
         }
+        let coverage = pass.state.samples.as_ref().map_or(Coverage::PerSample, |samples| samples.coverage);
         let textures = |name: &str| {
-            let index = resource(plan, name).ok()?;
+            let index = plan.resource_id(name)?.0;
             Some((self.device.memory.resources[index].as_slice(), plan.resources[index].resource.element))
         };
         let pixels = settings.width as usize * settings.height as usize;

@@ -78,7 +78,8 @@ impl Reader {
     }
 
     /// Reports a formula that cannot be read, or that depends on what it may not.
-    pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[&str]) -> Read<()> {
+    pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
+        let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
         let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
         let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
             // With every symbol at 1 a difference may be below zero: that is no mistake of the text.

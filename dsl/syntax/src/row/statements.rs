@@ -2,8 +2,8 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Takes,
-    Use,
+    Access, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Soundness,
+    Step, Takes, Use, When,
 };
 
 use super::line::Line;
@@ -35,8 +35,10 @@ const ACCESSES: [(&str, Access); 4] =
 const ELEMENTS: [(&str, Element); 3] =
     [("word", Element::Word), ("entry", Element::Entry), ("beside", Element::Beside)];
 
-/// What an extent may depend on.
-const SYMBOLS: [&str; 6] = ["width", "height", "pixels", "k", "fragments", "kept"];
+/// The symbols that a host step may set.
+fn host_symbols() -> impl Iterator<Item = &'static str> {
+    SYMBOLS.iter().filter(|symbol| symbol.set_by == SetBy::Host).map(|symbol| symbol.name)
+}
 
 /// Names inside generated accessors, beside which an index stands.
 const ACCESSOR_NAMES: [&str; 5] = ["at", "key", "value", "entry", "expected"];
@@ -166,7 +168,8 @@ impl Statements {
         self.reader.sign(line, '<', SHAPE)?;
         let length = line.until(&[']']);
         self.reader.sign(line, ']', SHAPE)?;
-        self.reader.formula(&length, &SYMBOLS)?;
+        let symbols = self.symbols();
+        self.reader.formula(&length, &symbols)?;
         Ok(resource.by(&index.value, length.value))
     }
 
@@ -193,24 +196,23 @@ impl Statements {
         Ok(())
     }
 
-    /// `host function: reads offsets[pixels]; sets fragments`
+    /// `host function: reads offsets[pixels], histogram, words[4 for 8]; sets fragments`
     fn host(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`host allocate: reads offsets[pixels]; sets fragments`";
         let function = self.reader.word(line, "the host's function", SHAPE)?;
         self.reader.sign(line, ':', SHAPE)?;
-        let (mut reads, mut sets) = (Vec::new(), Vec::new());
+        let mut host = Host::new(&function.value);
         loop {
             let verb = self.reader.word(line, "`reads` or `sets`", SHAPE)?;
-            let list = match verb.value.as_str() {
-                "reads" => &mut reads,
-                "sets" => &mut sets,
-                other => {
-                    let message = format!("the host cannot `{other}`");
-                    return self.reader.stop(codes::ROW, &verb.origin, message, SHAPE);
-                }
-            };
             loop {
-                list.push(line.until(&[',', ';']));
+                host = match verb.value.as_str() {
+                    "reads" => self.host_read(line, host, SHAPE)?,
+                    "sets" => self.host_set(line, host, SHAPE)?,
+                    other => {
+                        let message = format!("the host cannot `{other}`");
+                        return self.reader.stop(codes::ROW, &verb.origin, message, SHAPE);
+                    }
+                };
                 if !line.sign(',') {
                     break;
                 }
@@ -219,16 +221,40 @@ impl Statements {
                 break;
             }
         }
-        for read in &reads {
-            let name = read.value.split('[').next().unwrap_or("").to_owned();
-            let length = name.chars().count() as u32;
-            self.used.push(Spanned::new(name, read.origin.clone().with_length(length)));
-        }
-        let values = |list: Vec<Spanned<String>>| list.into_iter().map(|word| word.value).collect();
-        let host = Host { function: function.value, reads: values(reads), sets: values(sets) };
         self.own.row.steps.push(Step::Host(host));
         self.own.places.steps.push(function.origin);
         Ok(())
+    }
+
+    /// `name`, all words of a buffer; `name[index]`, one; `name[first for count]`, some.
+    fn host_read(&mut self, line: &mut Line<'_>, host: Host, shape: &str) -> Read<Host> {
+        let name = self.reader.name(line, "a buffer", shape)?;
+        self.used.push(name.clone());
+        if !line.sign('[') {
+            return Ok(host.reads_all(&name.value));
+        }
+        let words = line.until(&[']']);
+        self.reader.sign(line, ']', shape)?;
+        let (first, count) = words.value.split_once(" for ").unwrap_or((&words.value, "1"));
+        let symbols = self.symbols();
+        for formula in [first, count] {
+            self.reader.formula(&Spanned::new(formula.trim().to_owned(), words.origin.clone()), &symbols)?;
+        }
+        Ok(host.reads_some(&name.value, first.trim().to_owned(), count.trim().to_owned()))
+    }
+
+    fn host_set(&mut self, line: &mut Line<'_>, host: Host, shape: &str) -> Read<Host> {
+        let symbol = self.reader.word(line, "a symbol", shape)?;
+        let known: Vec<(&str, &str)> = host_symbols().map(|name| (name, name)).collect();
+        let name = self.reader.one_of(&symbol, &known, "no symbol that a host step sets")?;
+        Ok(host.sets(name))
+    }
+
+    /// What formulas of the row may name: everything that has a value before a pass runs and is not a slice's or an iteration's
+    /// own, and the row's constants so far.
+    fn symbols(&self) -> Vec<String> {
+        let known = SYMBOLS.iter().filter(|symbol| symbol.when != When::Round).map(|symbol| symbol.name.to_owned());
+        known.chain(self.own.row.parameters.iter().map(|parameter| parameter.constant.to_string())).collect()
     }
 
     /// `buffer access, buffer atomic rechecked, …`
@@ -281,7 +307,9 @@ impl Statements {
         let constant = self.reader.name(line, "a generated constant", SHAPE)?;
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
-        self.reader.formula(&default, &["capacity", "entry_words", "beside_words"])?;
+        let generation = SYMBOLS.iter().filter(|symbol| symbol.when == When::Generation);
+        let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
+        self.reader.formula(&default, &generation)?;
         if !line.sign(',') || !line.exactly("from") {
             return self.reader.unexpected(line, "`, from`", SHAPE);
         }

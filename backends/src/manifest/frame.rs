@@ -1,0 +1,201 @@
+//! The frame of a manifest: its steps, which are the commands of the lowered frame, and what passes say.
+//!
+//! In: a plan. Out: one JSON object per command, in order. Loops are their beginnings and ends, by the numbers of steps.
+
+use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, Parity, Plan, PlannedPass, Range, ResourceId};
+use fragbuf_templates::vocabulary::{
+    Access, Blend, Compare, DepthState, Kind, Objects, State, StencilOperation, StencilState,
+};
+use serde_json::{Map, Value, json};
+
+use super::dashed;
+
+/// The steps of a frame.
+pub(super) fn steps(plan: &Plan) -> Value {
+    plan.frame.commands.iter().map(|command| step(plan, command)).collect()
+}
+
+/// Pairs of resources that exchange their roles.
+pub(super) fn exchanges(plan: &Plan) -> Value {
+    plan.frame.exchanges.iter().map(|pair| Value::from(pair.map(|id| name(plan, id)).to_vec())).collect()
+}
+
+fn name(plan: &Plan, id: ResourceId) -> &str {
+    &plan.resources[id.0].resource.name
+}
+
+fn step(plan: &Plan, command: &Command) -> Value {
+    let mut step = match &command.action {
+        Action::Pass(id) => pass_json(&plan.passes[id.0]),
+        Action::Clear { resource, value } => {
+            object(json!({ "do": "clear", "resource": name(plan, *resource), "value": value }))
+        }
+        Action::Copy { from, to } => object(json!({ "do": "copy", "from": name(plan, *from), "to": name(plan, *to) })),
+        Action::Host(decision) => object(host(plan, decision)),
+        Action::Loop(id) => {
+            let looped = &plan.frame.loops[id.0];
+            object(json!({ "do": "loop", "at_most": looped.at_most.to_string(), "end": looped.end }))
+        }
+        Action::LoopEnd(id) => loop_end(plan, *id),
+    };
+    let exchanged: Vec<Value> = plan
+        .frame
+        .exchanges
+        .iter()
+        .zip(&command.parities)
+        .filter_map(|(pair, parity)| {
+            (uses(plan, command, pair) && *parity != Parity::default()).then(|| exchanged(plan, *pair, parity))
+        })
+        .collect();
+    if !exchanged.is_empty() {
+        step.insert("exchanged".into(), exchanged.into());
+    }
+    step.into()
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
+}
+
+fn loop_end(plan: &Plan, id: LoopId) -> Map<String, Value> {
+    let looped = &plan.frame.loops[id.0];
+    let mut map = object(json!({ "do": "loop_end", "begin": looped.begin }));
+    match looped.until {
+        LoopUntil::Times => {}
+        LoopUntil::WordIsZero(word) => drop(map.insert("until".into(), json!({ "zero": name(plan, word) }))),
+        LoopUntil::NoSamples(pass) => {
+            drop(map.insert("until".into(), json!({ "no_samples": plan.passes[pass.0].anchor })));
+        }
+    }
+    map
+}
+
+fn host(plan: &Plan, decision: &Decision) -> Value {
+    let read = |range: &Range| {
+        let (first, count) = (range.first.to_string(), range.count.to_string());
+        json!({ "resource": name(plan, range.resource), "first": first, "count": count })
+    };
+    let reads: Vec<Value> = decision.reads.iter().map(read).collect();
+    let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
+    json!({ "do": "host", "function": decision.name, "reads": reads, "sets": sets })
+}
+
+/// Whether a command uses one of a pair.
+fn uses(plan: &Plan, command: &Command, pair: &[ResourceId; 2]) -> bool {
+    match &command.action {
+        Action::Pass(id) => pair.iter().any(|resource| plan.passes[id.0].touches(name(plan, *resource))),
+        Action::Clear { resource, .. } => pair.contains(resource),
+        Action::Copy { from, to } => pair.contains(from) || pair.contains(to),
+        Action::Host(decision) => decision.reads.iter().any(|range| pair.contains(&range.resource)),
+        Action::Loop(_) => false,
+        Action::LoopEnd(id) => match plan.frame.loops[id.0].until {
+            LoopUntil::WordIsZero(word) => pair.contains(&word),
+            _ => false,
+        },
+    }
+}
+
+/// When two resources stand for each other: where `odd` differs from whether the finished iterations of `loops`, given by
+/// their first steps, are odd in number.
+fn exchanged(plan: &Plan, pair: [ResourceId; 2], parity: &Parity) -> Value {
+    let loops: Vec<usize> = parity.loops.iter().map(|id| plan.frame.loops[id.0].begin).collect();
+    json!({ "resources": pair.map(|id| name(plan, id)), "odd": parity.is_odd, "loops": loops })
+}
+
+fn pass_json(pass: &PlannedPass) -> Map<String, Value> {
+    let uses: Map<String, Value> =
+        pass.uses.iter().map(|usage| (usage.resource.clone(), access(usage.access).into())).collect();
+    let mut map = Map::new();
+    map.insert("do".into(), "pass".into());
+    map.insert("pass".into(), pass.anchor.clone().into());
+    let kind = match &pass.kind {
+        Kind::Geometry => "geometry",
+        Kind::Fullscreen => "fullscreen",
+        Kind::Compute { .. } => "compute",
+    };
+    map.insert("kind".into(), kind.into());
+    if !pass.groups.is_empty() {
+        map.insert("groups".into(), pass.groups.iter().map(|groups| groups.to_string()).collect());
+    }
+    if pass.kind == Kind::Fullscreen {
+        map.insert("vertices".into(), 3.into());
+    }
+    if !pass.constants.is_empty() {
+        let constants = pass.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value)));
+        map.insert("constants".into(), constants.collect::<Map<_, _>>().into());
+    }
+    map.insert("uses".into(), uses.into());
+    map.insert("state".into(), state(&pass.state));
+    match &pass.objects {
+        Objects::All => {}
+        Objects::Boxes => {
+            map.insert("objects".into(), "boxes".into());
+        }
+        Objects::Visible(query) => {
+            map.insert("objects".into(), json!({ "visible_in": query }));
+        }
+    }
+    map
+}
+
+fn access(access: Access) -> &'static str {
+    match access {
+        Access::Read => "read",
+        Access::Plain => "plain",
+        Access::Atomic => "atomic",
+        Access::Coherent => "coherent",
+        Access::Attachment => "attachment",
+        Access::Sampled => "sampled",
+        Access::Indirect => "indirect",
+    }
+}
+
+fn state(state: &State) -> Value {
+    let mut map = Map::new();
+    if let Some(DepthState { resource, compare, write, early }) = &state.depth {
+        let compare = compare_name(*compare);
+        map.insert("depth".into(), json!({ "resource": resource, "compare": compare, "write": write, "early": early }));
+    }
+    if let Some(StencilState { resource, compare, fail, pass, reference }) = &state.stencil {
+        let value = json!({
+            "resource": resource,
+            "compare": compare_name(*compare),
+            "fail": stencil_operation(*fail),
+            "pass": stencil_operation(*pass),
+            "reference": reference.0,
+        });
+        map.insert("stencil".into(), value);
+    }
+    let targets = state.targets.iter().map(|t| json!({ "resource": t.resource, "blend": blend(t.blend) }));
+    map.insert("targets".into(), targets.collect());
+    if let Some(samples) = &state.samples {
+        let coverage = dashed(&format!("{:?}", samples.coverage));
+        let (count, mask) = (&samples.count.0, &samples.mask.0);
+        map.insert("samples".into(), json!({ "count": count, "mask": mask, "coverage": coverage }));
+    }
+    map.into()
+}
+
+fn compare_name(compare: Compare) -> String {
+    dashed(&format!("{compare:?}"))
+}
+
+fn stencil_operation(operation: StencilOperation) -> String {
+    dashed(&format!("{operation:?}"))
+}
+
+/// Blending as factors that every API has: source, destination, operation.
+fn blend(blend: Blend) -> Value {
+    let (source, destination, operation) = match blend {
+        Blend::Replace => ("one", "zero", "add"),
+        Blend::Over => ("one", "one-minus-source-alpha", "add"),
+        Blend::Under => ("one-minus-destination-alpha", "one", "add"),
+        Blend::Max => ("one", "one", "max"),
+        Blend::Min => ("one", "one", "min"),
+        Blend::Add => ("one", "one", "add"),
+    };
+    json!({ "name": dashed(&format!("{blend:?}")), "source": source, "destination": destination, "operation": operation })
+}
