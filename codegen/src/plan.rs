@@ -21,7 +21,7 @@ use fragbuf_templates::vocabulary::{
 };
 
 use crate::frame::{Context, Lowered, lower};
-use crate::{Layout, LoweredFrame, PlanValue, PlannedPass, Quantity, ResourceId, SymbolId, SymbolTable};
+use crate::{Layout, LoweredFrame, PassId, PlanValue, PlannedPass, Quantity, ResourceId, SymbolId, SymbolTable};
 
 /// Bindings before this one are the frame's, the description's uniforms and the camera.
 pub const FIRST_BINDING: u32 = 3;
@@ -274,6 +274,11 @@ impl Plan {
     /// A resource by name.
     pub fn resource(&self, name: &str) -> Option<&Planned> {
         self.resources.iter().find(|planned| planned.resource.name == name)
+    }
+
+    /// The first pass of an anchor: queries are known by it, however often they are asked.
+    pub fn pass_id(&self, anchor: &str) -> Option<PassId> {
+        self.passes.iter().position(|pass| pass.anchor == anchor).map(PassId)
     }
 
     /// The handle of a resource, for what comes from outside.

@@ -70,7 +70,7 @@ fn only_resources_of_one_shape_take_each_others_place() {
     };
     for (a, b) in [("words", "texels"), ("texels", "pairs")] {
         let seen = refused(rows(Step::Swap(a.to_owned(), b.to_owned())), &[]);
-        assert!(seen.contains(&format!("`{a}` in the place of `{b}`, which has another shape")), "{seen}");
+        assert!(seen.contains(&format!("`{a}` takes the place of `{b}`, which has another shape")), "{seen}");
         let seen = refused(rows(Step::Copy { from: a.to_owned(), to: b.to_owned() }), &[]);
         assert!(seen.contains("another shape"), "{seen}");
     }
@@ -101,7 +101,7 @@ fn loops_and_objects_ask_passes_that_there_are() {
         storage(vec![words], vec![Step::Repeat(Repeat { body, until, at_most: "2".into() })])
     };
     let seen = refused(rows(Until::NoSamples("nobody".to_owned())), &[]);
-    assert!(seen.contains("the samples of `nobody`, which is no pass"), "{seen}");
+    assert!(seen.contains("the samples of `nobody`, which is no pass of its body"), "{seen}");
     let seen = refused(rows(Until::Zero("nobody".to_owned())), &[]);
     assert!(seen.contains("`nobody`, which the plan does not have"), "{seen}");
 }

@@ -31,7 +31,7 @@ pub fn sampled(name: &str, format: TextureFormat) -> Resource {
 pub fn code(storage: Row, skeletons: &[(&str, &str)], keep: Option<u32>) -> Result<Arc<Code>, Error> {
     let texts: Vec<(&str, String)> = skeletons.iter().map(|(key, text)| (*key, (*text).to_owned())).collect();
     let (variant, first) = checked(&storage, &texts, keep);
-    let plan = plan(&variant, &Selection::first(&variant), &first).unwrap_or_else(|faults| panic!("{faults}"));
+    let plan = plan(&variant, &Selection::first(&variant), &first)?;
     let bound = |text: &str| {
         plan.resources.iter().fold(text.to_owned(), |text, planned| {
             let name = format!("binding({})", planned.resource.name);

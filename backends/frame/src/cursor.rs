@@ -6,9 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use fragbuf_codegen::{
-    Action, Command, Decision, LoopId, LoopUntil, PassId, Plan, PlannedPass, Quantity, ResourceId, SymbolId,
-};
+use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, PassId, Plan, Quantity, ResourceId, SymbolId};
 use fragbuf_templates::vocabulary::{HostCall, Objects};
 
 use crate::{Counting, Error, LoopEnd, Looped, Values};
@@ -157,7 +155,7 @@ impl Cursor {
         match self.waits_for.take() {
             None => {}
             Some(WaitsFor::Objects(pass)) => {
-                let dropped = self.dropped.entry(pass).or_default();
+                let dropped = self.dropped.entry(query(plan, pass)).or_default();
                 dropped.resize(dropped.len().max(words.len()), false);
                 dropped.iter_mut().zip(words).for_each(|(dropped, word)| *dropped |= *word == 0);
             }
@@ -181,8 +179,8 @@ impl Cursor {
     }
 
     /// Whether the query `pass` has dropped an object in this frame: what is peeled away does not come back.
-    pub fn is_dropped(&self, pass: PassId, object: usize) -> bool {
-        self.dropped.get(&pass).and_then(|dropped| dropped.get(object)).copied().unwrap_or(false)
+    pub fn is_dropped(&self, plan: &Plan, pass: PassId, object: usize) -> bool {
+        self.dropped.get(&query(plan, pass)).and_then(|dropped| dropped.get(object)).copied().unwrap_or(false)
     }
 
     /// How the loops have ended so far whose ends are found out while a frame runs.
@@ -311,6 +309,11 @@ impl Cursor {
     }
 }
 
+/// The pass that stands for a query, which may be asked in several places of a frame.
+fn query(plan: &Plan, pass: PassId) -> PassId {
+    plan.pass_id(&plan.passes[pass.0].anchor).unwrap_or(pass)
+}
+
 fn spans(plan: &Plan, values: &Values, decision: &Decision, flipped: u32) -> Result<Vec<Span>, Error> {
     let span = |range: &fragbuf_codegen::Range| {
         let what = format!("the words that the host function `{}` reads", decision.name);
@@ -376,9 +379,4 @@ pub fn most_iterations(plan: &Plan) -> Result<u32, Error> {
     let values = Values::of_code(plan);
     let bounds = plan.frame.loops.iter().map(|looped| values.word(&looped.at_most, "the iterations of a loop"));
     bounds.into_iter().try_fold(1, |most, bound| Ok(most.max(bound?)))
-}
-
-/// The pass that a run is of.
-pub fn pass_of(plan: &Plan, run: Run) -> &PlannedPass {
-    &plan.passes[run.pass.0]
 }

@@ -13,7 +13,7 @@ mod uniforms;
 mod values;
 
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTLY_COVERED, POOL_EXHAUSTED};
-pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations, pass_of};
+pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations};
 pub use error::Error;
 pub use looped::{LoopEnd, Looped};
 pub use pass_time::PassTime;

@@ -228,7 +228,7 @@ impl Frame {
         let Some(objects) = &renderer.objects else { return };
         for object in 0..objects.boxes().len() as u32 {
             pass.begin_occlusion_query(object);
-            if !self.at.cursor.is_dropped(query, object as usize) {
+            if !self.at.cursor.is_dropped(renderer.plan(), query, object as usize) {
                 objects.draw(pass, object);
             }
             pass.end_occlusion_query();
@@ -238,8 +238,9 @@ impl Frame {
     /// The objects that a query has not dropped; `None`: the scene is one object.
     fn visible(&self, renderer: &Renderer, query: &str) -> Option<Vec<u32>> {
         let count = renderer.objects.as_ref()?.boxes().len() as u32;
-        let query = PassId(renderer.plan().passes.iter().position(|pass| pass.anchor == query)?);
-        Some((0..count).filter(|object| !self.at.cursor.is_dropped(query, *object as usize)).collect())
+        let plan = renderer.plan();
+        let query = plan.pass_id(query)?;
+        Some((0..count).filter(|object| !self.at.cursor.is_dropped(plan, query, *object as usize)).collect())
     }
 }
 

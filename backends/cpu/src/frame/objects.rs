@@ -6,7 +6,6 @@
 
 use std::ops::Range;
 
-use fragbuf_codegen::PassId;
 use fragbuf_frame::unsupported;
 
 use super::Frame;
@@ -25,10 +24,11 @@ pub(super) const FACES: [u32; 36] =
 impl Frame<'_> {
     /// The objects that the query `anchor` has not dropped.
     pub(super) fn objects(&self, anchor: &str) -> Result<Vec<Range<u32>>, Error> {
-        let query = self.code.plan.passes.iter().position(|pass| pass.anchor == anchor).map(PassId);
+        let plan = &self.code.plan;
+        let query = plan.pass_id(anchor);
         let query = query.ok_or_else(|| unsupported(format!("the query of `{anchor}`, which is no pass")))?;
         let all = self.mesh_objects().into_iter().enumerate();
-        Ok(all.filter(|(number, _)| !self.cursor.is_dropped(query, *number)).map(|(_, object)| object).collect())
+        Ok(all.filter(|(number, _)| !self.cursor.is_dropped(plan, query, *number)).map(|(_, object)| object).collect())
     }
 
     /// All objects; a mesh that names none is one.

@@ -93,7 +93,7 @@ impl Frame<'_> {
         let stride = vertices::stride(stages.0);
         for (number, object) in self.mesh_objects().iter().enumerate() {
             found.push(1);
-            let is_asked = !self.cursor.is_dropped(query, number);
+            let is_asked = !self.cursor.is_dropped(&self.code.plan, query, number);
             let Some(corners) = self.corners(object, stride).filter(|_| is_asked) else { continue };
             let placed = vertices::run((stages.0, &prepared.vertex.1), &corners.vertices, 8, 0);
             let placed = placed.map_err(|what| refused(pass, what))?;
