@@ -25,6 +25,7 @@ mod failures;
 mod invariance;
 mod larger;
 mod losses;
+mod lowered;
 mod merging;
 mod multisample;
 mod occupancy;
