@@ -31,6 +31,7 @@ mod occupancy;
 mod opaque;
 mod opaque_depth;
 mod overflow;
+mod own_storage;
 mod rasterisation;
 mod routing;
 mod sizing;
