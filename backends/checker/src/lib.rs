@@ -10,8 +10,8 @@
 //! as right is what the variant states: the k best, ties, order, losses counted exactly, room for what is stored, the bound
 //! of an early cull never too low, nobody waiting for ever, no data race. What is not right, but no worse than the hazards
 //! of the rows allow ([`Effect`](fragbuf_templates::vocabulary::Effect)), fails as stated. Memory behaves as one of two
-//! models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. Nothing here knows a
-//! technique by name.
+//! models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. [`ReadOut`] reads what a
+//! pixel holds from the words that any device left. Nothing here knows a technique by name.
 //!
 //! ```
 //! use fragbuf_backends::TARGETS;

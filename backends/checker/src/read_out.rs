@@ -3,24 +3,6 @@
 //! In: a plan, and the words of its resources after a frame, whatever device drew it. Out: the fragments of a pixel, each as
 //! its words in memory, the key first, in the order in which the storage gives them. The functions are linked into a compute
 //! pass and run by the interpreter, so no layout of any storage is stated here, and a user's storage is read like ours.
-//!
-//! ```
-//! use fragbuf_checker::{FrameMemory, ReadOut};
-//! use fragbuf_codegen::{Profile, plan};
-//! use fragbuf_model::{Draft, Origin, Selection, check};
-//! use fragbuf_templates::Registry;
-//!
-//! let registry = Registry::builtin();
-//! let draft = Draft::from_technique("kb", &Origin::new("mine", 1, 1));
-//! let variant = check(&draft, &registry).expect("a legal description");
-//! let plan = plan(&variant, &Selection::first(&variant), &registry).expect("a plan");
-//! let read_out = ReadOut::new(&plan, Profile::Native, &registry).expect("programs");
-//!
-//! // A frame of one pixel and k = 2 of which nothing is drawn: every word is all ones, as a device clears this storage.
-//! let symbol = |name: &str| Some(if name == "k" { 2 } else { 1 });
-//! let mut frame = FrameMemory::new(&plan, [1, 1], symbol, |_| Some(vec![u32::MAX; 4]));
-//! assert_eq!(read_out.pixel(&mut frame, [0, 0]), Ok(Vec::new()));
-//! ```
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -41,7 +23,25 @@ use crate::subject::{MARKERS, Subject, refused};
 const READ_OUT: &str = "read_out";
 const READ_BOUND: &str = "read_bound";
 
-/// The functions that read a pixel out, ready to run.
+/// The functions that read a pixel out, ready to run. They belong to one plan, and to frames drawn with it.
+///
+/// ```
+/// use fragbuf_checker::{FrameMemory, ReadOut};
+/// use fragbuf_codegen::{Profile, plan};
+/// use fragbuf_model::{Draft, Origin, Selection, check};
+/// use fragbuf_templates::Registry;
+///
+/// let registry = Registry::builtin();
+/// let draft = Draft::from_technique("kb", &Origin::new("mine", 1, 1));
+/// let variant = check(&draft, &registry).expect("a legal description");
+/// let plan = plan(&variant, &Selection::first(&variant), &registry).expect("a plan");
+/// let read_out = ReadOut::new(&plan, Profile::Native, &registry).expect("programs");
+///
+/// // A frame of one pixel and k = 2 of which nothing is drawn: this storage's empty slots are all ones.
+/// let symbol = |name: &str| [("width", 1), ("height", 1), ("k", 2)].into_iter().find(|one| one.0 == name).map(|one| one.1);
+/// let mut frame = FrameMemory::new(&plan, [1, 1], symbol, |_| Some(vec![u32::MAX; 4]));
+/// assert_eq!(read_out.pixel(&mut frame, [0, 0]), Ok(Vec::new()));
+/// ```
 #[derive(Debug)]
 pub struct ReadOut {
     /// From a position in the frame to the pixel's index.
