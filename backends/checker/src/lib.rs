@@ -31,6 +31,7 @@ mod case;
 mod explore;
 mod fragments;
 mod frame;
+mod frame_memory;
 mod merging;
 mod model;
 mod pausing;
@@ -51,8 +52,9 @@ mod turns;
 mod verdict;
 mod walk;
 
+pub use frame_memory::{FrameMemory, ReadOutError};
 pub use model::Model;
-pub use read_out::{FrameMemory, ReadOut, ReadOutError};
+pub use read_out::ReadOut;
 pub use report::{Line, Schedule};
 pub use shader::{Shader, check_shader};
 pub use verdict::{Error, Limits, Report, check_variant};

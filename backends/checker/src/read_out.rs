@@ -5,7 +5,6 @@
 //! pass and run by the interpreter, so no layout of any storage is stated here, and a user's storage is read like ours.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use fragbuf_backends::{Checked, check};
 use fragbuf_codegen::{FIRST_BINDING, Form, Linking, Plan, Profile, link};
@@ -15,6 +14,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Element, Fact, Step, TextureFormat};
 
 use crate::frame::{Memory, with_buffers};
+use crate::frame_memory::{FrameMemory, ReadOutError};
 use crate::question::{question, row};
 use crate::sampled::{Reader, Sampled, is_read};
 use crate::subject::{MARKERS, Subject, refused};
@@ -54,52 +54,6 @@ pub struct ReadOut {
     pub(crate) bound: Option<Program>,
     /// The formats of textures, by the plan's resources.
     formats: Vec<Option<TextureFormat>>,
-}
-
-/// Memory after a frame: what the storage's functions read.
-#[derive(Clone, Debug)]
-pub struct FrameMemory {
-    size: [u32; 2],
-    memory: Memory,
-}
-
-/// Why a pixel cannot be read out: the storage, or the words, are wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReadOutError {
-    /// The walk over the pixel comes back to a fragment that it has passed, or one call of it does not end.
-    Endless,
-    /// A buffer has no such word, or a texture no such texel.
-    OutOfBounds,
-}
-
-impl fmt::Display for ReadOutError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ReadOutError::Endless => "reading the pixel out never ends",
-            ReadOutError::OutOfBounds => "an index is out of bounds",
-        })
-    }
-}
-
-impl std::error::Error for ReadOutError {}
-
-impl FrameMemory {
-    /// The memory of a frame of `size` columns and rows. `symbol` gives the fields of the frame's uniform buffer (a field
-    /// without a value is 0, as `first_row` and `iteration` are); `words` gives the words of a resource, none for what the
-    /// frame has not allocated. The words of a texture follow each other texel by texel, row by row from the top, sample by
-    /// sample; of depth with stencil the lowest eight bits are the stencil. Buffers are those of one slice.
-    pub fn new(
-        plan: &Plan,
-        size: [u32; 2],
-        symbol: impl Fn(&str) -> Option<u64>,
-        words: impl Fn(&str) -> Option<Vec<u32>>,
-    ) -> Self {
-        let field = |name: &String| u32::try_from(symbol(name).unwrap_or(0)).unwrap_or(u32::MAX);
-        let mut memory = vec![Vec::new(); FIRST_BINDING as usize];
-        memory[0] = plan.frame.iter().map(field).collect();
-        memory.extend(plan.resources.iter().map(|planned| words(&planned.resource.name).unwrap_or_default()));
-        FrameMemory { size, memory }
-    }
 }
 
 impl ReadOut {
