@@ -17,9 +17,6 @@ pub(crate) type Memory = Vec<Vec<u32>>;
 /// Pixels of the frame, which is one row: the one under test, and a neighbour that must stay as it is.
 pub(crate) const WIDTH: u32 = 2;
 
-/// Fragments that a walk over a pixel reads before it is said to have no end.
-const LONGEST: usize = 256;
-
 /// What memory holds before anybody has written to it: neither zero nor a sentinel, a better key than any, and, as key and as
 /// what stands beside it, an entry whose checksum is right.
 pub(crate) const STALE: u32 = 20;
@@ -91,7 +88,10 @@ impl<'s> Frame<'s> {
             let mut ahead = self.cursor.clone();
             let turn = ahead.next(&self.subject.plan, &self.values).map_err(|error| error.to_string())?;
             match turn {
-                None => return Ok(false),
+                None => {
+                    self.arrange(ahead.flipped(&self.subject.plan));
+                    return Ok(false);
+                }
                 Some(Turn::Pass(run)) if until.is_of(run) => {
                     self.samples[run.pass.0] = 0;
                     self.arrange(run.flipped);
@@ -235,32 +235,8 @@ impl<'s> Frame<'s> {
 
     /// What a pixel holds, in the storage's own order. `Err`: its list has no end, or reads out of bounds.
     pub(crate) fn read_out(&mut self, pixel: u32) -> Result<Vec<Vec<u32>>, String> {
-        let subject = self.subject;
-        let mut entries = Vec::new();
-        loop {
-            // A walk may count what it passes over: only that of the last, which goes through to the end, is kept.
-            let before = self.memory.clone();
-            let cursor = self.ask(&subject.walk, &[pixel, entries.len() as u32])?[0];
-            if cursor == u32::MAX {
-                return Ok(entries);
-            }
-            if entries.len() == LONGEST {
-                return Err("reading the pixel out never ends".to_owned());
-            }
-            self.memory = before;
-            entries.push(self.ask(&subject.read, &[pixel, cursor])?);
-        }
-    }
-
-    fn ask(&mut self, program: &Program, arguments: &[u32]) -> Result<Vec<u32>, String> {
-        let mut machine = Machine::new(program);
-        for (number, word) in arguments.iter().enumerate() {
-            machine.set_input(number, &[*word]);
-        }
-        match run_alone(&mut machine, &mut self.memory)? {
-            Exit::Ended => Ok(machine.result().to_vec()),
-            _ => Err("reading the pixel out never ends".to_owned()),
-        }
+        let read_out = &self.subject.read_out;
+        read_out.entries(&mut self.memory, [WIDTH, 1], pixel).map_err(|error| error.to_string())
     }
 }
 
@@ -277,7 +253,7 @@ pub(crate) fn run_alone(machine: &mut Machine<'_>, memory: &mut Memory) -> Resul
 }
 
 /// Lends a program its buffers, in its own order.
-fn with_buffers<T>(program: &Program, memory: &mut Memory, work: impl FnOnce(&mut [Vec<u32>]) -> T) -> T {
+pub(crate) fn with_buffers<T>(program: &Program, memory: &mut Memory, work: impl FnOnce(&mut [Vec<u32>]) -> T) -> T {
     let home = |binding| Subject::memory_of(binding);
     let mut buffers: Vec<Vec<u32>> = program
         .buffers

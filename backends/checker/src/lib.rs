@@ -10,8 +10,8 @@
 //! as right is what the variant states: the k best, ties, order, losses counted exactly, room for what is stored, the bound
 //! of an early cull never too low, nobody waiting for ever, no data race. What is not right, but no worse than the hazards
 //! of the rows allow ([`Effect`](fragbuf_templates::vocabulary::Effect)), fails as stated. Memory behaves as one of two
-//! models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. Nothing here knows a
-//! technique by name.
+//! models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. [`ReadOut`] reads what a
+//! pixel holds from the words that any device left. Nothing here knows a technique by name.
 //!
 //! ```
 //! use fragbuf_backends::TARGETS;
@@ -31,13 +31,17 @@ mod case;
 mod explore;
 mod fragments;
 mod frame;
+mod frame_memory;
 mod merging;
 mod model;
 mod pausing;
 mod policy;
 mod promise;
+mod question;
+mod read_out;
 mod report;
 mod room;
+mod sampled;
 mod shader;
 mod state;
 mod stream;
@@ -47,7 +51,9 @@ mod trial;
 mod verdict;
 mod walk;
 
+pub use frame_memory::{FrameMemory, ReadOutError};
 pub use model::Model;
+pub use read_out::ReadOut;
 pub use report::{Line, Schedule};
 pub use shader::{Shader, check_shader};
 pub use verdict::{Error, Limits, Report, check_variant};

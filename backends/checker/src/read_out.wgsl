@@ -2,8 +2,9 @@
 
 @compute @workgroup_size(1)
 fn read_out() {
-    let cursor = walk_to(0u, 0u);
-    let entry = storage_read(0u, cursor);
+    let pixel = pixel_index(vec2<f32>(0.5));
+    let cursor = walk_to(pixel, 0u);
+    let entry = storage_read(pixel, cursor);
 }
 
 /// The cursor after `number` fragments of the pixel, or END.

@@ -11,8 +11,10 @@ use fragbuf_frame::Run;
 use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Template, Use};
+use fragbuf_templates::vocabulary::{Fact, Kind, Soundness};
 
+use crate::question::{question, row};
+use crate::read_out::ReadOut;
 use crate::stream::StreamPrograms;
 
 /// `templates/shared/markers.wgsl`.
@@ -23,9 +25,7 @@ pub(crate) const MARKERS: [(&str, Marker); 4] = [
     ("critical_end", Marker::CriticalEnd),
 ];
 
-/// Names of the passes that are added to a plan to ask questions.
-const READ_OUT: &str = "read_out";
-const READ_BOUND: &str = "read_bound";
+/// The name of the pass that is added to a plan whose storage hands fragments on.
 const READ_STREAM: &str = "read_stream";
 
 /// From a fragment to the words that are stored.
@@ -45,9 +45,8 @@ pub(crate) enum Tries {
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
     pub(crate) passes: Vec<Runnable>,
-    /// The cursor after so many fragments of a pixel.
-    pub(crate) walk: Program,
-    pub(crate) read: Program,
+    /// What a pixel holds.
+    pub(crate) read_out: ReadOut,
     /// The bound of the storage, where a cull rests on it.
     pub(crate) bound: Option<Program>,
     /// What has left, where the storage hands fragments on.
@@ -112,19 +111,14 @@ impl Subject {
         if tries == Tries::Least && !make_least(&mut selection) {
             return Ok(None);
         }
-        let registry = registry
-            .clone()
-            .with(row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
-            .with(row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"))
-            .with(row(READ_STREAM, include_str!("read_stream.wgsl"), "checker/read_stream.wgsl"));
+        let stream_row = row(READ_STREAM, include_str!("read_stream.wgsl"), "checker/read_stream.wgsl");
+        let registry = registry.clone().with(stream_row);
         let plan = plan(variant, &selection, &registry)?;
         let wants_bound = selection.rows.iter().any(|row| row.row.requires.contains(&Fact::BoundAnyInstant));
         let streams = selection.offers().contains(&Fact::Streams);
         let mut asking = plan.clone();
-        for (anchor, is_asked) in [(READ_OUT, true), (READ_BOUND, wants_bound), (READ_STREAM, streams)] {
-            if is_asked {
-                asking.passes.push(question(&plan, anchor));
-            }
+        if streams {
+            asking.passes.push(question(&plan, READ_STREAM));
         }
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let origin = &variant.name.origin;
@@ -134,7 +128,7 @@ impl Subject {
             let pass = &asking.passes[number];
             let checked = check(text, target.profile, origin)?;
             match pass.anchor.as_str() {
-                READ_OUT | READ_BOUND | READ_STREAM => asked.push(checked),
+                READ_STREAM => asked.push(checked),
                 _ if pass.kind == Kind::Fullscreen => {}
                 _ => {
                     for iteration in iterations(&plan, PassId(number)) {
@@ -147,24 +141,22 @@ impl Subject {
             }
         }
         passes.sort_by_key(|runnable| order(&plan, runnable));
-        let ask = |anchor: &str, name: &str| {
-            let checked = asked.iter().find(|checked| checked.pass().anchor == anchor);
-            let checked: &Checked = checked.unwrap_or(&asked[0]);
+        let ask = |checked: &Checked, name: &str| {
             Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
                 .map_err(|faults| refused(checked, &faults, origin))
         };
-        let stream = match streams {
-            true => Some(StreamPrograms {
-                streamed: ask(READ_STREAM, "storage_streamed")?,
-                composite: ask(READ_STREAM, "stream_composite")?,
+        let read_out = ReadOut::new(&plan, target.profile, &registry)?;
+        let stream = match asked.first() {
+            Some(checked) => Some(StreamPrograms {
+                streamed: ask(checked, "storage_streamed")?,
+                composite: ask(checked, "stream_composite")?,
             }),
-            false => None,
+            None => None,
         };
         Ok(Some(Subject {
             passes,
-            walk: ask(READ_OUT, "walk_to")?,
-            read: ask(READ_OUT, "storage_read")?,
-            bound: if wants_bound { Some(ask(READ_BOUND, "storage_bound")?) } else { None },
+            bound: read_out.bound.clone().filter(|_| wants_bound),
+            read_out,
             stream,
             has_fences: target.offers.contains(&Fact::Fences),
             has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
@@ -245,40 +237,6 @@ fn make_least(selection: &mut Selection) -> bool {
     found
 }
 
-fn row(key: &str, text: &'static str, path: &'static str) -> Row {
-    Row {
-        template: Some(Template::new(path, text)),
-        calls: vec!["addressing", "storage"],
-        ..Row::new("pass", key, "what the checker asks", "")
-    }
-}
-
-/// A pass that reads everything that the plan's passes touch, with their roles.
-fn question(plan: &Plan, anchor: &str) -> PlannedPass {
-    let mut pass = Pass::compute(anchor, anchor, "1", "1");
-    let mut passes: Vec<&PlannedPass> = plan.passes.iter().collect();
-    // What reads a pixel out in the frame itself may count: its resources are touched as there.
-    if let Some(resolve) = passes.iter().rposition(|pass| pass.kind == Kind::Fullscreen) {
-        let resolve = passes.remove(resolve);
-        let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic);
-        pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();
-    }
-    for other in passes {
-        for role in &other.roles {
-            if !pass.roles.iter().any(|known| known.contract == role.contract) {
-                pass.roles.push(role.clone());
-            }
-        }
-        for usage in &other.uses {
-            let in_shader = matches!(usage.access, Access::Read | Access::Plain | Access::Atomic | Access::Coherent);
-            if in_shader && !pass.uses.iter().any(|known| known.resource == usage.resource) {
-                pass.uses.push(Use::new(&usage.resource, Access::Read));
-            }
-        }
-    }
-    PlannedPass { pass, groups: Vec::new(), reference: None, samples: None }
-}
-
 fn runnable(plan: &Plan, (pass, id): (&PlannedPass, PassId), checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
     let (module, info) = (checked.module(), checked.info());
     let options = Options { markers: &MARKERS };
@@ -311,7 +269,7 @@ fn with_brought(program: Program, plan: &Plan) -> Result<Program, Vec<Unsupporte
     if program.textures.iter().all(is_brought) { Ok(program) } else { program.without_textures() }
 }
 
-fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {
+pub(crate) fn refused(checked: &Checked, faults: &[Unsupported], origin: &fragbuf_model::Origin) -> Diagnostics {
     let mut diagnostics = Diagnostics::new();
     for fault in faults {
         let line = fault.span.location(&checked.pass().text).line_number;

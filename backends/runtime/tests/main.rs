@@ -32,6 +32,7 @@ mod occupancy;
 mod opaque;
 mod opaque_depth;
 mod overflow;
+mod own_storage;
 mod rasterisation;
 mod routing;
 mod sizing;

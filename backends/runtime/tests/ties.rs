@@ -1,5 +1,7 @@
 //! Which of fragments with equal depths stay, where the description names the attribute that decides.
 
+use fragbuf_templates::vocabulary::Fact;
+
 use crate::order::orders;
 use crate::quads::Quad;
 use crate::stage::{described, device, renderer, see, settings, shaders};
@@ -19,9 +21,10 @@ fn the_attribute_that_is_named_decides() {
         let stage = device();
         let variant = described(&BY_ID.replace("STORAGE", storage));
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
+        let keeps_all = renderer.plan().selection.offers().contains(&Fact::KeepsAll);
         for quads in orders(&quads) {
             let seen = see(&stage, &mut renderer, &quads);
-            if storage == "kb_ab_ll" {
+            if keeps_all {
                 // It keeps all and chooses when it resolves: the two shown are opaque, so the first covers.
                 assert!((seen.pixels[0][0] - 200.0 / 255.0).abs() < 1.0 / 255.0, "{:?}", seen.pixels[0]);
                 continue;
