@@ -106,6 +106,12 @@ impl<'s> Frame<'s> {
         }
     }
 
+    /// The k that a host step has decided, where the plan has one that does.
+    pub(crate) fn decided_k(&self) -> Option<u32> {
+        let decides = self.subject.plan.frame.decisions().any(|decision| decision.sets.contains(&SymbolId::K));
+        self.values.k().filter(|_| decides)
+    }
+
     /// Goes past the pass that the frame stands before, in which so many samples more have passed.
     pub(crate) fn pass_by(&mut self, samples: u32) -> Result<(), String> {
         let turn = self.cursor.next(&self.subject.plan, &self.values).map_err(|error| error.to_string())?;

@@ -102,7 +102,9 @@ fn enough(subject: &Subject, k: Option<u32>, sizing: Sizing) -> Result<Room, Str
 fn counted(subject: &Subject, asking: &Asking<'_>, is_behind: bool) -> Result<Vec<Room>, String> {
     let room = enough(subject, asking.k, Sizing::Exact)?;
     let mut rooms = vec![room.clone()];
-    if !is_behind {
+    // Where the host decides k too, what is too little for the fragments that it keeps is known only then.
+    let sets_k = subject.plan.frame.decisions().any(|decision| decision.sets.contains(&SymbolId::K));
+    if !is_behind || sets_k {
         return Ok(rooms);
     }
     let (total, k) = (asking.total(), asking.k.unwrap_or(u32::MAX));

@@ -4,6 +4,7 @@
 //! after the remaining steps of the frame have been done. Where a loop brings the frame back to the pass under test, every
 //! end of one round is the beginning of a search of the next.
 
+use std::borrow::Cow;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
@@ -53,8 +54,8 @@ pub(crate) struct Trial<'s> {
     /// Comes to every pass, and lies behind something opaque in the pixel under test; `None`: nothing asks for that.
     hidden: Option<Fragment>,
     policy: Policy,
-    /// What the host must make room for, where the rows say that a pass counts it.
-    wanted: Option<u64>,
+    /// Fragments of the pixel that a pass counts, where the rows say that one does.
+    counted: Option<usize>,
 }
 
 /// One beginning of the pass under test.
@@ -82,8 +83,7 @@ impl<'s> Trial<'s> {
     pub(crate) fn new(subject: &'s Subject, case: Case, neighbour: &Fragment, search: &Search) -> Result<Self, String> {
         let real = case.new.len() - usize::from(case.has_helper);
         let counted = case.prior.len() + real - usize::from(case.room.has_unseen);
-        let wanted = case.k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1;
-        let wanted = subject.plan.selection.offers().contains(&Fact::Counted).then_some(wanted);
+        let counted = subject.plan.selection.offers().contains(&Fact::Counted).then_some(counted);
         let fragments = case.prior.iter().chain(&case.new[..real]).map(|fragment| fragment.words.clone()).collect();
         let policy = Policy {
             promise: Promise::new(subject, case.k),
@@ -105,7 +105,7 @@ impl<'s> Trial<'s> {
             frame.set_opaque(case.pixel, depth);
         }
         let (neighbour, hidden) = (neighbour.clone(), hidden.map(|(_, behind)| behind));
-        let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour, hidden, policy, wanted };
+        let mut trial = Trial { subject, case, rounds: Vec::new(), neighbour, hidden, policy, counted };
         let seen = trial.case.new.len() - usize::from(trial.case.room.has_unseen || trial.case.has_helper);
         if !frame.advance(trial.runnable(), &|runnable| trial.inputs(runnable, &trial.case.new[..seen]))? {
             return Err(format!("the frame never comes to the pass `{}`", trial.runnable().pass.anchor));
@@ -116,6 +116,25 @@ impl<'s> Trial<'s> {
 
     fn runnable(&self) -> &'s Runnable {
         &self.subject.passes[self.case.pass]
+    }
+
+    /// What is promised in a frame, whose k a host step may have decided.
+    fn policy_in(&self, frame: &Frame<'_>) -> Cow<'_, Policy> {
+        match frame.decided_k() {
+            None => Cow::Borrowed(&self.policy),
+            Some(k) => Cow::Owned(Policy {
+                promise: Promise::new(self.subject, Some(k)),
+                handed: self.subject.is_handed_the_best().then_some(k as usize),
+                ..self.policy.clone()
+            }),
+        }
+    }
+
+    /// What the host must allocate in a frame, where the rows say that a pass counts it: the pixel's fragments and the
+    /// neighbour's.
+    fn wanted_in(&self, frame: &Frame<'_>) -> Option<u64> {
+        let k = frame.decided_k().or(self.case.k);
+        self.counted.map(|counted| k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1)
     }
 
     /// The inputs of the neighbour, of what something opaque hides, of what was there before, and of `new`.
@@ -276,7 +295,8 @@ impl<'s> EndJudge<'_, 's> {
             self.goes_on.insert(words.to_vec(), frame);
             return Ok(End::GoesOn);
         }
-        if let (Some(asked), Some(wanted)) = (frame.asked, trial.wanted)
+        let policy = trial.policy_in(&frame);
+        if let (Some(asked), Some(wanted)) = (frame.asked, trial.wanted_in(&frame))
             && asked != wanted
         {
             return Ok(End::Wrong(format!("room is made for {asked} fragments, and {wanted} are stored")));
@@ -290,7 +310,7 @@ impl<'s> EndJudge<'_, 's> {
         let plan = &frame.subject.plan;
         let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);
         let counters = counters.map_or(&[][..], |at| &frame.memory[FIRST_BINDING as usize + at]);
-        Ok(match trial.policy.finding(&kept, counters) {
+        Ok(match policy.finding(&kept, counters) {
             Finding::Right => self.streamed(&frame, counters)?.map_or(End::Right, End::Wrong),
             Finding::Stated(text) => End::Stated(text),
             Finding::Wrong(text) => End::Wrong(text),
@@ -342,7 +362,7 @@ impl Judge for EndJudge<'_, '_> {
             Ok(Exit::Ended) => {}
             _ => return Some("the bound cannot be read".to_owned()),
         }
-        let (found, least) = (machine.result()[0], self.trial.policy.least_bound());
+        let (found, least) = (machine.result()[0], self.trial.policy_in(&self.frame).least_bound());
         (found < least).then(|| {
             format!("storage_bound is {found:08x}, and the key {least:08x} of a fragment that must stay exceeds it")
         })

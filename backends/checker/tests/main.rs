@@ -11,6 +11,7 @@
 mod compiles;
 mod hazards;
 mod litmus;
+mod lowered;
 mod mutants;
 mod mutation;
 mod occupancy;
