@@ -2,7 +2,7 @@
 
 use fragbuf_cpu::{Error, Mesh, Order};
 use fragbuf_templates::vocabulary::{
-    Access, Blend, Element, Objects, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
+    Access, Blend, Element, Host, Objects, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
 };
 
 use crate::stage::{code, device, picture, storage, texture};
@@ -104,4 +104,44 @@ fn loops_and_objects_ask_passes_that_there_are() {
     assert!(seen.contains("the samples of `nobody`, which is no pass of its body"), "{seen}");
     let seen = refused(rows(Until::Zero("nobody".to_owned())), &[]);
     assert!(seen.contains("`nobody`, which the plan does not have"), "{seen}");
+}
+
+#[test]
+fn what_a_frame_cannot_say_is_named() {
+    let words = |name: &str| Resource::new(name, Element::Word, "").by("pixel", "pixels");
+    let rows = |steps: Vec<Step>| {
+        let resources = vec![words("a"), words("b"), words("c"), texture("texels", TextureFormat::R32Uint)];
+        storage(resources, steps)
+    };
+    let swap = |a: &str, b: &str| Step::Swap(a.to_owned(), b.to_owned());
+    let until = Until::Zero("texels".to_owned());
+    let nothing = Step::Clear { resource: "a".to_owned(), value: 0 };
+    let cases = [
+        (vec![swap("a", "b"), swap("b", "c")], "are exchanged, and one of them with another too"),
+        (vec![swap("a", "a")], "are exchanged, and one of them with another too"),
+        (vec![Step::Clear { resource: "nobody".to_owned(), value: 0 }], "a step names `nobody`"),
+        (vec![Step::Host(Host::new("meditate"))], "the host function `meditate`, which does not exist"),
+        (vec![Step::Host(Host::new("allocate").sets("width"))], "sets `width`, which a host does not set"),
+        (vec![Step::Host(Host::new("allocate").reads_all("texels"))], "a step reads `texels`, which is not one buffer"),
+        (vec![Step::Host(Host::new("allocate").reads_word("a", "unknown"))], "`unknown` has no value yet"),
+        (
+            vec![Step::Repeat(Repeat { body: vec![nothing], until, at_most: "2".into() })],
+            "`texels`, which is not one buffer",
+        ),
+    ];
+    for (steps, expected) in cases {
+        let seen = refused(rows(steps), &[]);
+        assert!(seen.contains(expected), "{seen}");
+    }
+}
+
+/// A host step reads no further than the buffer goes, and sets nothing beyond a symbol's range.
+#[test]
+fn a_host_step_stays_within_its_bounds() {
+    let words = || Resource::new("words", Element::Word, "").by("slot", "n").by("pixel", "pixels").cleared(0);
+    let rows = |host: Host| storage(vec![words()], vec![Step::Host(host)]);
+    let seen = refused(rows(Host::new("allocate").reads_some("words", "1", "1 << 2").sets("n")), &[]);
+    assert!(seen.contains("is no formula"), "{seen}");
+    let seen = refused(rows(Host::new("allocate").reads_word("words", "4096 * 4096").sets("n")), &[]);
+    assert!(seen.contains("what the host function `allocate` reads of `words` needs 16777217"), "{seen}");
 }

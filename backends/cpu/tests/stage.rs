@@ -29,8 +29,18 @@ pub fn sampled(name: &str, format: TextureFormat) -> Resource {
 /// A storage of resources and steps, with the WGSL of its skeletons, in which `binding(name)` is the binding of that resource;
 /// `keep`: how many fragments stay.
 pub fn code(storage: Row, skeletons: &[(&str, &str)], keep: Option<u32>) -> Result<Arc<Code>, Error> {
+    code_with(Registry::builtin(), storage, skeletons, keep)
+}
+
+/// The same beside other rows of a test's own.
+pub fn code_with(
+    registry: Registry,
+    storage: Row,
+    skeletons: &[(&str, &str)],
+    keep: Option<u32>,
+) -> Result<Arc<Code>, Error> {
     let texts: Vec<(&str, String)> = skeletons.iter().map(|(key, text)| (*key, (*text).to_owned())).collect();
-    let (variant, first) = checked(&storage, &texts, keep);
+    let (variant, first) = checked(registry.clone(), &storage, &texts, keep);
     let plan = plan(&variant, &Selection::first(&variant), &first)?;
     let bound = |text: &str| {
         plan.resources.iter().fold(text.to_owned(), |text, planned| {
@@ -39,11 +49,11 @@ pub fn code(storage: Row, skeletons: &[(&str, &str)], keep: Option<u32>) -> Resu
         })
     };
     let texts: Vec<(&str, String)> = texts.iter().map(|(key, text)| (*key, bound(text))).collect();
-    let (variant, registry) = checked(&storage, &texts, keep);
+    let (variant, registry) = checked(registry, &storage, &texts, keep);
     Code::of(&variant, &registry).map(Arc::new)
 }
 
-fn checked(storage: &Row, skeletons: &[(&str, String)], keep: Option<u32>) -> (Variant, Registry) {
+fn checked(registry: Registry, storage: &Row, skeletons: &[(&str, String)], keep: Option<u32>) -> (Variant, Registry) {
     let technique = Technique {
         key: "tried".to_owned(),
         title: "",
@@ -52,7 +62,7 @@ fn checked(storage: &Row, skeletons: &[(&str, String)], keep: Option<u32>) -> (V
         keep: keep.map_or(KeepDefault::All, KeepDefault::Best),
         choices: vec![("storage", "tried"), ("sync", "as_it_comes")],
     };
-    let mut registry = Registry::builtin()
+    let mut registry = registry
         .with(Row::new("sync", "as_it_comes", "", ""))
         .with(Row { offers: vec![Fact::KeepsAll, Fact::KeepsBest, Fact::Sorted], ..storage.clone() })
         .with_technique(technique);
