@@ -21,7 +21,7 @@ use fragbuf_templates::vocabulary::{
 };
 
 use crate::frame::{Context, Lowered, lower};
-use crate::{Layout, LoweredFrame, PassId, PlanValue, PlannedPass, Quantity, ResourceId, SymbolId, SymbolTable};
+use crate::{Layout, LoweredFrame, PassId, PlannedPass, Quantity, ResourceId, SymbolId, SymbolTable};
 
 /// Bindings before this one are the frame's, the description's uniforms and the camera.
 pub const FIRST_BINDING: u32 = 3;
@@ -253,14 +253,6 @@ fn fields(variant: &Variant, symbols: &SymbolTable, built: &Built) -> Vec<Symbol
 }
 
 impl Plan {
-    /// Pixels of the frame and of its padding, over its width and height.
-    pub fn pixels(&self) -> Formula {
-        match &self.symbols.get(SymbolId::PIXELS).value {
-            PlanValue::Default(quantity) => quantity.formula().clone(),
-            _ => "width * height".into(),
-        }
-    }
-
     /// The greatest k that the code serves.
     pub fn capacity(&self) -> u32 {
         self.symbols.number(SymbolId::CAPACITY).and_then(|number| u32::try_from(number).ok()).unwrap_or(0)

@@ -1,7 +1,7 @@
 //! `fragbuf render`: a picture of a scene through one description, and the figures of its frame.
 
 use fragbuf::vocabulary::Fact;
-use fragbuf_frame::{LoopEnd, Looped};
+use fragbuf_frame::{LoopEnd, Looped, PassTime};
 use serde_json::{Value, json};
 
 use super::output::{self, Failure};
@@ -51,10 +51,15 @@ impl Render {
     }
 }
 
+/// Milliseconds of a pass; null where the device could not time all of its runs.
+fn milliseconds(time: &PassTime) -> Value {
+    if time.untimed == 0 { time.milliseconds.into() } else { Value::Null }
+}
+
 /// What `--json` says of one frame. Counts are null where the description does not count.
 pub(crate) fn figures(description: &str, painted: &Painted, stage: &Stage) -> Value {
     let ms: serde_json::Map<String, Value> =
-        painted.drawn.times.iter().flatten().map(|time| (time.pass.clone(), time.milliseconds.into())).collect();
+        painted.drawn.times.iter().flatten().map(|time| (time.pass.clone(), milliseconds(time))).collect();
     let losses: serde_json::Map<String, Value> = painted
         .drawn
         .counters

@@ -166,7 +166,7 @@ impl Painter {
         renderer.set_camera(&stage.camera.view_projection);
         let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+        let loops = renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (counters, each) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
         let times = renderer.pass_times(&mut encoder);
@@ -194,7 +194,7 @@ impl Painter {
             times,
             bytes: renderer.allocated_bytes(),
             slices: renderer.slices(),
-            loops: Vec::new(),
+            loops,
         }))
     }
 }

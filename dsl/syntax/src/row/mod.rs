@@ -10,7 +10,8 @@
 //! //: buffer taken[pixel < pixels]: word, clear 0 -- places given out so far
 //! //: pass store: taken atomic, entries plain                 a pass of the frame, in order, and what it touches
 //! //: pass resolve: taken read, entries read
-//! //: host allocate: reads offsets[pixels]; sets fragments    a decision of the host between two passes
+//! //: host allocate: reads offsets[pixels]; sets fragments    a decision of the host between two passes: `name`, all
+//!                                                            words; `name[index]`, one; `name[first for count]`, some
 //! //: offers keeps-best, indexed                              facts
 //! //: requires fragment-atomics
 //! //: implies sorted when depth-key
