@@ -12,12 +12,14 @@ mod contract;
 mod emit;
 mod layout;
 mod link;
+mod markers;
 mod own;
 mod plan;
 mod program;
 
 pub use contract::{CONTRACTS, Contract, verify};
 pub use layout::{Key, Layout, Word};
+pub use markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MARKERS, MEMORY_FENCE};
 pub use own::adopt;
 pub use plan::{Arrival, Bound, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};

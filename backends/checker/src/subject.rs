@@ -29,6 +29,9 @@ const READ_STREAM: &str = "read_stream";
 /// From a fragment to the words that are stored.
 const PACK: &str = "fragment_pack";
 
+/// Whether a fragment meets every constraint.
+const ADMIT: &str = "admit";
+
 /// How often a fragment tries before it gives up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tries {
@@ -75,7 +78,8 @@ pub(crate) struct Runnable {
 #[derive(Debug)]
 pub(crate) struct FragmentPrograms {
     pub(crate) unpack: Program,
-    pub(crate) admit: Program,
+    /// Where there are constraints.
+    pub(crate) admit: Option<Program>,
     /// Not for a pass that only counts.
     pub(crate) pack: Option<Program>,
 }
@@ -257,14 +261,17 @@ fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec
     let entry = |entry: &&EntryPoint| entry.stage == stage;
     let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
     let program = with_brought(Program::entry_point(module, info, name, &options)?, plan)?;
+    // What always holds, and what nothing reads, is not linked.
+    let linked = |name: &str| match module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(name))
+    {
+        true => Program::function(module, info, name, &options).map(Some),
+        false => Ok(None),
+    };
     let fragment = match stage {
         Stage::Fragment => Some(FragmentPrograms {
             unpack: Program::function(module, info, "varyings_fragment", &options)?,
-            admit: Program::function(module, info, "admit", &options)?,
-            pack: match module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(PACK)) {
-                true => Some(Program::function(module, info, PACK, &options)?),
-                false => None,
-            },
+            admit: linked(ADMIT)?,
+            pack: linked(PACK)?,
         }),
         _ => None,
     };

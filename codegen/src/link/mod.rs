@@ -1,8 +1,10 @@
 //! Whole WGSL files in, one text out: the declarations that the roots reach, in the order of the sources, under a banner
 //! per file, with a record of where every line comes from.
 //!
-//! Renaming works on tokens, so comments and layout stay as they were written. Nothing here knows what a pass is.
+//! Renaming works on tokens, so comments and layout stay as they were written; what does nothing is folded away (`fold/`).
+//! Nothing here knows what a pass is.
 
+mod fold;
 mod item;
 mod rename;
 mod token;
@@ -18,6 +20,7 @@ use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
 
 use crate::program::{EntryPoint, LineMap, LineOrigin};
+use fold::Folded;
 
 /// A text to link.
 #[derive(Clone, Debug)]
@@ -202,7 +205,10 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         .filter(|(source, item)| !sources[*source].left.contains(&item.name))
         .collect();
     let index = declarations(&items, sources)?;
-    let reached = reach(&items, &index, exports)?;
+    let none = BTreeMap::new();
+    let before = reach(&items, &index, exports, &none)?;
+    let folded = fold::fold(&items, &index, &before, &|source| sources[source].origins.is_some());
+    let reached = if folded.is_empty() { before } else { reach(&items, &index, exports, &folded)? };
     let entry_points: Vec<EntryPoint> = reached
         .iter()
         .filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.to_owned(), stage }))
@@ -218,7 +224,10 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
             writer.banner(&sources[source]);
             current = Some(&sources[source].name);
         }
-        writer.item(&sources[source], item, &prefixed);
+        match folded.get(&id) {
+            Some(folded) => writer.folded(&sources[source], item, folded, &prefixed),
+            None => writer.item(&sources[source], item, &prefixed),
+        }
     }
     let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
     Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
@@ -253,6 +262,7 @@ fn reach(
     items: &[(usize, &Item<'_>)],
     index: &HashMap<&str, usize>,
     exports: &[&str],
+    folded: &BTreeMap<usize, Folded>,
 ) -> Result<BTreeSet<usize>, String> {
     let mut waiting: Vec<usize> = Vec::new();
     if exports.is_empty() {
@@ -263,8 +273,12 @@ fn reach(
     }
     let mut reached = BTreeSet::new();
     while let Some(id) = waiting.pop() {
-        if reached.insert(id) {
-            waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name)));
+        if !reached.insert(id) {
+            continue;
+        }
+        match folded.get(&id) {
+            Some(folded) => waiting.extend(folded.mentions.iter().filter_map(|name| index.get(name.as_str()))),
+            None => waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name))),
         }
     }
     Ok(reached)
@@ -291,6 +305,21 @@ impl Writer {
             self.text.push('\n');
             self.lines.skip(1);
         }
+    }
+
+    /// An item of a source of ours, in its other form.
+    fn folded(&mut self, source: &Source, item: &Item<'_>, folded: &Folded, prefixed: &Renames) {
+        self.blank_line();
+        self.text.push_str(&prefixed.apply(&folded.text));
+        self.text.push('\n');
+        let mut rest = folded.lines.as_slice();
+        while let Some(&first) = rest.first() {
+            let length = (first..).zip(rest).take_while(|(expected, line)| expected == *line).count();
+            let line = item.first_line + first;
+            self.lines.run(length, LineOrigin::Source { name: source.name.clone(), line });
+            rest = &rest[length..];
+        }
+        self.blank_line();
     }
 
     fn item(&mut self, source: &Source, item: &Item<'_>, prefixed: &Renames) {
