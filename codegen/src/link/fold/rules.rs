@@ -21,7 +21,7 @@ pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_firs
     let declarations: Vec<&str> = declared(tokens, &KEYWORDS).chain(parameters).collect();
     let locals: BTreeSet<&str> = declarations.iter().copied().collect();
     let values = Values { tokens, known, locals: &locals, tidies: !is_first, edits: Vec::new() };
-    let mut rules = Rules { text, tokens, declarations: &declarations, values };
+    let mut rules = Rules { text, tokens, declarations: &declarations, is_first, values };
     rules.block(&body);
     match body.statements.last().map(|last| last.tokens.clone()) {
         Some(last) if !is_first && last.len() == 2 && tokens[last.start].text == "return" => rules.remove(&last),
@@ -37,18 +37,61 @@ struct Rules<'r> {
     tokens: &'r [Token<'r>],
     /// Names that the function declares, as often as it does.
     declarations: &'r [&'r str],
+    is_first: bool,
     values: Values<'r>,
 }
 
 impl Rules<'_> {
     fn block(&mut self, block: &Block) {
         for (index, statement) in block.statements.iter().enumerate() {
-            self.statement(statement, block);
             let rest = &block.statements[index + 1..];
+            if rest.first().is_some_and(|next| self.join_returns(statement, next)) {
+                break;
+            }
+            self.statement(statement, block);
             if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.first(), rest.last()) {
                 self.remove(&(first.tokens.start..last.tokens.end));
                 break;
             }
+        }
+    }
+
+    /// `if a { return true; } return false;` becomes `return a;`, and the reverse `return !a;`.
+    fn join_returns(&mut self, statement: &Statement, next: &Statement) -> bool {
+        let Kind::If(branches) = &statement.kind else { return false };
+        let ([branch], false) = (branches.as_slice(), self.is_first) else { return false };
+        let [inner] = branch.block.statements.as_slice() else { return false };
+        let values = (self.returned(inner), self.returned(next), self.read(branch.condition.clone()));
+        let (Some(value), Some(other), Some(condition)) = values else { return false };
+        if value == other || self.values.truth(&condition).is_some() {
+            return false;
+        }
+        let is_denial = self.tokens[branch.condition.start].text == "!";
+        let is_denied = !value && is_denial && matches!(condition.kind, expression::Kind::Unary(_));
+        let start = branch.condition.start + usize::from(is_denied);
+        let [before, behind] = match condition.kind {
+            _ if value || is_denied => ["return ", ";"],
+            expression::Kind::Unary(_) | expression::Kind::Binary(..) => ["return !(", ");"],
+            _ => ["return !", ";"],
+        };
+        let (whole, kept) = (
+            self.values.bytes(&(statement.tokens.start..next.tokens.end)),
+            self.values.bytes(&(start..branch.condition.end)),
+        );
+        if self.text[whole.clone()].contains("//") {
+            return false;
+        }
+        self.values.edits.push(Edit { range: whole.start..kept.start, text: before.to_owned() });
+        self.values.edits.push(Edit { range: kept.end..whole.end, text: behind.to_owned() });
+        true
+    }
+
+    /// What a statement returns, if it is `true` or `false`.
+    fn returned(&self, statement: &Statement) -> Option<bool> {
+        let [word, value, _] = &self.tokens[statement.tokens.clone()] else { return None };
+        match value.text {
+            "true" | "false" if word.text == "return" => Some(value.text == "true"),
+            _ => None,
         }
     }
 

@@ -146,6 +146,17 @@ fn what_follows_a_return_goes_and_so_does_what_nobody_reads() {
 }
 
 #[test]
+fn a_condition_that_is_returned_is_written_so() {
+    let body = |condition: &str, value: bool| {
+        format!("    nothing(x);\n    if {condition} {{\n        return {value};\n    }}\n    return {};\n", !value)
+    };
+    folds(" -> bool", &body("!t", false), "    return t;\n");
+    folds(" -> bool", &body("t", false), "    return !t;\n");
+    folds(" -> bool", &body("x > 1u", true), "    return x > 1u;\n");
+    folds(" -> bool", &body("x > 1u", false), "    return !(x > 1u);\n");
+}
+
+#[test]
 fn locals_that_never_change_are_their_value() {
     let wanted = "    var wanted = yes();\n    if wanted && no(x, x) {\n        wanted = false;\n    }\n    if wanted {\n        state = x;\n    }\n";
     folds("", wanted, "    state = x;\n");
