@@ -81,6 +81,14 @@ pub(crate) fn head(text: &str) -> String {
     String::new()
 }
 
+/// A head up to the first line without words, and the blank line behind it.
+pub(super) fn first_paragraph(head: &str) -> String {
+    match head.split_once("\n//\n") {
+        Some((first, _)) => format!("{first}\n\n"),
+        None => head.to_owned(),
+    }
+}
+
 /// A function's name and what stands between it and the body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Head<'a> {

@@ -19,6 +19,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
 
+use crate::contract::DESCRIBED;
 use crate::program::{EntryPoint, LineMap, LineOrigin};
 use fold::Folded;
 
@@ -192,6 +193,8 @@ pub(crate) struct Linked {
     pub(crate) entry_points: Vec<EntryPoint>,
     /// Names of the declarations that were linked, before the prefix.
     pub(crate) declared: BTreeSet<String>,
+    /// The heads that were printed, by the names of their sources.
+    pub(crate) heads: BTreeMap<Arc<str>, String>,
 }
 
 /// Links `sources`. Roots are the entry points, or `exports` where there are any. `prefix` goes before every name but the
@@ -215,13 +218,25 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         .collect();
     let is_entry = |name: &str| entry_points.iter().any(|entry| entry.name == name);
     let prefixed = Renames::prefix(prefix, index.keys().copied().filter(|name| !is_entry(name)));
+    // A head is about the whole file: where the functions are missing that it describes, its first paragraph is enough.
+    let is_described = |item: &Item<'_>| DESCRIBED.contains(&item.name);
+    let in_brief = |source: usize| {
+        let described = || (0..items.len()).filter(|&id| items[id].0 == source && is_described(items[id].1));
+        sources[source].origins.is_none()
+            && described().next().is_some()
+            && !described().any(|id| reached.contains(&id))
+    };
+    let mut heads = BTreeMap::new();
     let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
     writer.lines.skip(header.lines().count());
     let mut current: Option<&str> = None;
     for &id in &reached {
         let (source, item) = items[id];
         if current != Some(&sources[source].name) {
-            writer.banner(&sources[source]);
+            let whole = head(&sources[source].text);
+            let head = if in_brief(source) { item::first_paragraph(&whole) } else { whole };
+            writer.banner(&sources[source], &head);
+            heads.insert(sources[source].name.clone(), head);
             current = Some(&sources[source].name);
         }
         match folded.get(&id) {
@@ -230,7 +245,7 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         }
     }
     let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
-    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
+    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared, heads })
 }
 
 /// Where each name is declared. Looked up only: the order of the text is the order of the items.
@@ -290,13 +305,12 @@ struct Writer {
 }
 
 impl Writer {
-    fn banner(&mut self, source: &Source) {
+    fn banner(&mut self, source: &Source, head: &str) {
         self.blank_line();
-        let head = head(&source.text);
         self.text.push_str("// ---- ");
         self.text.push_str(&source.name);
         self.text.push('\n');
-        self.text.push_str(&head);
+        self.text.push_str(head);
         self.lines.skip(1 + head.lines().count());
     }
 
