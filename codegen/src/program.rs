@@ -66,6 +66,10 @@ pub struct PassText {
     pub exports: Vec<String>,
     /// Resources that the text declares, by name.
     pub resources: Vec<String>,
+    /// Private arrays whose elements are written before they are read, by name: no target needs to set them to zero. All
+    /// arrays of templates are, and the CPU device and the checker begin them with words that no program means, so that their
+    /// tests fail otherwise. A file of the user's own may rely on zeros.
+    pub written_first: Vec<String>,
     /// Who made it and what the algorithms linked into it rest on, for texts that lose the templates' comments.
     pub notes: Notes,
 }
@@ -232,6 +236,7 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
             .filter(|name| linked.declared.contains(*name))
             .cloned()
             .collect(),
+        written_first: linked.private_arrays,
         notes,
     })
 }

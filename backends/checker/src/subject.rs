@@ -152,7 +152,7 @@ impl Subject {
         let ask = |anchor: &str, name: &str| {
             let checked = asked.iter().find(|checked| checked.pass().anchor == anchor);
             let checked: &Checked = checked.unwrap_or(&asked[0]);
-            Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
+            Program::function(checked.module(), checked.info(), name, &options(checked))
                 .map_err(|faults| refused(checked, &faults, origin))
         };
         let stream = match streams {
@@ -256,7 +256,7 @@ fn question(plan: &Plan, anchor: &str) -> Pass {
 
 fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
     let (module, info) = (checked.module(), checked.info());
-    let options = Options { markers: &MARKERS };
+    let options = options(checked);
     let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
     let entry = |entry: &&EntryPoint| entry.stage == stage;
     let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
@@ -277,6 +277,10 @@ fn runnable(plan: &Plan, pass: &Pass, checked: &Checked) -> Result<Runnable, Vec
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
     Ok(Runnable { pass: pass.clone(), turn: 0, round: 0, program, fragment, source })
+}
+
+fn options(checked: &Checked) -> Options<'_> {
+    Options { markers: &MARKERS, written_first: &checked.pass().written_first }
 }
 
 /// The program, if it reads no textures but those that the caller brings.

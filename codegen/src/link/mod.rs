@@ -193,6 +193,8 @@ pub(crate) struct Linked {
     pub(crate) entry_points: Vec<EntryPoint>,
     /// Names of the declarations that were linked, before the prefix.
     pub(crate) declared: BTreeSet<String>,
+    /// Private arrays of sources of ours that were linked, as the text names them.
+    pub(crate) private_arrays: Vec<String>,
     /// The heads that were printed, by the names of their sources.
     pub(crate) heads: BTreeMap<Arc<str>, String>,
 }
@@ -244,8 +246,10 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
             None => writer.item(&sources[source], item, &prefixed),
         }
     }
+    let is_ours = |id: &&usize| items[**id].1.is_private_array && sources[items[**id].0].origins.is_none();
+    let private_arrays = reached.iter().filter(is_ours).map(|&id| format!("{prefix}{}", items[id].1.name)).collect();
     let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
-    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared, heads })
+    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared, private_arrays, heads })
 }
 
 /// Where each name is declared. Looked up only: the order of the text is the order of the items.

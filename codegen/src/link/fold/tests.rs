@@ -1,3 +1,5 @@
+//! What folds, and what does not, on small texts.
+
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::super::{Source, link};
