@@ -8,9 +8,11 @@
 //! Texts of the user's own, and functions that targets replace by words of theirs, stay as they were written. What cannot be
 //! read stays too.
 
+mod choice;
 mod edit;
 mod effects;
 mod expression;
+mod lines;
 mod rules;
 mod syntax;
 mod values;

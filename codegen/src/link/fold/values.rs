@@ -124,11 +124,9 @@ impl Values<'_> {
     fn call(&mut self, call: &Expression, arguments: &[Expression], position: Position) {
         let all_but = |kept: usize| arguments.iter().enumerate().filter(move |(number, _)| *number != kept);
         match self.worth(self.first(call)) {
-            Worth::Literal(text) if arguments.iter().all(|argument| self.is_pure(argument)) => {
-                // No shader divides by a constant zero: it would not compile.
-                if position != Position::Divisor {
-                    return self.replace(call, &text);
-                }
+            // No shader divides by a constant zero: it would not compile.
+            Worth::Literal(text) if position != Position::Divisor && arguments.iter().all(|one| self.is_pure(one)) => {
+                return self.replace(call, &text);
             }
             Worth::Argument(number) if all_but(number).all(|(_, argument)| self.is_pure(argument)) => {
                 if let Some(argument) = arguments.get(number).filter(|argument| self.has_type(argument)) {
