@@ -1,6 +1,6 @@
 //! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
 
-use super::fold::{Worth, has_effects, worth};
+use super::fold::{Substitute, has_effects, substitute};
 use super::token::{Token, TokenKind, tokens};
 use crate::program::Stage;
 
@@ -23,8 +23,8 @@ pub(crate) struct Item<'a> {
     /// One line: set next to its like, without a blank line between.
     pub(crate) is_short: bool,
     pub(super) is_function: bool,
-    /// What may stand in place of its uses.
-    pub(super) worth: Worth,
+    /// What replaces its uses.
+    pub(super) substitute: Substitute,
     /// For a function: whether it does more than return a value, apart from what it calls.
     pub(super) has_effects: bool,
     /// For a function: whether it compares a constant with a number or another constant.
@@ -58,7 +58,7 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
             is_bound: tokens.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
             is_short: !text[start..end].contains('\n'),
             is_function,
-            worth: worth(tokens),
+            substitute: substitute(tokens),
             has_effects: is_function && has_effects(tokens),
             compares_constants: is_function && compares_constants(tokens),
             is_private_array: is_private_array(tokens),

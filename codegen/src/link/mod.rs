@@ -1,8 +1,8 @@
 //! Whole WGSL files in, one text out: the declarations that the roots reach, in the order of the sources, under a banner
 //! per file, with a record of where every line comes from.
 //!
-//! Renaming works on tokens, so comments and layout stay as they were written; what does nothing is folded away (`fold/`).
-//! Nothing here knows what a pass is.
+//! Renaming works on tokens, so comments and layout stay as they were written. `fold/` removes code without effect. Passes
+//! are unknown here.
 
 mod fold;
 mod item;
@@ -325,7 +325,7 @@ impl Writer {
         }
     }
 
-    /// An item of a source of ours, in its other form.
+    /// An item after folding.
     fn folded(&mut self, source: &Source, item: &Item<'_>, folded: &Folded, prefixed: &Renames) {
         self.blank_line();
         self.text.push_str(&prefixed.apply(&folded.text));

@@ -1,6 +1,6 @@
-//! Choices that a known condition decides.
+//! Simplifies `if` statements whose condition is known, or whose branches do nothing.
 //!
-//! In: an `if` with its branches. Out: edits that leave the branch that is taken, or a simpler way to say the same.
+//! In: an `if` with its branches. Out: edits that leave the branch that is taken.
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
-//! Changes of a text that keep where its lines come from.
+//! Applies edits to a text, and keeps the line that each of its lines comes from.
 //!
-//! In: a text with the line of every line's origin, and changes that do not overlap. Out: the same after the changes.
+//! In: a text with the origins of its lines, and edits. Out: the same after the edits.
 
 use std::ops::Range;
 

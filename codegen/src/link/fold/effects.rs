@@ -1,7 +1,7 @@
-//! Whether a function does more than return a value.
+//! Decides whether code has side effects.
 //!
-//! In: tokens of a function, or of an expression. Out: whether they write to anything but local variables, or discard.
-//! Loops are taken to end; reading is no effect, whatever is read.
+//! In: tokens of a function, or the name of a built-in function. Out: whether it writes to anything but local variables, or
+//! discards. Loops are assumed to end; no read is a side effect.
 
 use std::collections::BTreeSet;
 

@@ -1,7 +1,7 @@
-//! Expressions, as a tree over ranges of tokens.
+//! Parses expressions, as a tree over ranges of tokens.
 //!
-//! In: the tokens of an expression. Out: its tree, or nothing where it cannot be read. Signs are single characters here, so
-//! two that touch make one operator.
+//! In: the tokens of an expression. Out: its tree, or nothing where it cannot be parsed. A token is a single character of an
+//! operator, so two that touch make one operator.
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
-//! Statements as lines of text: what is removed takes its lines with it.
+//! Removes statements as lines of text, so that no empty line, comment or indentation is left behind.
 //!
-//! In: ranges of tokens. Out: edits that leave the text as a person would have written it.
+//! In: ranges of tokens. Out: edits.
 
 use std::ops::Range;
 

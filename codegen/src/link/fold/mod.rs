@@ -1,12 +1,11 @@
-//! What does nothing is not printed.
+//! Removes code without effect from linked functions, before any target prints them.
 //!
-//! In: the declarations that a text links. Out: other texts for some of its functions, with where their lines come from. A
-//! function with an empty body, or one that returns a constant or its own argument, is put in place of its calls; conditions
-//! that are known decide; what nobody reads, or nobody reaches, goes. An expression disappears only where it has no effects,
-//! so a program means what it meant. All of it is repeated until nothing changes.
+//! In: the declarations that a text links. Out: new texts for some of its functions, each line with the line that it comes
+//! from. Calls of empty functions are removed. Calls of functions that return a constant or their own argument are replaced
+//! by it. Known conditions select a branch, unread locals are removed. This repeats until nothing changes.
 //!
-//! Texts of the user's own, and functions that targets replace by words of theirs, stay as they were written. What cannot be
-//! read stays too.
+//! Invariant: an expression is removed only if it has no side effects, so a program keeps its meaning. Never changed: texts
+//! of the user's own, marker functions, whose calls other targets replace, and functions that cannot be parsed.
 
 mod choice;
 mod edit;
@@ -14,15 +13,15 @@ mod effects;
 mod expression;
 mod lines;
 mod rules;
+mod substitute;
 mod syntax;
 mod values;
-mod worth;
 
 #[cfg(test)]
 mod tests;
 
 pub(super) use effects::has_effects;
-pub(super) use worth::{Worth, worth};
+pub(super) use substitute::{Substitute, substitute};
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -32,18 +31,18 @@ use crate::MARKERS;
 use edit::Lines;
 use values::Known;
 
-/// A function that is written otherwise than in its source.
+/// A function after folding.
 #[derive(Clone, Debug)]
 pub(super) struct Folded {
     pub(super) text: String,
     /// For each line the one of the source's item, from 0.
     pub(super) lines: Vec<usize>,
     pub(super) mentions: Vec<String>,
-    worth: Worth,
+    substitute: Substitute,
     has_effects: bool,
 }
 
-/// Folds what `reached` holds of `items`; `is_fixed` says of a source that its text stays as it is.
+/// Folds the functions among `reached`; `is_fixed` says whether a source keeps its text.
 pub(super) fn fold(
     items: &[(usize, &Item<'_>)],
     index: &HashMap<&str, usize>,
@@ -52,22 +51,22 @@ pub(super) fn fold(
 ) -> BTreeMap<usize, Folded> {
     let stays = |id: &usize| is_fixed(items[*id].0) || MARKERS.contains(&items[*id].1.name);
     let ours: Vec<usize> = reached.iter().copied().filter(|id| !stays(id)).collect();
-    let constants = ours.iter().filter(|id| items[**id].1.worth != Worth::Itself);
+    let constants = ours.iter().filter(|id| items[**id].1.substitute != Substitute::None);
     let mut folding = Folding {
         items,
         index,
-        worths: constants.map(|id| (items[*id].1.name, items[*id].1.worth.clone())).collect(),
+        substitutes: constants.map(|id| (items[*id].1.name, items[*id].1.substitute.clone())).collect(),
         folded: BTreeMap::new(),
     };
     let mut is_first = true;
     loop {
-        let known = folding.worths.len();
+        let known = folding.substitutes.len();
         for &id in &ours {
             if items[id].1.is_function && folding.may_fold(id, is_first) {
                 folding.function(id);
             }
         }
-        if !is_first && known == folding.worths.len() {
+        if !is_first && known == folding.substitutes.len() {
             return folding.folded;
         }
         is_first = false;
@@ -77,16 +76,20 @@ pub(super) fn fold(
 struct Folding<'f> {
     items: &'f [(usize, &'f Item<'f>)],
     index: &'f HashMap<&'f str, usize>,
-    /// What stands in place of a declaration, for those of which something does.
-    worths: BTreeMap<&'f str, Worth>,
+    /// The substitutes found so far, by name.
+    substitutes: BTreeMap<&'f str, Substitute>,
     folded: BTreeMap<usize, Folded>,
 }
 
 impl Folding<'_> {
-    /// Whether something stands in it that folds.
+    /// Whether a function uses a declaration that has a substitute.
     fn may_fold(&self, id: usize, is_first: bool) -> bool {
         let item = self.items[id].1;
-        let names = self.worths.iter().filter(|(_, worth)| !matches!(worth, Worth::Integer(_))).map(|(name, _)| *name);
+        let names = self
+            .substitutes
+            .iter()
+            .filter(|(_, substitute)| !matches!(substitute, Substitute::Integer(_)))
+            .map(|(name, _)| *name);
         let mut names = names.filter(|name| *name != item.name);
         (is_first && item.compares_constants)
             || match self.folded.get(&id) {
@@ -105,21 +108,21 @@ impl Folding<'_> {
         let (code, _) = tokens(&after.text);
         let folded = Folded {
             mentions: mentions(&code).into_iter().map(str::to_owned).collect(),
-            worth: worth(&code),
+            substitute: substitute(&code),
             has_effects: has_effects(&code),
             lines: after.origins,
             text: after.text,
         };
-        if folded.worth != Worth::Itself {
-            self.worths.insert(item.name, folded.worth.clone());
+        if folded.substitute != Substitute::None {
+            self.substitutes.insert(item.name, folded.substitute.clone());
         }
         self.folded.insert(id, folded);
     }
 
-    /// Rule after rule until nothing changes; `None` where nothing did.
+    /// Repeats the rules until nothing changes; `None` where nothing did.
     fn rounds(&self, mut lines: Lines) -> Option<Lines> {
         let known = Known {
-            worth: &|name| self.worths.get(name).cloned().unwrap_or_default(),
+            substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
             has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
         };
         let mut has_changed = false;

@@ -1,7 +1,7 @@
-//! Statements that do nothing, or that a known condition decides.
+//! Removes statements without effect: one round over one function.
 //!
-//! In: a function's text and what is known of the names in it. Out: edits of one round; what they make possible is left to
-//! the next. Comments directly above a statement go with it.
+//! In: a function's text, and what is known of the names in it. Out: edits. What they make possible is left to the next
+//! round. Comments directly above a removed statement are removed with it.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -9,9 +9,9 @@ use std::ops::Range;
 use super::edit::Edit;
 use super::effects::declared;
 use super::expression::{self, Expression};
+use super::substitute::Substitute;
 use super::syntax::{self, Block, Kind, Statement};
 use super::values::{Known, Position, Values};
-use super::worth::Worth;
 use crate::link::token::{Token, TokenKind};
 
 /// The edits of one round; none where the function cannot be read. `is_first`: nothing has changed so far.
@@ -98,7 +98,7 @@ impl Rules<'_> {
             "return" => self.fold(inner.start + 1..inner.end),
             "break" | "continue" | "discard" => {}
             name if self.tokens[statement.start + 1].text == "(" => {
-                let does_nothing = self.values.worth(name) != Worth::Itself;
+                let does_nothing = self.values.substitute(name) != Substitute::None;
                 match self.read(inner) {
                     Some(call) if does_nothing && self.has_pure_arguments(&call) => self.remove(statement),
                     Some(call) => self.values.fold(&call, Position::Whole),

@@ -1,7 +1,7 @@
-//! The statements of a function's body, as ranges of tokens.
+//! Parses the statements of a function's body, as ranges of tokens.
 //!
-//! In: the tokens of a function. Out: its blocks and statements, or nothing where they cannot be read: such a function
-//! stays as it is. Expressions are left to `expression.rs`.
+//! In: the tokens of a function. Out: its blocks and statements, or nothing where they cannot be parsed. Expressions are left
+//! to `expression.rs`.
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
-//! Expressions whose value is known, or that one operand decides.
+//! Folds expressions whose value is known, or that one operand decides.
 //!
-//! In: an expression and what is known of the names in it. Out: edits. An operand disappears only where it has no effects.
+//! In: an expression, and what is known of the names in it. Out: edits. An operand is removed only if it has no side effects.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -8,13 +8,13 @@ use std::ops::Range;
 use super::edit::{Edit, removal};
 use super::effects::built_in_has_effects;
 use super::expression::{Expression, Kind, is_template};
-use super::worth::{Worth, integer};
+use super::substitute::{Substitute, integer};
 use crate::link::token::{Token, TokenKind};
 
 /// What is known of declarations, by name.
 pub(super) struct Known<'k> {
-    /// What stands in place of a use.
-    pub(super) worth: &'k dyn Fn(&str) -> Worth,
+    /// The substitute of a declaration.
+    pub(super) substitute: &'k dyn Fn(&str) -> Substitute,
     /// Whether a call of a declared function does more than return a value; `None` where none is declared.
     pub(super) has_effects: &'k dyn Fn(&str) -> Option<bool>,
 }
@@ -94,9 +94,9 @@ impl Values<'_> {
         expression.tokens.len() == 1 && self.first(expression) == "1.0"
     }
 
-    /// What stands in place of a name, if no local hides it.
-    pub(super) fn worth(&self, name: &str) -> Worth {
-        if self.locals.contains(name) { Worth::Itself } else { (self.known.worth)(name) }
+    /// The substitute of a name, if no local hides it.
+    pub(super) fn substitute(&self, name: &str) -> Substitute {
+        if self.locals.contains(name) { Substitute::None } else { (self.known.substitute)(name) }
     }
 
     /// The bytes of some tokens.
@@ -123,12 +123,14 @@ impl Values<'_> {
 
     fn call(&mut self, call: &Expression, arguments: &[Expression], position: Position) {
         let all_but = |kept: usize| arguments.iter().enumerate().filter(move |(number, _)| *number != kept);
-        match self.worth(self.first(call)) {
-            // No shader divides by a constant zero: it would not compile.
-            Worth::Literal(text) if position != Position::Divisor && arguments.iter().all(|one| self.is_pure(one)) => {
+        match self.substitute(self.first(call)) {
+            // A division by a constant zero does not compile.
+            Substitute::Literal(text)
+                if position != Position::Divisor && arguments.iter().all(|one| self.is_pure(one)) =>
+            {
                 return self.replace(call, &text);
             }
-            Worth::Argument(number) if all_but(number).all(|(_, argument)| self.is_pure(argument)) => {
+            Substitute::Argument(number) if all_but(number).all(|(_, argument)| self.is_pure(argument)) => {
                 if let Some(argument) = arguments.get(number).filter(|argument| self.has_type(argument)) {
                     return self.keep_argument(call, argument, position);
                 }
@@ -204,9 +206,9 @@ impl Values<'_> {
 
     fn number(&self, expression: &Expression) -> Option<u64> {
         let token = self.tokens[expression.tokens.start];
-        match self.worth(token.text) {
+        match self.substitute(token.text) {
             _ if expression.tokens.len() > 1 => None,
-            Worth::Integer(value) => Some(value),
+            Substitute::Integer(value) => Some(value),
             _ => integer(&token),
         }
     }

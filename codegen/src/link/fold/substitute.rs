@@ -1,16 +1,15 @@
-//! What a declaration comes to: nothing, a constant, one of its arguments.
+//! Finds declarations whose uses can be replaced: by nothing, by a literal, or by an argument.
 //!
-//! In: the tokens of one declaration. Out: what may stand in place of its uses. Never looks into a statement other than a
-//! single `return`.
+//! In: the tokens of one declaration. Out: its substitute. Never looks into a statement other than a single `return`.
 
 use crate::link::token::{Token, TokenKind};
 
-/// What may stand in place of a declaration's uses.
+/// What replaces the uses of a declaration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(in crate::link) enum Worth {
-    /// The declaration itself.
+pub(in crate::link) enum Substitute {
+    /// Nothing does.
     #[default]
-    Itself,
+    None,
     /// A function with an empty body.
     Nothing,
     /// A function that returns this literal.
@@ -21,14 +20,14 @@ pub(in crate::link) enum Worth {
     Integer(u64),
 }
 
-/// Reads it off the tokens of a declaration.
-pub(in crate::link) fn worth(tokens: &[Token<'_>]) -> Worth {
+/// Finds the substitute of a declaration.
+pub(in crate::link) fn substitute(tokens: &[Token<'_>]) -> Substitute {
     match tokens {
         [first, rest @ ..] if first.text == "fn" => of_function(rest),
         [first, _, .., equals, value, _] if first.text == "const" && equals.text == "=" => {
-            integer(value).map_or(Worth::Itself, Worth::Integer)
+            integer(value).map_or(Substitute::None, Substitute::Integer)
         }
-        _ => Worth::Itself,
+        _ => Substitute::None,
     }
 }
 
@@ -42,26 +41,26 @@ pub(super) fn integer(token: &Token<'_>) -> Option<u64> {
     }
 }
 
-fn of_function(tokens: &[Token<'_>]) -> Worth {
-    let Some(open) = tokens.iter().position(|token| token.text == "{") else { return Worth::Itself };
+fn of_function(tokens: &[Token<'_>]) -> Substitute {
+    let Some(open) = tokens.iter().position(|token| token.text == "{") else { return Substitute::None };
     match &tokens[open + 1..] {
-        [_] => Worth::Nothing,
+        [_] => Substitute::Nothing,
         [word, value, _, _] if word.text == "return" => returned(value, &tokens[..open]),
-        _ => Worth::Itself,
+        _ => Substitute::None,
     }
 }
 
-fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Worth {
+fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Substitute {
     match value.kind {
-        _ if matches!(value.text, "true" | "false") => Worth::Literal(value.text.to_owned()),
+        _ if matches!(value.text, "true" | "false") => Substitute::Literal(value.text.to_owned()),
         // Without a type of its own a number could become another at the call.
         TokenKind::Number if value.text.ends_with('u') || value.text.contains('.') => {
-            Worth::Literal(value.text.to_owned())
+            Substitute::Literal(value.text.to_owned())
         }
         TokenKind::Name => {
-            parameters(signature).position(|name| name == value.text).map_or(Worth::Itself, Worth::Argument)
+            parameters(signature).position(|name| name == value.text).map_or(Substitute::None, Substitute::Argument)
         }
-        _ => Worth::Itself,
+        _ => Substitute::None,
     }
 }
 
