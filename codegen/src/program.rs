@@ -200,9 +200,8 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let no_renames = link::Renames::default();
     let own = instances::sources(pass, plan, registry)?;
     // A shared function serves a contract where no row has one of its own.
-    let fulfilled = CONTRACTS.iter().map(|contract| contract.name);
-    let fulfilled: Vec<&'static str> =
-        fulfilled.filter(|name| own.iter().any(|source| source.declares(name))).collect();
+    let contracts: Vec<&'static str> = CONTRACTS.iter().map(|contract| contract.name).collect();
+    let fulfilled: Vec<&'static str> = own.iter().flat_map(|source| source.declared(&contracts)).collect();
     let shared = registry.shared().iter();
     let shared = shared.map(|text| Source::template(text, &no_renames).leaving(fulfilled.clone()));
     let mut templates: Vec<Source> = shared.chain(own).collect();

@@ -1,6 +1,6 @@
 //! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
 
-use super::fold::{Substitute, has_effects, substitute};
+use super::fold::{Substitute, substitute};
 use super::token::{Token, TokenKind, tokens};
 use crate::program::Stage;
 
@@ -25,8 +25,6 @@ pub(crate) struct Item<'a> {
     pub(super) is_function: bool,
     /// What replaces its uses.
     pub(super) substitute: Substitute,
-    /// For a function: whether it does more than return a value, apart from what it calls.
-    pub(super) has_effects: bool,
     /// For a function: whether it compares a constant with a number or another constant.
     pub(super) compares_constants: bool,
     /// `var<private>` of an array without an initial value.
@@ -59,7 +57,6 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
             is_short: !text[start..end].contains('\n'),
             is_function,
             substitute: substitute(tokens),
-            has_effects: is_function && has_effects(tokens),
             compares_constants: is_function && compares_constants(tokens),
             is_private_array: is_private_array(tokens),
         });
@@ -191,14 +188,13 @@ fn with_comments(text: &str, comments: &[Token<'_>], at: usize) -> usize {
 
 /// Whether a constant's name stands next to a comparison, and another or a number on its other side.
 fn compares_constants(tokens: &[Token<'_>]) -> bool {
-    let is_constant = |token: &Token<'_>| token.text.bytes().all(|byte| byte == b'_' || !byte.is_ascii_lowercase());
+    let is_constant = |token: &Token<'_>| !token.text.bytes().any(|byte| byte.is_ascii_lowercase());
     let is_named = |token: &Token<'_>| token.kind == TokenKind::Name && is_constant(token);
     let is_operand = |token: &Token<'_>| token.kind == TokenKind::Number || is_named(token);
-    tokens.iter().enumerate().any(|(index, left)| {
-        let sign = |at: usize| tokens.get(at).is_some_and(|token| matches!(token.text, "<" | ">" | "=" | "!"));
-        let right = index + 1 + usize::from(sign(index + 1)) + usize::from(sign(index + 2));
-        let right = tokens.get(right).filter(|right| right.at > left.at && sign(index + 1) && is_operand(right));
-        is_operand(left) && right.is_some_and(|right| is_named(left) || is_named(right))
+    let is_sign = |index: usize| matches!(tokens[index].text, "<" | ">" | "=" | "!");
+    (1..tokens.len().saturating_sub(2)).any(|index| {
+        let (left, right) = (&tokens[index - 1], &tokens[index + 1 + usize::from(is_sign(index + 1))]);
+        is_sign(index) && is_operand(left) && is_operand(right) && (is_named(left) || is_named(right))
     })
 }
 

@@ -5,6 +5,7 @@
 //! are unknown here.
 
 mod fold;
+mod index;
 mod item;
 mod rename;
 mod token;
@@ -13,7 +14,7 @@ pub(crate) use item::{Head, Item, head, heads, names, parse as items, shape};
 pub(crate) use rename::Renames;
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use fragbuf_model::{Origin, UserFunction};
@@ -22,6 +23,7 @@ use fragbuf_templates::vocabulary::Template;
 use crate::contract::DESCRIBED;
 use crate::program::{EntryPoint, LineMap, LineOrigin};
 use fold::Folded;
+use index::Index;
 
 /// A text to link.
 #[derive(Clone, Debug)]
@@ -56,9 +58,12 @@ impl Source {
         Source { left, ..self }
     }
 
-    /// Whether it declares the name.
-    pub(crate) fn declares(&self, name: &str) -> bool {
-        self.items().is_ok_and(|items| items.as_slice().iter().any(|item| item.name == name))
+    /// Those of the names that it declares.
+    pub(crate) fn declared(&self, names: &[&'static str]) -> Vec<&'static str> {
+        // Linking reports what cannot be read.
+        let Ok(items) = self.items() else { return Vec::new() };
+        let is_declared = |name: &&&str| items.as_slice().iter().any(|item| item.name == **name);
+        names.iter().filter(is_declared).copied().collect()
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
@@ -253,8 +258,8 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
 }
 
 /// Where each name is declared. Looked up only: the order of the text is the order of the items.
-fn declarations<'a>(items: &[(usize, &Item<'a>)], sources: &[Source]) -> Result<HashMap<&'a str, usize>, Fault> {
-    let mut index = HashMap::with_capacity(items.len());
+fn declarations<'a>(items: &[(usize, &Item<'a>)], sources: &[Source]) -> Result<Index<'a>, Fault> {
+    let mut index = Index::with_capacity_and_hasher(items.len(), Default::default());
     for (id, (_, item)) in items.iter().enumerate() {
         if let Some(first) = index.insert(item.name, id) {
             return Err(declared_twice(items[first], items[id], sources));
@@ -279,7 +284,7 @@ fn declared_twice(first: (usize, &Item<'_>), second: (usize, &Item<'_>), sources
 /// The items that the roots reach, in the order of the sources.
 fn reach(
     items: &[(usize, &Item<'_>)],
-    index: &HashMap<&str, usize>,
+    index: &Index<'_>,
     exports: &[&str],
     folded: &BTreeMap<usize, Folded>,
 ) -> Result<BTreeSet<usize>, String> {

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use crate::link::token::{Token, TokenKind};
 
 /// Whether a function has effects of its own; those of the functions that it calls are left out.
-pub(in crate::link) fn has_effects(tokens: &[Token<'_>]) -> bool {
+pub(super) fn has_effects(tokens: &[Token<'_>]) -> bool {
     let locals: BTreeSet<&str> = declared(tokens, &["var", "let", "const"]).chain(["_"]).collect();
     let is_write = |index: usize| writes(tokens, index) && !locals.contains(target(tokens, index));
     let is_built_in = |token: &Token<'_>| token.kind == TokenKind::Name && built_in_has_effects(token.text);

@@ -72,6 +72,10 @@ impl Reader<'_> {
     }
 
     fn operator(&self) -> Option<(&'static str, usize)> {
+        let first = self.text(self.at).as_bytes().first();
+        if !first.is_some_and(|first| b"|&^=!<>+-*/%".contains(first)) {
+            return None;
+        }
         let touches = || self.tokens.get(self.at + 1).is_some_and(|next| next.at == self.tokens[self.at].at + 1);
         OPERATORS.into_iter().find(|(operator, _)| match operator.split_at(1) {
             (first, "") => self.text(self.at) == first,

@@ -20,15 +20,17 @@ mod values;
 #[cfg(test)]
 mod tests;
 
-pub(super) use effects::has_effects;
 pub(super) use substitute::{Substitute, substitute};
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use super::index::Index;
 use super::item::{Item, mentions};
-use super::token::tokens;
+use super::token::{Token, tokens};
 use crate::MARKERS;
 use edit::Lines;
+use effects::has_effects;
 use values::Known;
 
 /// A function after folding.
@@ -45,7 +47,7 @@ pub(super) struct Folded {
 /// Folds the functions among `reached`; `is_fixed` says whether a source keeps its text.
 pub(super) fn fold(
     items: &[(usize, &Item<'_>)],
-    index: &HashMap<&str, usize>,
+    index: &Index<'_>,
     reached: &BTreeSet<usize>,
     is_fixed: &dyn Fn(usize) -> bool,
 ) -> BTreeMap<usize, Folded> {
@@ -56,13 +58,22 @@ pub(super) fn fold(
         items,
         index,
         substitutes: constants.map(|id| (items[*id].1.name, items[*id].1.substitute.clone())).collect(),
+        names: Vec::new(),
+        effects: RefCell::default(),
         folded: BTreeMap::new(),
     };
+    let functions: Vec<usize> = ours.iter().copied().filter(|id| items[*id].1.is_function).collect();
+    folding.names = functions
+        .iter()
+        .map(|id| items[*id].1)
+        .filter(|item| item.substitute != Substitute::None)
+        .map(|item| item.name)
+        .collect();
     let mut is_first = true;
     loop {
         let known = folding.substitutes.len();
-        for &id in &ours {
-            if items[id].1.is_function && folding.may_fold(id, is_first) {
+        for &id in &functions {
+            if folding.may_fold(id, is_first) {
                 folding.function(id);
             }
         }
@@ -75,9 +86,13 @@ pub(super) fn fold(
 
 struct Folding<'f> {
     items: &'f [(usize, &'f Item<'f>)],
-    index: &'f HashMap<&'f str, usize>,
+    index: &'f Index<'f>,
     /// The substitutes found so far, by name.
     substitutes: BTreeMap<&'f str, Substitute>,
+    /// The functions among them.
+    names: Vec<&'f str>,
+    /// Whether functions that have not been folded have side effects of their own, as far as that was asked.
+    effects: RefCell<HashMap<usize, bool>>,
     folded: BTreeMap<usize, Folded>,
 }
 
@@ -85,16 +100,11 @@ impl Folding<'_> {
     /// Whether a function uses a declaration that has a substitute.
     fn may_fold(&self, id: usize, is_first: bool) -> bool {
         let item = self.items[id].1;
-        let names = self
-            .substitutes
-            .iter()
-            .filter(|(_, substitute)| !matches!(substitute, Substitute::Integer(_)))
-            .map(|(name, _)| *name);
-        let mut names = names.filter(|name| *name != item.name);
+        let mut names = self.names.iter().filter(|name| **name != item.name);
         (is_first && item.compares_constants)
             || match self.folded.get(&id) {
-                Some(folded) => names.any(|name| folded.mentions.iter().any(|other| other == name)),
-                None => names.any(|name| item.mentions.binary_search(&name).is_ok()),
+                Some(folded) => names.any(|name| folded.mentions.iter().any(|other| other == *name)),
+                None => names.any(|name| item.mentions.binary_search(name).is_ok()),
             }
     }
 
@@ -104,38 +114,31 @@ impl Folding<'_> {
             Some(folded) => Lines { text: folded.text.clone(), origins: folded.lines.clone() },
             None => Lines::written(item.text),
         };
-        let Some(after) = self.rounds(before) else { return };
-        let (code, _) = tokens(&after.text);
-        let folded = Folded {
-            mentions: mentions(&code).into_iter().map(str::to_owned).collect(),
-            substitute: substitute(&code),
-            has_effects: has_effects(&code),
-            lines: after.origins,
-            text: after.text,
-        };
+        let Some(folded) = self.rounds(before) else { return };
         if folded.substitute != Substitute::None {
             self.substitutes.insert(item.name, folded.substitute.clone());
+            self.names.push(item.name);
         }
         self.folded.insert(id, folded);
     }
 
     /// Repeats the rules until nothing changes; `None` where nothing did.
-    fn rounds(&self, mut lines: Lines) -> Option<Lines> {
+    fn rounds(&self, mut lines: Lines) -> Option<Folded> {
         let known = Known {
             substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
             has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
         };
         let mut has_changed = false;
-        for _ in 0..MOST_ROUNDS {
+        loop {
             let (code, _) = tokens(&lines.text);
             let edits = rules::edits(&lines.text, &code, &known, !has_changed);
+            // Every round leaves fewer tokens, or shorter ones, so one finds nothing to do.
             if edits.is_empty() {
-                break;
+                return has_changed.then(|| folded(&lines, &code));
             }
             lines = lines.apply(edits);
             has_changed = true;
         }
-        has_changed.then_some(lines)
     }
 
     /// Whether calling a function does more than return a value. WGSL has no recursion.
@@ -149,10 +152,22 @@ impl Folding<'_> {
         MARKERS.contains(&item.name)
             || match self.folded.get(&id) {
                 Some(folded) => folded.has_effects || folded.mentions.iter().any(|name| calls(name)),
-                None => item.has_effects || item.mentions.iter().any(|name| calls(name)),
+                None => self.writes(id) || item.mentions.iter().any(|name| calls(name)),
             }
+    }
+
+    fn writes(&self, id: usize) -> bool {
+        let text = self.items[id].1.text;
+        *self.effects.borrow_mut().entry(id).or_insert_with(|| has_effects(&tokens(text).0))
     }
 }
 
-/// More than any function of a template needs: each round leaves less than the one before.
-const MOST_ROUNDS: usize = 64;
+fn folded(lines: &Lines, code: &[Token<'_>]) -> Folded {
+    Folded {
+        text: lines.text.clone(),
+        lines: lines.origins.clone(),
+        mentions: mentions(code).into_iter().map(str::to_owned).collect(),
+        substitute: substitute(code),
+        has_effects: has_effects(code),
+    }
+}
