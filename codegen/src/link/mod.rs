@@ -226,12 +226,11 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
     let is_entry = |name: &str| entry_points.iter().any(|entry| entry.name == name);
     let prefixed = Renames::prefix(prefix, index.keys().copied().filter(|name| !is_entry(name)));
     // A head is about the whole file: where the functions are missing that it describes, its first paragraph is enough.
-    let is_described = |item: &Item<'_>| DESCRIBED.contains(&item.name);
+    let described = (0..items.len()).filter(|&id| DESCRIBED.contains(&items[id].1.name));
+    let described: Vec<(usize, bool)> = described.map(|id| (items[id].0, reached.contains(&id))).collect();
     let in_brief = |source: usize| {
-        let described = || (0..items.len()).filter(|&id| items[id].0 == source && is_described(items[id].1));
-        sources[source].origins.is_none()
-            && described().next().is_some()
-            && !described().any(|id| reached.contains(&id))
+        let mut own = described.iter().filter(|(other, _)| *other == source).peekable();
+        sources[source].origins.is_none() && own.peek().is_some() && own.all(|(_, is_linked)| !is_linked)
     };
     let mut heads = BTreeMap::new();
     let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
