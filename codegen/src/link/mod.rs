@@ -9,6 +9,7 @@ mod index;
 mod item;
 mod rename;
 mod token;
+mod writer;
 
 pub(crate) use item::{Head, Item, head, heads, names, parse as items, shape};
 pub(crate) use rename::Renames;
@@ -24,6 +25,7 @@ use crate::contract::DESCRIBED;
 use crate::program::{EntryPoint, LineMap, LineOrigin};
 use fold::Folded;
 use index::Index;
+use writer::Writer;
 
 /// A text to link.
 #[derive(Clone, Debug)]
@@ -305,64 +307,6 @@ fn reach(
         }
     }
     Ok(reached)
-}
-
-struct Writer {
-    text: String,
-    lines: LineMap,
-}
-
-impl Writer {
-    fn banner(&mut self, source: &Source, head: &str) {
-        self.blank_line();
-        self.text.push_str("// ---- ");
-        self.text.push_str(&source.name);
-        self.text.push('\n');
-        self.text.push_str(head);
-        self.lines.skip(1 + head.lines().count());
-    }
-
-    fn blank_line(&mut self) {
-        if !self.text.ends_with("\n\n") {
-            self.text.push('\n');
-            self.lines.skip(1);
-        }
-    }
-
-    /// An item after folding.
-    fn folded(&mut self, source: &Source, item: &Item<'_>, folded: &Folded, prefixed: &Renames) {
-        self.blank_line();
-        self.text.push_str(&prefixed.apply(&folded.text));
-        self.text.push('\n');
-        let mut rest = folded.lines.as_slice();
-        while let Some(&first) = rest.first() {
-            let length = (first..).zip(rest).take_while(|(expected, line)| expected == *line).count();
-            let line = item.first_line + first;
-            self.lines.run(length, LineOrigin::Source { name: source.name.clone(), line });
-            rest = &rest[length..];
-        }
-        self.blank_line();
-    }
-
-    fn item(&mut self, source: &Source, item: &Item<'_>, prefixed: &Renames) {
-        if !item.is_short {
-            self.blank_line();
-        }
-        self.text.push_str(&prefixed.apply(item.text));
-        self.text.push('\n');
-        let lines = item.text.lines().count();
-        match &source.origins {
-            Some(origins) => {
-                for at in (item.first_line..).take(lines) {
-                    self.lines.run(1, origins.get(at - 1).cloned().unwrap_or(LineOrigin::None));
-                }
-            }
-            None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
-        }
-        if !item.is_short {
-            self.blank_line();
-        }
-    }
 }
 
 #[cfg(test)]
