@@ -51,7 +51,9 @@ impl Rules<'_> {
                 break;
             }
             self.statement(statement, block);
-            if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.first(), rest.last()) {
+            // What continues a loop runs after every `continue`.
+            let rest = rest.iter().filter(|other| self.tokens[other.tokens.start].text != "continuing");
+            if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.clone().next(), rest.last()) {
                 self.remove(&(first.tokens.start..last.tokens.end));
                 break;
             }

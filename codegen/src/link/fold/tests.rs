@@ -138,6 +138,8 @@ fn what_follows_a_return_goes_and_so_does_what_nobody_reads() {
         "    while t {\n        if yes() {\n            break;\n        }\n        state = x;\n    }\n",
         "    while t {\n        break;\n    }\n",
     );
+    let continued = "    loop {\n        if t {\n            continue;\n        }\n        nothing(x);\n        break;\n        continuing {\n            state = x;\n        }\n    }\n";
+    folds("", continued, &continued.replace("        nothing(x);\n", ""));
     folds("", "    state = x;\n    if yes() {\n        return;\n    }\n", "    state = x;\n");
     folds("", "    if t {\n        nothing(x);\n    }\n    state = x;\n", "    state = x;\n");
     folds(
