@@ -137,7 +137,7 @@ pub const CONTRACTS: &[Contract] = &[
 ];
 
 /// What the heads of templates describe after their first paragraph, which holds for every part of the file.
-pub(crate) const DESCRIBED: [&str; 2] = ["storage_insert", "on_lost"];
+pub(crate) const DESCRIBED: [&str; 3] = ["storage_insert", "cull_fragment", "on_lost"];
 
 const fn row(axis: &'static str, name: &'static str, signature: &'static str, promise: &'static str) -> Contract {
     Contract { axis, name, signature, promise }
