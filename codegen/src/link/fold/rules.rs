@@ -52,8 +52,9 @@ impl Rules<'_> {
             }
             self.statement(statement, block);
             // What continues a loop runs after every `continue`.
-            let rest = rest.iter().filter(|other| self.tokens[other.tokens.start].text != "continuing");
-            if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.clone().next(), rest.last()) {
+            let is_left_out = |other: &&Statement| self.tokens[other.tokens.start].text != "continuing";
+            let rest: Vec<&Statement> = rest.iter().filter(is_left_out).collect();
+            if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.first(), rest.last()) {
                 self.remove(&(first.tokens.start..last.tokens.end));
                 break;
             }
