@@ -20,6 +20,7 @@ mod fuzz;
 mod instances;
 mod multisample;
 mod names;
+mod no_op_rows;
 mod opaque;
 mod oracle;
 mod own;

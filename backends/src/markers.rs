@@ -3,16 +3,8 @@
 //! Memory fences for targets that naga writes: its validator refuses them in fragment shaders, so they take the place of
 //! the marker's calls after validation. The other markers are each target's own affair.
 
+pub(crate) use fragbuf_codegen::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MEMORY_FENCE};
 use naga::{Block, Statement};
-
-/// Orders memory accesses.
-pub(crate) const MEMORY_FENCE: &str = "memory_fence";
-/// Whether this is a helper invocation.
-pub(crate) const HELPER_LANE: &str = "is_helper_lane";
-/// The interlock begins.
-pub(crate) const CRITICAL_BEGIN: &str = "critical_begin";
-/// The interlock ends.
-pub(crate) const CRITICAL_END: &str = "critical_end";
 
 /// The module with a fence over storage buffers in place of every call to the marker.
 pub(crate) fn with_fences(module: &naga::Module, prefix: &str) -> naga::Module {

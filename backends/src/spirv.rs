@@ -4,6 +4,7 @@
 //! not clamped and loops not bounded at run time unless a file of the user's own is part of the program.
 
 mod edits;
+mod initial;
 mod sample_mask;
 
 use naga::back::spv;
@@ -25,6 +26,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
             true => edits::apply(words, emission.prefix, emission.interlock)?,
             false => words,
         };
+        let words = initial::without(words, &pass.written_first);
         let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let path = emission.path(&format!(".{}.spv", stage_suffix(entry.stage)));
         files.push(emission.file(path, vec![(stage_name(entry.stage), entry.name.clone())], bytes));

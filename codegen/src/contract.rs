@@ -136,6 +136,9 @@ pub const CONTRACTS: &[Contract] = &[
     ),
 ];
 
+/// What the heads of templates describe after their first paragraph, which holds for every part of the file.
+pub(crate) const DESCRIBED: [&str; 3] = ["storage_insert", "cull_fragment", "on_lost"];
+
 const fn row(axis: &'static str, name: &'static str, signature: &'static str, promise: &'static str) -> Contract {
     Contract { axis, name, signature, promise }
 }

@@ -13,6 +13,7 @@ mod emit;
 mod frame;
 mod layout;
 mod link;
+mod markers;
 mod own;
 mod plan;
 mod program;
@@ -23,6 +24,7 @@ pub use frame::{
     Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range, ResourceId,
 };
 pub use layout::{Key, Layout, Word};
+pub use markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MARKERS, MEMORY_FENCE};
 pub use own::adopt;
 pub use plan::{Arrival, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};

@@ -7,7 +7,7 @@ fn count(varyings: Varyings) {
 
 /// Counts one fragment. `position` is the fragment's, in pixels.
 fn count_fragment(position: vec2<f32>, fragment: Fragment) {
-    if admit(fragment) && !opaque_hides(position, fragment) {
+    if fragment_enters(position, fragment) {
         storage_count(pixel_index(position));
     }
 }

@@ -8,7 +8,7 @@ fn measure(varyings: Varyings) {
 
 /// Takes one fragment into the range. `position` is the fragment's, in pixels.
 fn measure_fragment(position: vec2<f32>, fragment: Fragment) {
-    if admit(fragment) && !opaque_hides(position, fragment) {
+    if fragment_enters(position, fragment) {
         cull_measure(pixel_index(position), fragment_pack(fragment));
     }
 }

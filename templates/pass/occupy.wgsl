@@ -8,7 +8,7 @@ fn occupy(varyings: Varyings) {
 
 /// Marks where one fragment lies. `position` is the fragment's, in pixels.
 fn occupy_fragment(position: vec2<f32>, fragment: Fragment) {
-    if admit(fragment) && !opaque_hides(position, fragment) {
+    if fragment_enters(position, fragment) {
         cull_occupy(pixel_index(position), fragment_pack(fragment));
     }
 }

@@ -20,7 +20,7 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     sort_finish();
     if sorted_count() == 0u {
         // Where a pass serves some pixels only, the others have fragments and no layers.
-        if resolve_first() != END || overflow_is_empty(pixel) {
+        if overflow_is_empty(pixel) || resolve_first() != END {
             discard;
         }
         return overflow_finish(pixel, vec4<f32>(0.0));

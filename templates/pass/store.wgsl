@@ -7,14 +7,9 @@ fn store(varyings: Varyings) {
 
 /// Stores one fragment. `position` is the fragment's, in pixels.
 fn store_fragment(position: vec2<f32>, fragment: Fragment) {
-    if !admit(fragment) {
+    if !fragment_enters_counted(position, fragment) {
         return;
     }
-    if opaque_hides(position, fragment) {
-        count_event(OCCLUDED);
-        return;
-    }
-    count_event(GENERATED);
     let pixel = pixel_index(position);
     let entry = fragment_pack(fragment);
     if cull_fragment(pixel, entry) {

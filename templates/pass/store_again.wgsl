@@ -7,14 +7,11 @@ fn store(varyings: Varyings) {
 
 /// Stores one fragment. `position` is the fragment's, in pixels.
 fn store_fragment(position: vec2<f32>, fragment: Fragment) {
-    if !admit(fragment) {
-        return;
-    }
-    let is_hidden = opaque_hides(position, fragment);
     if frame.iteration == 0u {
-        count_event(select(GENERATED, OCCLUDED, is_hidden));
-    }
-    if is_hidden {
+        if !fragment_enters_counted(position, fragment) {
+            return;
+        }
+    } else if !fragment_enters(position, fragment) {
         return;
     }
     sync_store(pixel_index(position), fragment_pack(fragment));

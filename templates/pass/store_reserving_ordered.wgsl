@@ -7,17 +7,10 @@ fn store(varyings: Varyings) {
     let fragment = varyings_fragment(varyings);
     let pixel = pixel_index(varyings.position.xy);
     let entry = fragment_pack(fragment);
-    var wanted = admit(fragment);
-    if wanted && opaque_hides(varyings.position.xy, fragment) {
-        count_event(OCCLUDED);
+    var wanted = fragment_enters_counted(varyings.position.xy, fragment);
+    if wanted && cull_fragment(pixel, entry) {
+        on_culled(pixel, entry);
         wanted = false;
-    }
-    if wanted {
-        count_event(GENERATED);
-        if cull_fragment(pixel, entry) {
-            on_culled(pixel, entry);
-            wanted = false;
-        }
     }
     if wanted {
         wanted = !storage_reserve(pixel, entry);

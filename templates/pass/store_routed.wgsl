@@ -7,14 +7,9 @@ const WHOLE_PIXEL = (1u << CAPACITY) - 1u;
 @fragment
 fn store(varyings: Varyings, @builtin(sample_mask) covered: u32) -> Targets {
     let fragment = varyings_fragment(varyings);
-    if !admit(fragment) {
+    if !fragment_enters_counted(varyings.position.xy, fragment) {
         discard;
     }
-    if opaque_hides(varyings.position.xy, fragment) {
-        count_event(OCCLUDED);
-        discard;
-    }
-    count_event(GENERATED);
     if covered != WHOLE_PIXEL {
         count_loss(PARTLY_COVERED);
     }

@@ -3,13 +3,8 @@
 @fragment
 fn store(varyings: Varyings) -> Targets {
     let fragment = varyings_fragment(varyings);
-    if !admit(fragment) {
+    if !fragment_enters_counted(varyings.position.xy, fragment) {
         discard;
     }
-    if opaque_hides(varyings.position.xy, fragment) {
-        count_event(OCCLUDED);
-        discard;
-    }
-    count_event(GENERATED);
     return fragment_targets(fragment_pack(fragment));
 }

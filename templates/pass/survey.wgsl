@@ -8,7 +8,7 @@ fn survey(varyings: Varyings) {
 
 /// Surveys one fragment. `position` is the fragment's, in pixels.
 fn survey_fragment(position: vec2<f32>, fragment: Fragment) {
-    if admit(fragment) && !opaque_hides(position, fragment) {
+    if fragment_enters(position, fragment) {
         storage_survey(pixel_index(position), fragment_pack(fragment));
     }
 }

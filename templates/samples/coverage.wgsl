@@ -18,6 +18,9 @@ var<private> covered_number: u32;
 var<private> covered_place: u32;
 
 fn samples_resolve() -> vec4<f32> {
+    for (var sample = 0u; sample < SAMPLES; sample++) {
+        covered_counts[sample] = 0u;
+    }
     for (var place = 0u; place < sorted_count(); place++) {
         let coverage = sorted_layer(place).coverage;
         for (var sample = 0u; sample < SAMPLES; sample++) {

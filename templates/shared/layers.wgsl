@@ -8,7 +8,8 @@ fn sorted_count() -> u32 {
 }
 
 fn sorted_layer(index: u32) -> Fragment {
-    return fragment_unpack(layers[min(index, LAYERS - 1u)]);
+    // A helper lane, whose pixel has no fragment, may ask for one all the same.
+    return fragment_unpack(layers[min(index, max(gathered, 1u) - 1u)]);
 }
 
 /// Appends one fragment. If there are more than fit, the farthest are left out, whatever the order of arrival.

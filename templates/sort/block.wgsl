@@ -34,6 +34,7 @@ fn sort_finish() {
         }
         block_write(first);
     }
+    block_restart();
 }
 
 fn sorted_count() -> u32 {
@@ -44,15 +45,20 @@ fn sorted_layer(index: u32) -> Fragment {
     // A helper lane, whose pixel has no fragment, may ask for one all the same.
     let wanted = min(index, max(gathered, 1u) - 1u);
     if wanted + 1u < block_merged {
-        block_merged = 0u;
-        for (var block = 0u; block < BLOCKS; block++) {
-            block_heads[block] = 0u;
-        }
+        block_restart();
     }
     while block_merged <= wanted {
         block_merge_one();
     }
     return fragment_unpack(block_current);
+}
+
+/// Begins the merge, with nothing taken of any block.
+fn block_restart() {
+    block_merged = 0u;
+    for (var block = 0u; block < BLOCKS; block++) {
+        block_heads[block] = 0u;
+    }
 }
 
 /// Takes the nearest of the blocks' first.

@@ -3,7 +3,7 @@
 use crate::vocabulary::{Row, Template};
 
 pub(crate) fn rows() -> Vec<Row> {
-    let geometry = vec!["opaque", "addressing", "storage", "sync", "cull", "overflow", "counters"];
+    let store = ["addressing", "storage", "sync", "cull", "overflow", "counters"];
     vec![
         row("geometry", "the vertex stage of every geometry pass", template!("pass/geometry"), vec![]),
         row("fullscreen", "the vertex stage of every fullscreen pass", template!("pass/fullscreen"), vec![]),
@@ -13,12 +13,7 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/reset"),
             vec!["addressing", "storage"],
         ),
-        row(
-            "count",
-            "counts the fragments of each pixel",
-            template!("pass/count"),
-            vec!["opaque", "addressing", "storage"],
-        ),
+        drawn("count", "counts the fragments of each pixel", template!("pass/count"), &["addressing", "storage"]),
         row(
             "scan_blocks",
             "prefix sums inside blocks of 1024 pixels",
@@ -27,43 +22,43 @@ pub(crate) fn rows() -> Vec<Row> {
         ),
         row("scan_sums", "prefix sum over the sums of the blocks", template!("pass/scan_sums"), vec!["addressing"]),
         row("scan_add", "adds each block's sum to its pixels", template!("pass/scan_add"), vec!["addressing"]),
-        row("store", "stores the scene's fragments", template!("pass/store"), geometry.clone()),
-        row(
+        drawn("store", "stores the scene's fragments", template!("pass/store"), &store),
+        drawn(
             "store_reserving",
             "stores the scene's fragments, without the lock those that have a place of their own",
             template!("pass/store_reserving"),
-            geometry,
+            &store,
         ),
-        row(
+        drawn(
             "store_reserving_ordered",
             "stores the scene's fragments, outside an interlock those that have a place of their own",
             template!("pass/store_reserving_ordered"),
-            vec!["opaque", "addressing", "storage", "cull", "overflow", "counters"],
+            &["addressing", "storage", "cull", "overflow", "counters"],
         ),
-        row(
+        drawn(
             "store_ordered",
             "stores the scene's fragments inside an interlock",
             template!("pass/store_ordered"),
-            vec!["opaque", "addressing", "storage", "cull", "overflow", "counters"],
+            &["addressing", "storage", "cull", "overflow", "counters"],
         ),
-        row(
+        drawn(
             "store_again",
             "stores the scene's fragments once more in every round of a loop",
             template!("pass/store_again"),
-            vec!["opaque", "addressing", "storage", "sync", "counters"],
+            &["addressing", "storage", "sync", "counters"],
         ),
         row("route", "sets the stencil of one sample of every pixel", template!("pass/route"), vec![]),
-        row(
+        drawn(
             "store_targets",
             "stores the scene's fragments in targets, by tests that are fixed function",
             template!("pass/store_targets"),
-            vec!["opaque", "counters"],
+            &["counters"],
         ),
-        row(
+        drawn(
             "store_routed",
             "stores the scene's fragments in targets, and counts those that cover their pixel in part",
             template!("pass/store_routed"),
-            vec!["opaque", "counters"],
+            &["counters"],
         ),
         row(
             "resolve",
@@ -83,23 +78,23 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/resolve_stream"),
             vec!["addressing", "storage", "overflow", "resolve"],
         ),
-        row(
+        drawn(
             "survey",
             "draws the scene ahead of the store pass, for a storage that must know what will come",
             template!("pass/survey"),
-            vec!["opaque", "addressing", "storage"],
+            &["addressing", "storage"],
         ),
-        row(
+        drawn(
             "measure",
             "draws the scene ahead of the store pass, for the range of each pixel's keys",
             template!("pass/measure"),
-            vec!["opaque", "addressing", "cull"],
+            &["addressing", "cull"],
         ),
-        row(
+        drawn(
             "occupy",
             "draws the scene ahead of the store pass, for where in their range each pixel's keys lie",
             template!("pass/occupy"),
-            vec!["opaque", "addressing", "cull"],
+            &["addressing", "cull"],
         ),
         row(
             "narrow",
@@ -113,13 +108,22 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/limit"),
             vec!["addressing", "cull"],
         ),
-        row(
+        drawn(
             "settle",
             "draws the scene again for what a storage could not settle in one pass",
             template!("pass/settle"),
-            vec!["opaque", "addressing", "storage"],
+            &["addressing", "storage"],
         ),
     ]
+}
+
+/// The axes that `shared/prologue.wgsl` calls. Every pass over the scene begins with it, so an axis that is asked there too
+/// is added here and in that file, and in no skeleton.
+const PROLOGUE: [&str; 1] = ["opaque"];
+
+/// A pass over the scene.
+fn drawn(key: &str, summary: &'static str, template: Template, calls: &[&'static str]) -> Row {
+    row(key, summary, template, PROLOGUE.iter().chain(calls).copied().collect())
 }
 
 fn row(key: &str, summary: &'static str, template: Template, calls: Vec<&'static str>) -> Row {

@@ -2,8 +2,9 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 10] = [
+pub(crate) const TEMPLATES: [Template; 11] = [
     template!("shared/markers"),
+    template!("shared/prologue"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),
     template!("shared/encoding"),

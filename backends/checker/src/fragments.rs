@@ -137,10 +137,15 @@ fn packed(subject: &Subject, memory: &mut Memory, inputs: &[Vec<u32>]) -> Result
     inputs.iter().enumerate().for_each(|(number, words)| unpack.set_input(number, words));
     ended(&mut unpack, memory)?;
     let fragment = unpack.result().to_vec();
-    let mut admit = Machine::new(&programs.admit);
-    set_all(&mut admit, &fragment);
-    ended(&mut admit, memory)?;
-    let Some(pack) = programs.pack.as_ref().filter(|_| admit.result() == [1]) else { return Ok(None) };
+    if let Some(admit) = &programs.admit {
+        let mut admit = Machine::new(admit);
+        set_all(&mut admit, &fragment);
+        ended(&mut admit, memory)?;
+        if admit.result() != [1] {
+            return Ok(None);
+        }
+    }
+    let Some(pack) = &programs.pack else { return Ok(None) };
     let mut pack = Machine::new(pack);
     set_all(&mut pack, &fragment);
     ended(&mut pack, memory)?;

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use fragbuf_backends::{Checked, check};
 use fragbuf_codegen::{FIRST_BINDING, Form, Linking, Plan, Profile, link};
-use fragbuf_interpreter::{Exit, Machine, Options, Program, Texture, Unsupported};
+use fragbuf_interpreter::{Exit, Machine, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostics, Origin};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Element, Fact, TextureFormat};
@@ -17,7 +17,7 @@ use crate::frame::{Memory, with_buffers};
 use crate::frame_memory::{FrameMemory, ReadOutError};
 use crate::question::{question, row};
 use crate::sampled::{Reader, Sampled, is_read};
-use crate::subject::{MARKERS, Subject, refused};
+use crate::subject::{Subject, options, refused};
 
 /// The passes, each a file.
 const READ_OUT: &str = "read_out";
@@ -177,7 +177,7 @@ fn function(
     formats: &[Option<TextureFormat>],
     origin: &Origin,
 ) -> Result<Program, Diagnostics> {
-    let program = Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS });
+    let program = Program::function(checked.module(), checked.info(), name, &options(checked));
     program.and_then(|program| readable(program, formats)).map_err(|faults| refused(checked, &faults, origin))
 }
 

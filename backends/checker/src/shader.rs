@@ -45,7 +45,7 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
     let program = program(&checked, shader.entry, shader)?;
     let module = checked.module();
     let has_holds = module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(HOLDS));
-    let options = Options { markers: &MARKERS };
+    let options = Options { markers: &MARKERS, ..Options::default() };
     let holds = match has_holds {
         true => Some(
             Program::function(module, checked.info(), HOLDS, &options).map_err(|faults| refused(&faults, shader))?,
@@ -105,6 +105,7 @@ fn parsed(shader: &Shader<'_>) -> Result<Checked, Error> {
         entry_points: Vec::new(),
         exports: Vec::new(),
         resources: Vec::new(),
+        written_first: Vec::new(),
         notes: Notes::default(),
     };
     check(pass, Profile::Native, &Origin::new(shader.file, 1, 1)).map_err(|faults| {
@@ -114,7 +115,7 @@ fn parsed(shader: &Shader<'_>) -> Result<Checked, Error> {
 }
 
 fn program(checked: &Checked, entry: &str, shader: &Shader<'_>) -> Result<Program, Error> {
-    let options = Options { markers: &MARKERS };
+    let options = Options { markers: &MARKERS, ..Options::default() };
     let program = Program::entry_point(checked.module(), checked.info(), entry, &options);
     program.and_then(Program::without_textures).map_err(|faults| refused(&faults, shader))
 }

@@ -31,6 +31,9 @@ const READ_STREAM: &str = "read_stream";
 /// From a fragment to the words that are stored.
 const PACK: &str = "fragment_pack";
 
+/// Whether a fragment meets every constraint.
+const ADMIT: &str = "admit";
+
 /// How often a fragment tries before it gives up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tries {
@@ -78,7 +81,8 @@ pub(crate) struct Runnable {
 #[derive(Debug)]
 pub(crate) struct FragmentPrograms {
     pub(crate) unpack: Program,
-    pub(crate) admit: Program,
+    /// Where there are constraints.
+    pub(crate) admit: Option<Program>,
     /// Not for a pass that only counts.
     pub(crate) pack: Option<Program>,
 }
@@ -142,7 +146,7 @@ impl Subject {
         }
         passes.sort_by_key(|runnable| order(&plan, runnable));
         let ask = |checked: &Checked, name: &str| {
-            Program::function(checked.module(), checked.info(), name, &Options { markers: &MARKERS })
+            Program::function(checked.module(), checked.info(), name, &options(checked))
                 .map_err(|faults| refused(checked, &faults, origin))
         };
         let read_out = ReadOut::new(&plan, target.profile, &registry)?;
@@ -239,25 +243,32 @@ fn make_least(selection: &mut Selection) -> bool {
 
 fn runnable(plan: &Plan, (pass, id): (&PlannedPass, PassId), checked: &Checked) -> Result<Runnable, Vec<Unsupported>> {
     let (module, info) = (checked.module(), checked.info());
-    let options = Options { markers: &MARKERS };
+    let options = options(checked);
     let stage = if pass.kind == Kind::Geometry { Stage::Fragment } else { Stage::Compute };
     let entry = |entry: &&EntryPoint| entry.stage == stage;
     let name = checked.pass().entry_points.iter().find(entry).map_or("", |entry| entry.name.as_str());
     let program = with_brought(Program::entry_point(module, info, name, &options)?, plan)?;
+    // What always holds, and what nothing reads, is not linked.
+    let linked = |name: &str| match module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(name))
+    {
+        true => Program::function(module, info, name, &options).map(Some),
+        false => Ok(None),
+    };
     let fragment = match stage {
         Stage::Fragment => Some(FragmentPrograms {
             unpack: Program::function(module, info, "varyings_fragment", &options)?,
-            admit: Program::function(module, info, "admit", &options)?,
-            pack: match module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(PACK)) {
-                true => Some(Program::function(module, info, PACK, &options)?),
-                false => None,
-            },
+            admit: linked(ADMIT)?,
+            pack: linked(PACK)?,
         }),
         _ => None,
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
     let is_awaited = plan.frame.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(id));
     Ok(Runnable { pass: pass.clone(), id, iteration: None, is_awaited, program, fragment, source })
+}
+
+pub(crate) fn options(checked: &Checked) -> Options<'_> {
+    Options { markers: &MARKERS, written_first: &checked.pass().written_first }
 }
 
 /// The program, if it reads no textures but those that the caller brings.

@@ -81,10 +81,9 @@ fn program(checked: &Checked, stage: Stage) -> Result<Program, Error> {
     let Some(entry) = pass.entry_points.iter().find(|entry| entry.stage == stage) else {
         return Err(refused(format!("a pass without an entry point of the stage {stage:?}")));
     };
-    Program::entry_point(checked.module(), checked.info(), &entry.name, &Options { markers: MARKERS }).map_err(
-        |faults| {
-            let faults: Vec<String> = faults.into_iter().map(|fault| fault.what).collect();
-            refused(faults.join(", "))
-        },
-    )
+    let options = Options { markers: MARKERS, written_first: &pass.written_first };
+    Program::entry_point(checked.module(), checked.info(), &entry.name, &options).map_err(|faults| {
+        let faults: Vec<String> = faults.into_iter().map(|fault| fault.what).collect();
+        refused(faults.join(", "))
+    })
 }

@@ -118,7 +118,13 @@ impl Printer<'_> {
     pub fn is_long_private_array(&self, global: Handle<GlobalVariable>) -> bool {
         let variable = &self.module.global_variables[global];
         let private = variable.space == AddressSpace::Private && variable.init.is_none() && self.has_main;
-        private && self.is_long_array(variable.ty)
+        private && !self.is_written_first(global) && self.is_long_array(variable.ty)
+    }
+
+    /// Whether no read sees the variable's initial value, by the options.
+    fn is_written_first(&self, global: Handle<GlobalVariable>) -> bool {
+        let name = self.module.global_variables[global].name.as_deref().unwrap_or_default();
+        self.options.written_first.contains(&name)
     }
 
     /// Longer than reads well as a row of zeros.
@@ -149,7 +155,7 @@ impl Printer<'_> {
                 let value = match variable.init {
                     Some(init) => format!(" = {}", self.constant_expression(init).text),
                     // `main` begins by setting it to zero, in a loop.
-                    None if self.is_long_private_array(handle) => String::new(),
+                    None if self.is_long_private_array(handle) || self.is_written_first(handle) => String::new(),
                     None => format!(" = {}", self.zero(variable.ty, span)),
                 };
                 lines.push(format!("{declaration}{value};"));

@@ -86,6 +86,8 @@ pub struct Options<'a> {
     /// OpenGL only: names of globals whose `atomicLoad` may print as a plain (coherent, volatile) read, because no writer
     /// runs in the pass or the value is a hint that is checked again. Every other `atomicLoad` prints as `atomicOr(x, 0u)`.
     pub plain_loads: &'a [&'a str],
+    /// Names of private variables that are written before they are read: these get no initial value, where WGSL has zeros.
+    pub written_first: &'a [&'a str],
     /// Whether workgroup variables are set to zero first, as WGSL has them. Not needed where all are written before they
     /// are read.
     pub zero_workgroup_memory: bool,

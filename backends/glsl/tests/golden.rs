@@ -541,6 +541,7 @@ fn header_stands_below_the_version() {
         markers: &[],
         bindings: &slot,
         plain_loads: &[],
+        written_first: &[],
         zero_workgroup_memory: true,
     };
     let text = fragbuf_glsl::print(&module, &info, source, Unit::EntryPoint("main"), &options).unwrap();

@@ -29,6 +29,9 @@ pub enum Marker {
 pub struct Options<'a> {
     /// Functions by name.
     pub markers: &'a [(&'a str, Marker)],
+    /// Private variables, by name, that are written before they are read: they begin with words that no program means, so
+    /// that a read of their initial value shows.
+    pub written_first: &'a [String],
 }
 
 /// What the interpreter cannot run, and where it stands.

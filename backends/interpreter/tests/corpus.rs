@@ -228,7 +228,7 @@ fn wrapped() {
 }
 ";
 
-/// `pass/resolve.wgsl` without the target.
+/// `pass/resolve.wgsl` without the target, for sorts that are finished once all is gathered.
 const RESOLVED: &str = "
 @group(0) @binding(20) var<storage, read_write> shown: array<vec4<f32>>;
 @compute @workgroup_size(1)
@@ -240,7 +240,6 @@ fn wrapped(@builtin(global_invocation_id) id: vec3<u32>) {
         sort_gather(storage_read(pixel, cursor));
         cursor = storage_next(pixel, cursor);
     }
-    sort_finish();
     shown[pixel] = resolve_layers();
 }
 ";

@@ -1,5 +1,6 @@
 //! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
 
+use super::fold::{Substitute, substitute};
 use super::token::{Token, TokenKind, tokens};
 use crate::program::Stage;
 
@@ -21,6 +22,13 @@ pub(crate) struct Item<'a> {
     pub(crate) is_bound: bool,
     /// One line: set next to its like, without a blank line between.
     pub(crate) is_short: bool,
+    pub(super) is_function: bool,
+    /// What replaces its uses.
+    pub(super) substitute: Substitute,
+    /// For a function: whether it compares a constant with a number or another constant.
+    pub(super) compares_constants: bool,
+    /// `var<private>` of an array without an initial value.
+    pub(super) is_private_array: bool,
 }
 
 /// The declarations in order. `Err`: the line of something that is none.
@@ -36,15 +44,21 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
         let start = with_comments(text, &comments, first.at);
         line += newlines(&text[counted..start]);
         counted = start;
+        let stage = stage(tokens);
+        let is_function = stage.is_some() || first.text == "fn" || tokens.iter().any(|token| token.text == "fn");
         items.push(Item {
             name: declared.text,
             text: &text[start..end],
             first_line: line,
             declared_line: line + newlines(&text[start..declared.at]),
             mentions: mentions(tokens),
-            stage: stage(tokens),
+            stage,
             is_bound: tokens.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
             is_short: !text[start..end].contains('\n'),
+            is_function,
+            substitute: substitute(tokens),
+            compares_constants: is_function && compares_constants(tokens),
+            is_private_array: is_private_array(tokens),
         });
         rest = after;
     }
@@ -62,6 +76,14 @@ pub(crate) fn head(text: &str) -> String {
         length += line.len();
     }
     String::new()
+}
+
+/// A head up to the first line without words, and the blank line behind it.
+pub(super) fn first_paragraph(head: &str) -> String {
+    match head.split_once("\n//\n") {
+        Some((first, _)) => format!("{first}\n\n"),
+        None => head.to_owned(),
+    }
 }
 
 /// A function's name and what stands between it and the body.
@@ -164,7 +186,25 @@ fn with_comments(text: &str, comments: &[Token<'_>], at: usize) -> usize {
     start
 }
 
-fn mentions<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+/// Whether a constant's name stands next to a comparison, and another or a number on its other side.
+fn compares_constants(tokens: &[Token<'_>]) -> bool {
+    let is_constant = |token: &Token<'_>| !token.text.bytes().any(|byte| byte.is_ascii_lowercase());
+    let is_named = |token: &Token<'_>| token.kind == TokenKind::Name && is_constant(token);
+    let is_operand = |token: &Token<'_>| token.kind == TokenKind::Number || is_named(token);
+    let is_sign = |index: usize| matches!(tokens[index].text, "<" | ">" | "=" | "!");
+    (1..tokens.len().saturating_sub(2)).any(|index| {
+        let (left, right) = (&tokens[index - 1], &tokens[index + 1 + usize::from(is_sign(index + 1))]);
+        is_sign(index) && is_operand(left) && is_operand(right) && (is_named(left) || is_named(right))
+    })
+}
+
+fn is_private_array(tokens: &[Token<'_>]) -> bool {
+    let is_at = |index: usize, text: &str| tokens.get(index).is_some_and(|token| token.text == text);
+    let is_private = ["var", "<", "private", ">"].iter().enumerate().all(|(index, text)| is_at(index, text));
+    is_private && is_at(6, "array") && !tokens.iter().any(|token| token.text == "=")
+}
+
+pub(super) fn mentions<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let names = tokens.iter().enumerate().filter(|(index, token)| {
         let is_member = *index > 0 && tokens[index - 1].text == ".";
         token.kind == TokenKind::Name && !is_member

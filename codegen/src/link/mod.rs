@@ -1,23 +1,31 @@
 //! Whole WGSL files in, one text out: the declarations that the roots reach, in the order of the sources, under a banner
 //! per file, with a record of where every line comes from.
 //!
-//! Renaming works on tokens, so comments and layout stay as they were written. Nothing here knows what a pass is.
+//! Renaming works on tokens, so comments and layout stay as they were written. `fold/` removes code without effect. Passes
+//! are unknown here.
 
+mod fold;
+mod index;
 mod item;
 mod rename;
 mod token;
+mod writer;
 
 pub(crate) use item::{Head, Item, head, heads, names, parse as items, shape};
 pub(crate) use rename::Renames;
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
 
+use crate::contract::DESCRIBED;
 use crate::program::{EntryPoint, LineMap, LineOrigin};
+use fold::Folded;
+use index::Index;
+use writer::Writer;
 
 /// A text to link.
 #[derive(Clone, Debug)]
@@ -52,9 +60,12 @@ impl Source {
         Source { left, ..self }
     }
 
-    /// Whether it declares the name.
-    pub(crate) fn declares(&self, name: &str) -> bool {
-        self.items().is_ok_and(|items| items.as_slice().iter().any(|item| item.name == name))
+    /// Those of the names that it declares.
+    pub(crate) fn declared(&self, names: &[&'static str]) -> Vec<&'static str> {
+        // Linking reports what cannot be read.
+        let Ok(items) = self.items() else { return Vec::new() };
+        let is_declared = |name: &&&str| items.as_slice().iter().any(|item| item.name == **name);
+        names.iter().filter(is_declared).copied().collect()
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
@@ -189,6 +200,10 @@ pub(crate) struct Linked {
     pub(crate) entry_points: Vec<EntryPoint>,
     /// Names of the declarations that were linked, before the prefix.
     pub(crate) declared: BTreeSet<String>,
+    /// Private arrays of sources of ours that were linked, as the text names them.
+    pub(crate) private_arrays: Vec<String>,
+    /// The heads that were printed, by the names of their sources.
+    pub(crate) heads: BTreeMap<Arc<str>, String>,
 }
 
 /// Links `sources`. Roots are the entry points, or `exports` where there are any. `prefix` goes before every name but the
@@ -202,31 +217,50 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         .filter(|(source, item)| !sources[*source].left.contains(&item.name))
         .collect();
     let index = declarations(&items, sources)?;
-    let reached = reach(&items, &index, exports)?;
+    let none = BTreeMap::new();
+    let before = reach(&items, &index, exports, &none)?;
+    let folded = fold::fold(&items, &index, &before, &|source| sources[source].origins.is_some());
+    let reached = if folded.is_empty() { before } else { reach(&items, &index, exports, &folded)? };
     let entry_points: Vec<EntryPoint> = reached
         .iter()
         .filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.to_owned(), stage }))
         .collect();
     let is_entry = |name: &str| entry_points.iter().any(|entry| entry.name == name);
     let prefixed = Renames::prefix(prefix, index.keys().copied().filter(|name| !is_entry(name)));
+    // A head is about the whole file: where the functions are missing that it describes, its first paragraph is enough.
+    let described = (0..items.len()).filter(|&id| DESCRIBED.contains(&items[id].1.name));
+    let described: Vec<(usize, bool)> = described.map(|id| (items[id].0, reached.contains(&id))).collect();
+    let in_brief = |source: usize| {
+        let mut own = described.iter().filter(|(other, _)| *other == source).peekable();
+        sources[source].origins.is_none() && own.peek().is_some() && own.all(|(_, is_linked)| !is_linked)
+    };
+    let mut heads = BTreeMap::new();
     let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
     writer.lines.skip(header.lines().count());
     let mut current: Option<&str> = None;
     for &id in &reached {
         let (source, item) = items[id];
         if current != Some(&sources[source].name) {
-            writer.banner(&sources[source]);
+            let whole = head(&sources[source].text);
+            let head = if in_brief(source) { item::first_paragraph(&whole) } else { whole };
+            writer.banner(&sources[source], &head);
+            heads.insert(sources[source].name.clone(), head);
             current = Some(&sources[source].name);
         }
-        writer.item(&sources[source], item, &prefixed);
+        match folded.get(&id) {
+            Some(folded) => writer.folded(&sources[source], item, folded, &prefixed),
+            None => writer.item(&sources[source], item, &prefixed),
+        }
     }
+    let is_ours = |id: &&usize| items[**id].1.is_private_array && sources[items[**id].0].origins.is_none();
+    let private_arrays = reached.iter().filter(is_ours).map(|&id| format!("{prefix}{}", items[id].1.name)).collect();
     let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
-    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared })
+    Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared, private_arrays, heads })
 }
 
 /// Where each name is declared. Looked up only: the order of the text is the order of the items.
-fn declarations<'a>(items: &[(usize, &Item<'a>)], sources: &[Source]) -> Result<HashMap<&'a str, usize>, Fault> {
-    let mut index = HashMap::with_capacity(items.len());
+fn declarations<'a>(items: &[(usize, &Item<'a>)], sources: &[Source]) -> Result<Index<'a>, Fault> {
+    let mut index = Index::with_capacity_and_hasher(items.len(), Default::default());
     for (id, (_, item)) in items.iter().enumerate() {
         if let Some(first) = index.insert(item.name, id) {
             return Err(declared_twice(items[first], items[id], sources));
@@ -251,8 +285,9 @@ fn declared_twice(first: (usize, &Item<'_>), second: (usize, &Item<'_>), sources
 /// The items that the roots reach, in the order of the sources.
 fn reach(
     items: &[(usize, &Item<'_>)],
-    index: &HashMap<&str, usize>,
+    index: &Index<'_>,
     exports: &[&str],
+    folded: &BTreeMap<usize, Folded>,
 ) -> Result<BTreeSet<usize>, String> {
     let mut waiting: Vec<usize> = Vec::new();
     if exports.is_empty() {
@@ -263,55 +298,15 @@ fn reach(
     }
     let mut reached = BTreeSet::new();
     while let Some(id) = waiting.pop() {
-        if reached.insert(id) {
-            waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name)));
+        if !reached.insert(id) {
+            continue;
+        }
+        match folded.get(&id) {
+            Some(folded) => waiting.extend(folded.mentions.iter().filter_map(|name| index.get(name.as_str()))),
+            None => waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name))),
         }
     }
     Ok(reached)
-}
-
-struct Writer {
-    text: String,
-    lines: LineMap,
-}
-
-impl Writer {
-    fn banner(&mut self, source: &Source) {
-        self.blank_line();
-        let head = head(&source.text);
-        self.text.push_str("// ---- ");
-        self.text.push_str(&source.name);
-        self.text.push('\n');
-        self.text.push_str(&head);
-        self.lines.skip(1 + head.lines().count());
-    }
-
-    fn blank_line(&mut self) {
-        if !self.text.ends_with("\n\n") {
-            self.text.push('\n');
-            self.lines.skip(1);
-        }
-    }
-
-    fn item(&mut self, source: &Source, item: &Item<'_>, prefixed: &Renames) {
-        if !item.is_short {
-            self.blank_line();
-        }
-        self.text.push_str(&prefixed.apply(item.text));
-        self.text.push('\n');
-        let lines = item.text.lines().count();
-        match &source.origins {
-            Some(origins) => {
-                for at in (item.first_line..).take(lines) {
-                    self.lines.run(1, origins.get(at - 1).cloned().unwrap_or(LineOrigin::None));
-                }
-            }
-            None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
-        }
-        if !item.is_short {
-            self.blank_line();
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! The templates of a pass: its skeleton, and one source per instance that fulfils a contract of it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Memory, Pass, Role, Row};
 
-use crate::link::{Renames, Source, head, names};
+use crate::link::{Renames, Source, names};
 use crate::plan::{axis_of, instance_row};
 use crate::{CONTRACTS, Plan};
 
@@ -30,14 +31,19 @@ pub(super) fn sources(pass: &Pass, plan: &Plan, registry: &Registry) -> Result<V
     Ok(sources)
 }
 
-/// The heads of the templates that come from papers, without comment signs.
-pub(super) fn algorithms(pass: &Pass, plan: &Plan, registry: &Registry) -> Result<String, String> {
+/// Those of the printed heads whose templates come from papers, without comment signs.
+pub(super) fn algorithms(
+    pass: &Pass,
+    plan: &Plan,
+    registry: &Registry,
+    printed: &BTreeMap<Arc<str>, String>,
+) -> Result<String, String> {
     let mut heads: Vec<String> = Vec::new();
     for role in ordered(pass, registry) {
         let row = instance_row(role, &plan.selection, registry)?;
-        if let Some(template) = row.template.as_ref().filter(|_| !row.paper.is_empty()) {
-            let lines = head(&template.text);
-            let lines: Vec<&str> = lines.lines().map(|line| line.trim_start_matches("//").trim()).collect();
+        let template = row.template.as_ref().filter(|_| !row.paper.is_empty());
+        if let Some((template, head)) = template.and_then(|one| Some((one, printed.get(&*one.path)?))) {
+            let lines: Vec<&str> = head.lines().map(|line| line.trim_start_matches("//").trim()).collect();
             let text = format!("{}:\n{}\n", template.path, lines.join("\n").trim_end());
             if !heads.contains(&text) {
                 heads.push(text);

@@ -45,6 +45,7 @@ pub fn print_with(
         markers: MARKERS,
         bindings: &bindings,
         plain_loads,
+        written_first: &[],
         zero_workgroup_memory: true,
     };
     fragbuf_glsl::print(&module, &info, source, unit, &options)

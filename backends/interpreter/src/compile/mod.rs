@@ -29,6 +29,9 @@ use place::Spot;
 /// Instructions of one program at most: calls are inlined, and calls of calls of calls add up.
 const LARGEST: usize = 1 << 20;
 
+/// What a private variable begins with whose initial value nothing reads: no index, no depth, no EMPTY.
+const UNWRITTEN: Word = 0xdead_beef;
+
 /// What an expression has become.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Value {
@@ -191,7 +194,7 @@ impl<'m> Compiler<'m> {
             AddressSpace::Private => {
                 let words = match variable.init {
                     Some(init) => self.constant_value(init)?,
-                    None => vec![0; self.shapes.dense(inner)? as usize],
+                    None => vec![self.initial(variable); self.shapes.dense(inner)? as usize],
                 };
                 let first = self.privates.len() as Word;
                 let length = words.len() as u32;
@@ -216,6 +219,12 @@ impl<'m> Compiler<'m> {
             is_wide: false,
         });
         Ok(Value::Spot(Spot::shared(number)))
+    }
+
+    /// The words of a private variable that has no value of its own.
+    fn initial(&self, variable: &naga::GlobalVariable) -> Word {
+        let is_written_first = |name: &String| self.options.written_first.contains(name);
+        if variable.name.as_ref().is_some_and(is_written_first) { UNWRITTEN } else { 0 }
     }
 
     /// Words of a buffer, arrays of unknown length not counted.

@@ -1,0 +1,76 @@
+//! Applies edits to a text, and keeps the line that each of its lines comes from.
+//!
+//! In: a text with the origins of its lines, and edits. Out: the same after the edits.
+
+use std::ops::Range;
+
+/// Puts `text`, which has no line break, in place of a range of bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Edit {
+    pub(super) range: Range<usize>,
+    pub(super) text: String,
+}
+
+/// Removes a range.
+pub(super) fn removal(range: Range<usize>) -> Edit {
+    Edit { range, text: String::new() }
+}
+
+/// A text, and for each of its lines the one that it comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Lines {
+    pub(super) text: String,
+    pub(super) origins: Vec<usize>,
+}
+
+impl Lines {
+    /// A text as it was written; lines count from 0.
+    pub(super) fn written(text: &str) -> Self {
+        Lines { text: text.to_owned(), origins: (0..text.lines().count()).collect() }
+    }
+
+    /// Applies the edits. Where two overlap, the later one begins where the earlier ends.
+    pub(super) fn apply(&self, mut edits: Vec<Edit>) -> Self {
+        edits.sort_by_key(|edit| (edit.range.start, edit.range.end));
+        let mut copy = Copy { old: self, new: Lines { text: String::new(), origins: Vec::new() }, line: 0, at: 0 };
+        for edit in edits {
+            copy.keep(edit.range.start.max(copy.at));
+            copy.put(&edit.text);
+            copy.skip(edit.range.end.max(copy.at));
+        }
+        copy.keep(self.text.len());
+        copy.new
+    }
+}
+
+struct Copy<'l> {
+    old: &'l Lines,
+    new: Lines,
+    /// The line of `at`.
+    line: usize,
+    at: usize,
+}
+
+impl Copy<'_> {
+    fn keep(&mut self, end: usize) {
+        let old = self.old;
+        for piece in old.text[self.at..end].split_inclusive('\n') {
+            self.put(piece);
+            self.line += usize::from(piece.ends_with('\n'));
+        }
+        self.at = end;
+    }
+
+    fn skip(&mut self, end: usize) {
+        self.line += self.old.text[self.at..end].matches('\n').count();
+        self.at = end;
+    }
+
+    fn put(&mut self, piece: &str) {
+        let begins = self.new.text.is_empty() || self.new.text.ends_with('\n');
+        if begins && !piece.is_empty() {
+            self.new.origins.push(self.old.origins.get(self.line).copied().unwrap_or_default());
+        }
+        self.new.text.push_str(piece);
+    }
+}

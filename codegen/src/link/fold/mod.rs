@@ -1,0 +1,173 @@
+//! Removes code without effect from linked functions, before any target prints them.
+//!
+//! In: the declarations that a text links. Out: new texts for some of its functions, each line with the line that it comes
+//! from. Calls of empty functions are removed. Calls of functions that return a constant or their own argument are replaced
+//! by it. Known conditions select a branch, unread locals are removed. This repeats until nothing changes.
+//!
+//! Invariant: an expression is removed only if it has no side effects, so a program keeps its meaning. Never changed: texts
+//! of the user's own, marker functions, whose calls other targets replace, and functions that cannot be parsed.
+
+mod choice;
+mod edit;
+mod effects;
+mod expression;
+mod lines;
+mod rules;
+mod substitute;
+mod syntax;
+mod values;
+
+#[cfg(test)]
+mod tests;
+
+pub(super) use substitute::{Substitute, substitute};
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::index::Index;
+use super::item::{Item, mentions};
+use super::token::{Token, tokens};
+use crate::MARKERS;
+use edit::Lines;
+use effects::has_effects;
+use values::Known;
+
+/// A function after folding.
+#[derive(Clone, Debug)]
+pub(super) struct Folded {
+    pub(super) text: String,
+    /// For each line the one of the source's item, from 0.
+    pub(super) lines: Vec<usize>,
+    pub(super) mentions: Vec<String>,
+    substitute: Substitute,
+    has_effects: bool,
+}
+
+/// Folds the functions among `reached`; `is_fixed` says whether a source keeps its text.
+pub(super) fn fold(
+    items: &[(usize, &Item<'_>)],
+    index: &Index<'_>,
+    reached: &BTreeSet<usize>,
+    is_fixed: &dyn Fn(usize) -> bool,
+) -> BTreeMap<usize, Folded> {
+    let stays = |id: &usize| is_fixed(items[*id].0) || MARKERS.contains(&items[*id].1.name);
+    let ours: Vec<usize> = reached.iter().copied().filter(|id| !stays(id)).collect();
+    let constants = ours.iter().filter(|id| items[**id].1.substitute != Substitute::None);
+    let mut folding = Folding {
+        items,
+        index,
+        substitutes: constants.map(|id| (items[*id].1.name, items[*id].1.substitute.clone())).collect(),
+        names: Vec::new(),
+        effects: RefCell::default(),
+        folded: BTreeMap::new(),
+    };
+    let functions: Vec<usize> = ours.iter().copied().filter(|id| items[*id].1.is_function).collect();
+    folding.names = functions
+        .iter()
+        .map(|id| items[*id].1)
+        .filter(|item| item.substitute != Substitute::None)
+        .map(|item| item.name)
+        .collect();
+    let mut is_first = true;
+    loop {
+        let known = folding.substitutes.len();
+        for &id in &functions {
+            if folding.may_fold(id, is_first) {
+                folding.function(id);
+            }
+        }
+        if !is_first && known == folding.substitutes.len() {
+            return folding.folded;
+        }
+        is_first = false;
+    }
+}
+
+struct Folding<'f> {
+    items: &'f [(usize, &'f Item<'f>)],
+    index: &'f Index<'f>,
+    /// The substitutes found so far, by name.
+    substitutes: BTreeMap<&'f str, Substitute>,
+    /// The functions among them.
+    names: Vec<&'f str>,
+    /// Whether functions that have not been folded have side effects of their own, as far as that was asked.
+    effects: RefCell<HashMap<usize, bool>>,
+    folded: BTreeMap<usize, Folded>,
+}
+
+impl Folding<'_> {
+    /// Whether a function uses a declaration that has a substitute.
+    fn may_fold(&self, id: usize, is_first: bool) -> bool {
+        let item = self.items[id].1;
+        let mut names = self.names.iter().filter(|name| **name != item.name);
+        (is_first && item.compares_constants)
+            || match self.folded.get(&id) {
+                Some(folded) => names.any(|name| folded.mentions.iter().any(|other| other == *name)),
+                None => names.any(|name| item.mentions.binary_search(name).is_ok()),
+            }
+    }
+
+    fn function(&mut self, id: usize) {
+        let item = self.items[id].1;
+        let before = match self.folded.get(&id) {
+            Some(folded) => Lines { text: folded.text.clone(), origins: folded.lines.clone() },
+            None => Lines::written(item.text),
+        };
+        let Some(folded) = self.rounds(before) else { return };
+        if folded.substitute != Substitute::None {
+            self.substitutes.insert(item.name, folded.substitute.clone());
+            self.names.push(item.name);
+        }
+        self.folded.insert(id, folded);
+    }
+
+    /// Repeats the rules until nothing changes; `None` where nothing did.
+    fn rounds(&self, mut lines: Lines) -> Option<Folded> {
+        let known = Known {
+            substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
+            has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
+        };
+        let mut has_changed = false;
+        loop {
+            let (code, _) = tokens(&lines.text);
+            let edits = rules::edits(&lines.text, &code, &known, !has_changed);
+            // Every round leaves fewer tokens, or shorter ones, so one finds nothing to do.
+            if edits.is_empty() {
+                return has_changed.then(|| folded(&lines, &code));
+            }
+            lines = lines.apply(edits);
+            has_changed = true;
+        }
+    }
+
+    /// Whether calling a function does more than return a value. WGSL has no recursion.
+    fn has_effects(&self, id: usize) -> bool {
+        let item = self.items[id].1;
+        let calls = |name: &str| {
+            self.index
+                .get(name)
+                .is_some_and(|other| *other != id && self.items[*other].1.is_function && self.has_effects(*other))
+        };
+        MARKERS.contains(&item.name)
+            || match self.folded.get(&id) {
+                Some(folded) => folded.has_effects || folded.mentions.iter().any(|name| calls(name)),
+                None => self.writes(id) || item.mentions.iter().any(|name| calls(name)),
+            }
+    }
+
+    fn writes(&self, id: usize) -> bool {
+        let text = self.items[id].1.text;
+        *self.effects.borrow_mut().entry(id).or_insert_with(|| has_effects(&tokens(text).0))
+    }
+}
+
+fn folded(lines: &Lines, code: &[Token<'_>]) -> Folded {
+    Folded {
+        text: lines.text.clone(),
+        lines: lines.origins.clone(),
+        mentions: mentions(code).into_iter().map(str::to_owned).collect(),
+        substitute: substitute(code),
+        has_effects: has_effects(code),
+    }
+}

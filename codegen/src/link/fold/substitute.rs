@@ -1,0 +1,70 @@
+//! Finds declarations whose uses can be replaced: by nothing, by a literal, or by an argument.
+//!
+//! In: the tokens of one declaration. Out: its substitute. Never looks into a statement other than a single `return`.
+
+use crate::link::token::{Token, TokenKind};
+
+/// What replaces the uses of a declaration.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in crate::link) enum Substitute {
+    /// Nothing does.
+    #[default]
+    None,
+    /// A function with an empty body.
+    Nothing,
+    /// A function that returns this literal.
+    Literal(String),
+    /// A function that returns its argument of this number.
+    Argument(usize),
+    /// A constant that is this whole number.
+    Integer(u64),
+}
+
+/// Finds the substitute of a declaration.
+pub(in crate::link) fn substitute(tokens: &[Token<'_>]) -> Substitute {
+    match tokens {
+        [first, rest @ ..] if first.text == "fn" => of_function(rest),
+        [first, _, .., equals, value, _] if first.text == "const" && equals.text == "=" => {
+            integer(value).map_or(Substitute::None, Substitute::Integer)
+        }
+        _ => Substitute::None,
+    }
+}
+
+/// A literal without a fraction, whatever its suffix.
+pub(super) fn integer(token: &Token<'_>) -> Option<u64> {
+    let digits = token.text.trim_end_matches(['u', 'i']);
+    match digits.strip_prefix("0x") {
+        _ if token.kind != TokenKind::Number => None,
+        Some(digits) => u64::from_str_radix(digits, 16).ok(),
+        None => digits.parse().ok(),
+    }
+}
+
+fn of_function(tokens: &[Token<'_>]) -> Substitute {
+    let Some(open) = tokens.iter().position(|token| token.text == "{") else { return Substitute::None };
+    match &tokens[open + 1..] {
+        [_] => Substitute::Nothing,
+        [word, value, _, _] if word.text == "return" => returned(value, &tokens[..open]),
+        _ => Substitute::None,
+    }
+}
+
+fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Substitute {
+    match value.kind {
+        _ if matches!(value.text, "true" | "false") => Substitute::Literal(value.text.to_owned()),
+        // Without a type of its own a number could become another at the call.
+        TokenKind::Number if value.text.ends_with('u') || value.text.contains('.') => {
+            Substitute::Literal(value.text.to_owned())
+        }
+        TokenKind::Name => {
+            parameters(signature).position(|name| name == value.text).map_or(Substitute::None, Substitute::Argument)
+        }
+        _ => Substitute::None,
+    }
+}
+
+/// The names before a colon: types hold none.
+fn parameters<'a>(signature: &'a [Token<'a>]) -> impl Iterator<Item = &'a str> {
+    signature.windows(2).filter(|pair| pair[1].text == ":").map(|pair| pair[0].text)
+}

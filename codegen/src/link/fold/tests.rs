@@ -1,0 +1,202 @@
+//! What folds, and what does not, on small texts.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use super::super::{Source, link};
+use crate::program::LineOrigin;
+
+/// Functions that fold, and others.
+const LIBRARY: &str = "\
+const LIMIT = 0u;
+const MOST = 4u;
+const ONE = 1.0;
+var<private> state: u32;
+
+fn nothing(a: u32) {}
+
+fn yes() -> bool {
+    return true;
+}
+
+fn no(a: u32, b: u32) -> bool {
+    return false;
+}
+
+fn share() -> f32 {
+    return 1.0;
+}
+
+fn zero() -> u32 {
+    return 0u;
+}
+
+fn second(a: u32, b: u32) -> u32 {
+    return b;
+}
+
+fn read(a: u32) -> u32 {
+    var found = a;
+    for (var i = 0u; i < a; i++) {
+        found += state;
+    }
+    return found;
+}
+
+fn write(a: u32) -> u32 {
+    state = a;
+    return a;
+}
+
+fn write_deep(a: u32) -> u32 {
+    return write(a) + 1u;
+}
+
+fn memory_fence() {}
+";
+
+/// The function `f` of this body and result, once it is linked; its text's first and last line are left out.
+fn folded(result: &str, body: &str) -> String {
+    let head = format!("fn f(x: u32, t: bool){result} {{");
+    let text = format!("{head}\n{body}}}\n");
+    let sources = [Source::generated("a", LIBRARY.to_owned()), Source::generated("b", text)];
+    let linked = link("", &sources, &["f"], "").unwrap();
+    let start = linked.text.find(&head).unwrap() + head.len() + 1;
+    linked.text[start..].trim_end().strip_suffix('}').unwrap().to_owned()
+}
+
+fn folds(result: &str, body: &str, expected: &str) {
+    assert_eq!(folded(result, body), expected, "{body}");
+}
+
+#[test]
+fn calls_of_empty_functions_go_with_the_comments_above() {
+    folds("", "    let a = x;\n    // Counts.\n    nothing(a);\n    state = a;\n", "    let a = x;\n    state = a;\n");
+    folds("", "    state = x;\n\n    nothing(read(x)); // Twice.\n", "    state = x;\n");
+    folds("", "    nothing(write(x));\n", "    nothing(write(x));\n");
+    folds("", "    nothing(write_deep(x));\n", "    nothing(write_deep(x));\n");
+    folds("", "    memory_fence();\n    state = x;\n", "    memory_fence();\n    state = x;\n");
+}
+
+#[test]
+fn known_conditions_decide() {
+    let then = "    if yes() {\n        // Kept.\n        state = x;\n\n        state = 2u;\n    }\n";
+    folds("", then, "    // Kept.\n    state = x;\n\n    state = 2u;\n");
+    folds("", "    // Why.\n    if !yes() {\n        state = x;\n    }\n    state = 1u;\n", "    state = 1u;\n");
+    let chain = "    if no(x, x) {\n        state = 1u;\n    } else if t {\n        state = 2u;\n    } else {\n        state = 3u;\n    }\n";
+    folds("", chain, "    if t {\n        state = 2u;\n    } else {\n        state = 3u;\n    }\n");
+    let middle = "    if t {\n        state = 1u;\n    } else if no(x, x) {\n        state = 2u;\n    } else {\n        state = 3u;\n    }\n";
+    folds("", middle, "    if t {\n        state = 1u;\n    } else {\n        state = 3u;\n    }\n");
+    let ends = "    if t {\n        state = 1u;\n    } else if yes() {\n        state = 2u;\n    } else {\n        state = 3u;\n    }\n";
+    folds("", ends, "    if t {\n        state = 1u;\n    } else {\n        state = 2u;\n    }\n");
+    let other = "    if no(x, x) {\n        state = 1u;\n    } else {\n        state = 2u;\n    }\n";
+    folds("", other, "    state = 2u;\n");
+}
+
+#[test]
+fn operators_fold_where_one_side_decides() {
+    let value = |expression: &str, expected: &str| {
+        folds(" -> bool", &format!("    return {expression};\n"), &format!("    return {expected};\n"));
+    };
+    value("t && yes()", "t");
+    value("yes() && (t || read(x) > 1u)", "t || read(x) > 1u");
+    value("t || !no(x, x)", "true");
+    value("write(x) == 1u || yes()", "write(x) == 1u || true");
+    value("read(x) == 1u || yes()", "true");
+    value("!(t && yes())", "!t");
+    value("(t || no(x, x)) && x < 2u", "t && x < 2u");
+    value("no(write(x), x) && t", "no(write(x), x) && t");
+    value("LIMIT > 0u && f32(x) < ONE", "false");
+    value("LIMIT != MOST && x < MOST", "x < MOST");
+    value("x < LIMIT", "x < LIMIT");
+    value("select(x, state, yes()) == 1u", "state == 1u");
+}
+
+#[test]
+fn numbers_and_arguments_take_the_place_of_calls() {
+    folds(
+        " -> f32",
+        "    var a = f32(x) * share();\n    a *= share();\n    a += 2.0;\n    return a;\n",
+        "    var a = f32(x);\n    a += 2.0;\n    return a;\n",
+    );
+    folds(" -> u32", "    return 8u / zero();\n", "    return 8u / zero();\n");
+    folds(" -> u32", "    return 2u * second(x, x + state);\n", "    return 2u * (x + state);\n");
+    folds(" -> u32", "    return second(\n        read(x),\n        write(x),\n    );\n", "    return write(x);\n");
+    folds(" -> u32", "    return second(write(x), x);\n", "    return second(write(x), x);\n");
+}
+
+#[test]
+fn what_follows_a_return_goes_and_so_does_what_nobody_reads() {
+    folds(
+        " -> u32",
+        "    if yes() {\n        return x;\n    }\n    // Never.\n    let a = x;\n    return a;\n",
+        "    return x;\n",
+    );
+    folds("", "    let a = read(x);\n    nothing(a);\n    state = x;\n", "    state = x;\n");
+    folds("", "    let a = write(x);\n    nothing(a);\n", "    let a = write(x);\n");
+    folds(
+        "",
+        "    while t {\n        if yes() {\n            break;\n        }\n        state = x;\n    }\n",
+        "    while t {\n        break;\n    }\n",
+    );
+    let continued = "    loop {\n        if t {\n            continue;\n        }\n        nothing(x);\n        break;\n        continuing {\n            state = x;\n        }\n    }\n";
+    folds("", continued, &continued.replace("        nothing(x);\n", ""));
+    folds("", "    state = x;\n    if yes() {\n        return;\n    }\n", "    state = x;\n");
+    folds("", "    if t {\n        nothing(x);\n    }\n    state = x;\n", "    state = x;\n");
+    folds(
+        "",
+        "    if t {\n        state = x;\n    } else {\n        nothing(x);\n    }\n",
+        "    if t {\n        state = x;\n    }\n",
+    );
+}
+
+#[test]
+fn a_condition_that_is_returned_is_written_so() {
+    let body = |condition: &str, value: bool| {
+        format!("    nothing(x);\n    if {condition} {{\n        return {value};\n    }}\n    return {};\n", !value)
+    };
+    folds(" -> bool", &body("!t", false), "    return t;\n");
+    folds(" -> bool", &body("t", false), "    return !t;\n");
+    folds(" -> bool", &body("x > 1u", true), "    return x > 1u;\n");
+    folds(" -> bool", &body("x > 1u", false), "    return !(x > 1u);\n");
+}
+
+#[test]
+fn locals_that_never_change_are_their_value() {
+    let wanted = "    var wanted = yes();\n    if wanted && no(x, x) {\n        wanted = false;\n    }\n    if wanted {\n        state = x;\n    }\n";
+    folds("", wanted, "    state = x;\n");
+    let changed = "    var wanted = yes();\n    if t {\n        wanted = false;\n    }\n    if wanted {\n        state = x;\n    }\n";
+    folds("", changed, &changed.replace("yes()", "true"));
+}
+
+#[test]
+fn shadowed_names_are_left_alone() {
+    // The inner `a` would meet the outer one.
+    let body = "    let a = x;\n    if yes() {\n        let a = 2u;\n        state = a;\n    }\n    state = a;\n";
+    folds("", body, &body.replace("yes()", "true"));
+    let hidden = "    let LIMIT = x;\n    if LIMIT > 0u {\n        state = 1u;\n    }\n";
+    folds("", hidden, hidden);
+}
+
+#[test]
+fn loops_and_switches_keep_their_shape() {
+    let body = "    for (var i = 0u; i < MOST && yes(); i++) {\n        nothing(i);\n        switch i {\n            case 0u: {\n                nothing(i);\n                state = i;\n            }\n            default: {}\n        }\n    }\n";
+    let expected = "    for (var i = 0u; i < MOST; i++) {\n        switch i {\n            case 0u: {\n                state = i;\n            }\n            default: {}\n        }\n    }\n";
+    folds("", body, expected);
+}
+
+#[test]
+fn functions_that_come_to_nothing_go_too_and_constants_with_them() {
+    let text = "fn outer(x: u32) {\n    if no(x, x) {\n        inner(x);\n    }\n}\n\nfn inner(x: u32) {\n    nothing(MOST);\n}\n\nfn f(x: u32) {\n    outer(x);\n    state = x;\n}\n";
+    let sources = [Source::generated("a", LIBRARY.to_owned()), Source::generated("b", text.to_owned())];
+    let linked = link("", &sources, &["f"], "p_").unwrap();
+    let expected = "\n// ---- generated/a\nvar<private> p_state: u32;\n\n// ---- generated/b\n\nfn p_f(x: u32) {\n    p_state = x;\n}\n\n";
+    assert_eq!(linked.text, expected);
+    let line = linked.text.lines().position(|line| line.contains("p_state = x")).unwrap() + 1;
+    assert_eq!(linked.lines.origin(line), LineOrigin::Source { name: "generated/b".into(), line: 13 });
+}
+
+#[test]
+fn what_cannot_be_read_stays() {
+    let body = "    if yes() {\n        state = x;\n    }\n    @diagnostic(off, derivative_uniformity)\n    if t {\n        state = 1u;\n    }\n";
+    folds("", body, body);
+}
