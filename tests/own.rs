@@ -335,7 +335,9 @@ fn an_addressing_of_the_users_own() {
     let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
     let variant = load(&read, &[], &[], &registry).variant.unwrap();
     let generation = generate(&variant, &request, &registry).unwrap();
-    assert_eq!(&*generation.plans[0].plan.pixels().0, "ceil_div(width, 4) * 4 * height");
+    let symbols = &generation.plans[0].plan.symbols;
+    let PlanValue::Default(pixels) = &symbols.get(SymbolId::PIXELS).value else { panic!("pixels are defined") };
+    assert_eq!(pixels.to_string(), "ceil_div(width, 4) * 4 * height");
     assert_eq!(fragbuf::manifest(&generation, 0)["pixels"], "ceil_div(width, 4) * 4 * height");
     for (from, to, at) in [("pixels =", "fragments =", "fragments"), ("* height", "* depth", "depth")] {
         let (faults, _) = faults(&with("padded", description, &PADDED.replace(from, to))).unwrap_err();
