@@ -8,12 +8,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fragbuf::vocabulary::{Fact, Row, Template};
+use fragbuf::vocabulary::{Capability, Fact, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::{Linking, Profile, link, plan, verify};
-use fragbuf_model::{
-    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned, is_target_fact,
-};
+use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
 use crate::validators::validate;
@@ -26,7 +24,10 @@ fn descriptions() -> Vec<Draft> {
 
 /// The rows of an axis, those together that state the same facts: the rules see nothing else of a row.
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
-    let facts = |row: &Row| (row.offers.clone(), row.implies.clone(), row.requires.clone(), row.least.clone());
+    let facts = |row: &Row| {
+        let requires = (row.requires.clone(), row.needs.clone(), row.least.clone());
+        (row.offers.clone(), row.implies.clone(), requires, row.carries.len())
+    };
     let mut classes: Vec<Vec<&Row>> = Vec::new();
     for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
         match classes.iter_mut().find(|class| facts(class[0]) == facts(row)) {
@@ -121,7 +122,7 @@ fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
         |row: &Row, fact: Fact| row.offers.contains(&fact) || row.implies.iter().any(|(_, then)| *then == fact);
     let may_be = |fact: Fact| {
         let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
-        GIVEN.contains(&fact) || is_target_fact(fact) || rows().chain(later()).any(|row| offers(row, fact))
+        GIVEN.contains(&fact) || rows().chain(later()).any(|row| offers(row, fact))
     };
     let all = rows().all(|row| row.requires.iter().all(|fact| may_be(*fact)));
     if all { Outlook::Open } else { Outlook::Hopeless }
@@ -236,7 +237,7 @@ fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<
     let mut known: Vec<(Profile, Selection)> = Vec::new();
     let mut texts = Vec::new();
     for target in TARGETS {
-        let offers = [target.offers, &[Fact::OwnEntryPoints]].concat();
+        let offers = [target.offers, &[Capability::OwnEntryPoints]].concat();
         let Ok(selection) = variant.select(&offers) else { continue };
         let one = (target.profile, selection);
         if known.contains(&one) {

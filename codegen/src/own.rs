@@ -5,7 +5,7 @@
 //! Which functions are needed follows from the rows that call them; nothing here names one.
 
 use fragbuf_model::codes::{CONTRACT, REFUSED, ROW, UNKNOWN_AXIS, UNKNOWN_VALUE};
-use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, is_target_fact, mangled};
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, mangled};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Kind, Pass, Row, State, Step};
 
@@ -232,8 +232,7 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         let is_chosen = registry.axis(&caller.axis).is_some_and(|axis| axis.chosen);
         // What no row of the axis offers is the affair of other axes, or of the description.
         let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| offers(other, *fact));
-        let suits =
-            || caller.requires.iter().all(|fact| offers(row, *fact) || is_target_fact(*fact) || is_others(fact));
+        let suits = || caller.requires.iter().all(|fact| offers(row, *fact) || is_others(fact));
         let (name, place) = match is_chosen {
             true if suits() => (format!("`{}: {}`", caller.axis, caller.key), places.row.clone()),
             true => continue,

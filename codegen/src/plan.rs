@@ -12,10 +12,10 @@ pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
 use summary::{passes, words_per_pixel};
 
-use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
+use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Definition, Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
+    Capability, Definition, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step,
 };
 
 use crate::Layout;
@@ -49,7 +49,7 @@ pub struct Plan {
     /// Times that the scene is drawn.
     pub geometry_passes: String,
     /// What a target must offer.
-    pub requires: Vec<Fact>,
+    pub requires: Vec<Capability>,
     /// What the safety under concurrency rests on.
     pub soundness: Soundness,
     /// What can go wrong by design.
@@ -121,10 +121,9 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let built = build(selection, limit, registry, (&bound, &layout), &constants).map_err(fault)?;
     let offers = selection.offers();
     let rows = || selection.rows.iter().map(|selected| &selected.row);
-    let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
+    let mut requires: Vec<Capability> = rows().flat_map(|row| row.needs.iter().copied()).collect();
     requires.sort();
     requires.dedup();
-    requires.retain(|fact| is_target_fact(*fact));
     Ok(Plan {
         variant: variant.clone(),
         selection: selection.clone(),

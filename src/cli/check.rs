@@ -142,7 +142,7 @@ impl Check {
         let Some(name) = &self.target else {
             let able = TARGETS.iter().find(|target| {
                 let mut offers = target.offers.to_vec();
-                offers.push(fragbuf_templates::vocabulary::Fact::OwnEntryPoints);
+                offers.push(fragbuf_templates::vocabulary::Capability::OwnEntryPoints);
                 variant.select(&offers).is_ok()
             });
             return able.ok_or_else(|| Failure::Usage("no target can express the description".to_owned()));

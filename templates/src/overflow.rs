@@ -1,6 +1,6 @@
 //! Axis `overflow`: what becomes of a fragment that finds no place.
 
-use crate::vocabulary::{Access, Element, Fact, Hazard, Resource, Row, Template, Use};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Resource, Row, Template, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -18,7 +18,8 @@ pub(crate) fn rows() -> Vec<Row> {
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
             calls: vec!["counters", "samples"],
-            requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve, Fact::FragmentAtomics],
+            requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve],
+            needs: vec![Capability::FragmentAtomics],
             ..row(
                 "weighted_tail",
                 "it counts in a mean colour behind what is kept; the same for every order of arrival",
@@ -35,7 +36,7 @@ pub(crate) fn rows() -> Vec<Row> {
                     .cleared(0),
             ],
             uses: vec![Use::new("failed", Access::Atomic)],
-            requires: vec![Fact::FragmentAtomics],
+            needs: vec![Capability::FragmentAtomics],
             ..row(
                 "fail",
                 "the whole frame is magenta if one found no room, or a lock was not free in time",
@@ -52,14 +53,8 @@ fn tail_blend() -> Row {
     Row {
         resources: vec![tail.by("channel", "4").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("blended", Access::Coherent)],
-        requires: vec![
-            Fact::Color,
-            Fact::LosesWhole,
-            Fact::DisplacesInTurn,
-            Fact::Critical,
-            Fact::CullsNothing,
-            Fact::FragmentAtomics,
-        ],
+        requires: vec![Fact::Color, Fact::LosesWhole, Fact::DisplacesInTurn, Fact::Critical, Fact::CullsNothing],
+        needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "samples"],
         hazards: vec![Hazard::new(
             "shows-arrival",
@@ -125,8 +120,8 @@ fn merging(slots: Fact, row: Row) -> Row {
             Fact::OneSample,
             Fact::Critical,
             Fact::CullsNothing,
-            Fact::FragmentAtomics,
         ],
+        needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "storage"],
         ..row
     }

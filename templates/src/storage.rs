@@ -11,7 +11,7 @@ mod repeated;
 mod stream;
 mod worst_first;
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Resource, Row, Step};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -51,7 +51,7 @@ fn sorted_array() -> Row {
         offers: [OF_THE_K_BEST.as_slice(), &[Fact::SurvivesRaces, Fact::KeepsArrival]].concat(),
         // Entries are in the order of their keys.
         implies: vec![(Fact::DepthKey, Fact::Sorted), (Fact::DepthKey, Fact::OrderedSlots)],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
             Hazard::new(
@@ -96,7 +96,7 @@ fn fixed_array() -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
         implies: vec![(Fact::Limited, Fact::BestSuffice)],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",

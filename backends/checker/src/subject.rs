@@ -8,7 +8,7 @@ use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, pla
 use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+use fragbuf_templates::vocabulary::{Access, Capability, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
 
 use crate::stream::StreamPrograms;
 use crate::turns::{Turn, turns};
@@ -99,7 +99,7 @@ impl Subject {
         tries: Tries,
     ) -> Result<Option<Self>, Diagnostics> {
         let mut offers = target.offers.to_vec();
-        offers.push(Fact::OwnEntryPoints);
+        offers.push(Capability::OwnEntryPoints);
         let mut selection = variant.select(&offers).map_err(|refusal| {
             let hint = "choose another target, or add an `else` to the axis";
             let text = format!("{} cannot express it: {refusal}", target.name);
@@ -164,8 +164,8 @@ impl Subject {
             read: ask(READ_OUT, "storage_read")?,
             bound: if wants_bound { Some(ask(READ_BOUND, "storage_bound")?) } else { None },
             stream,
-            has_fences: target.offers.contains(&Fact::Fences),
-            has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
+            has_fences: target.offers.contains(&Capability::Fences),
+            has_ordered_interlock: plan.requires.contains(&Capability::OrderedInterlock),
             uniform: 1.0,
             turns,
             plan,

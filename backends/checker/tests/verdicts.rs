@@ -4,7 +4,7 @@ use fragbuf_backends::tier;
 use fragbuf_checker::{Error, Limits, Model, Report};
 use fragbuf_model::Selection;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Fact};
+use fragbuf_templates::vocabulary::{Capability, Effect, Fact};
 
 use crate::subjects::{limits, report, target, variant};
 
@@ -175,7 +175,7 @@ fn every_technique_has_a_verdict_or_nothing_to_try() {
 fn submission_decides_ties_only_where_it_decides_who_enters() {
     let mut registry = Registry::builtin();
     let mut row = registry.row("sync", "interlock_ordered").unwrap().clone();
-    row.requires.retain(|fact| *fact != Fact::OrderedInterlock);
+    row.needs.retain(|capability| *capability != Capability::OrderedInterlock);
     registry = registry.with(row);
     let checked = |registry: &Registry, ties: &str| {
         let set = [("sync", "interlock_ordered"), ("ties", ties)];
@@ -224,7 +224,7 @@ fn tiers_follow_from_the_model() {
     cases.extend(interleaved(&registry).map(|key| (key, set(key))));
     for (key, set) in cases {
         let soundness = variant(key, set, &registry).unwrap();
-        let select = |name: &str| soundness.select(&[target(name).offers, &[Fact::OwnEntryPoints]].concat()).ok();
+        let select = |name: &str| soundness.select(&[target(name).offers, &[Capability::OwnEntryPoints]].concat()).ok();
         // Metal has neither fences nor coherent words, native WGSL no fences: what is late there is late without help.
         let helpless = ["msl", "wgsl-native"].into_iter().find(|name| select(name).is_some()).unwrap();
         let bare = holds(key, set, helpless, Model::Late);
@@ -246,7 +246,7 @@ fn tiers_follow_from_the_model() {
     }
     let interlock = variant("kplus_array", INTERLOCK, &registry).unwrap();
     let mut offers = target("spirv").offers.to_vec();
-    offers.push(Fact::OwnEntryPoints);
+    offers.push(Capability::OwnEntryPoints);
     let selection = interlock.select(&offers).unwrap();
     assert_eq!(tier(selection.soundness(), target("spirv")), "T2");
     assert!(holds("kplus_array", INTERLOCK, "spirv", Model::Late));

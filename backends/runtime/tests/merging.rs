@@ -10,7 +10,7 @@ use fragbuf_cpu::Order;
 use fragbuf_model::{Draft, Origin, Variant, check};
 use fragbuf_runtime::headless::Offscreen;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::cpu_device;
 use crate::oracle::{self, pixels};
@@ -268,7 +268,7 @@ fn where_nothing_is_lost_the_picture_is_that_of_drop() {
 fn plans_say_that_the_order_of_arrival_shows() {
     let stage = stage::device();
     let arrival = |variant: &Variant| {
-        let offers = [target("spirv").unwrap().offers, &[Fact::OwnEntryPoints]].concat();
+        let offers = [target("spirv").unwrap().offers, &[Capability::OwnEntryPoints]].concat();
         plan(variant, &variant.select(&offers).unwrap(), &Registry::builtin()).unwrap().arrival()
     };
     let first_and_last = |variant: &Variant| {

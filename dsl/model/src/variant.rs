@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Fact, Row, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Fact, Row, Soundness};
 
 use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
 
@@ -69,9 +69,9 @@ impl Variant {
         Variant(description)
     }
 
-    /// The rows for a target that offers `target`: the first alternative on each axis that it can express. `Err`: the
-    /// facts that are missing and the row that needs them, for the last alternative.
-    pub fn select(&self, target: &[Fact]) -> Result<Selection, Refusal> {
+    /// The rows for a target with the capabilities `target`: the first alternative on each axis that it can express. `Err`:
+    /// the last alternative of an axis, and what it needs.
+    pub fn select(&self, target: &[Capability]) -> Result<Selection, Refusal> {
         let mut rows = Vec::with_capacity(self.choices.len());
         for chosen in &self.choices {
             let mut refusal = None;
@@ -82,8 +82,9 @@ impl Variant {
                         refusal = None;
                         break;
                     }
-                    Some(fact) => {
-                        refusal = Some(Refusal { axis: chosen.axis.clone(), value: selected.row.key.clone(), fact });
+                    Some(capability) => {
+                        let (axis, value) = (chosen.axis.clone(), selected.row.key.clone());
+                        refusal = Some(Refusal { axis, value, capability });
                     }
                 }
             }
@@ -111,39 +112,17 @@ pub struct Refusal {
     /// The row.
     pub value: String,
     /// What it needs.
-    pub fact: Fact,
+    pub capability: Capability,
 }
 
 impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.fact.meaning())
+        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.capability.meaning())
     }
 }
 
-/// The facts that only a target can offer.
-const TARGET_FACTS: &[Fact] = &[
-    Fact::FragmentAtomics,
-    Fact::Fences,
-    Fact::Coherent,
-    Fact::Interlock,
-    Fact::OrderedInterlock,
-    Fact::U64Atomics,
-    Fact::EarlyDepth,
-    Fact::MinMaxBlend,
-    Fact::SampleMask,
-    Fact::Coverage,
-    Fact::Linkable,
-    Fact::OwnEntryPoints,
-    Fact::PrimitiveIndex,
-];
-
-/// Whether `fact` is a target's to offer.
-pub fn is_target_fact(fact: Fact) -> bool {
-    TARGET_FACTS.contains(&fact)
-}
-
-fn missing_on_target(row: &Row, target: &[Fact]) -> Option<Fact> {
-    row.requires.iter().copied().find(|fact| is_target_fact(*fact) && !target.contains(fact))
+fn missing_on_target(row: &Row, target: &[Capability]) -> Option<Capability> {
+    row.needs.iter().copied().find(|capability| !target.contains(capability))
 }
 
 impl Selection {

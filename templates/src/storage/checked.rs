@@ -1,7 +1,7 @@
 //! A storage that writers race in, and notice when they have.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::vocabulary::{Access, Capability, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The sorted array with a checksum in every entry.
 pub(super) fn checked_array() -> Row {
@@ -15,7 +15,8 @@ pub(super) fn checked_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::KeepsBest, Fact::Indexed, Fact::SurvivesRaces],
-        requires: vec![Fact::FragmentAtomics, Fact::DepthKey, Fact::OneWordBesideDepth, Fact::Limited],
+        requires: vec![Fact::DepthKey, Fact::OneWordBesideDepth, Fact::Limited],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "insertion".into())],
         parameters: vec![Parameter::number(
             "retries",

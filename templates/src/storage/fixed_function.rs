@@ -1,8 +1,8 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
 use crate::vocabulary::{
-    Access, Blend, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples,
-    StencilOperation, StencilState, Step, Text, TextureFormat, Until,
+    Access, Blend, Capability, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row,
+    Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
 /// The nearest fragment, by the depth test.
@@ -35,14 +35,8 @@ pub(super) fn depth_tested() -> Row {
                     .target("output", Blend::Over),
             ),
         ],
-        requires: vec![
-            Fact::DepthKey,
-            Fact::LimitedToOne,
-            Fact::WordPerTarget,
-            Fact::OneSample,
-            Fact::LeftToTests,
-            Fact::OwnEntryPoints,
-        ],
+        requires: vec![Fact::DepthKey, Fact::LimitedToOne, Fact::WordPerTarget, Fact::OneSample, Fact::LeftToTests],
+        needs: vec![Capability::OwnEntryPoints],
         hazards: vec![
             Hazard::new("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
             Hazard::new("far-plane", "a fragment at depth 1.0 exactly is not kept"),
@@ -112,15 +106,8 @@ pub(super) fn stencil_routed() -> Row {
         ],
         calls: vec!["counters"],
         offers: vec![Fact::FixedFunction],
-        requires: vec![
-            Fact::DepthKey,
-            Fact::SampleCount,
-            Fact::WordPerTarget,
-            Fact::OneSample,
-            Fact::LeftToTests,
-            Fact::SampleMask,
-            Fact::OwnEntryPoints,
-        ],
+        requires: vec![Fact::DepthKey, Fact::SampleCount, Fact::WordPerTarget, Fact::OneSample, Fact::LeftToTests],
+        needs: vec![Capability::SampleMask, Capability::OwnEntryPoints],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL],
         hazards: vec![
             Hazard::new("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),

@@ -1,7 +1,7 @@
 //! Storages of lists: nodes of one pool, linked per pixel.
 
 use super::resolve;
-use crate::vocabulary::{Access, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
     let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
@@ -78,7 +78,7 @@ fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
     Row {
         steps: vec![Step::Pass(touched.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
         calls: vec!["overflow", "counters"],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         ..row
     }
 }

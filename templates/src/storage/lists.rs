@@ -1,7 +1,7 @@
 //! Storages of several lists or pages per pixel, through one pool.
 
 use super::resolve;
-use crate::vocabulary::{Access, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
 
 /// Lists whose links lead from page to page.
 pub(super) fn paged_list() -> Row {
@@ -29,7 +29,7 @@ pub(super) fn paged_list() -> Row {
         ],
         calls: vec!["addressing", "overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         parameters: vec![
             Parameter::number(
@@ -91,7 +91,8 @@ pub(super) fn bucket_lists() -> Row {
         ],
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics, Fact::DepthKey],
+        requires: vec![Fact::DepthKey],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "insertion".into())],
         ..Row::new(
             "storage",

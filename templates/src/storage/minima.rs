@@ -1,7 +1,7 @@
 //! Storages of atomic minima: no lock, each slot keeps the lesser.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
 
 pub(super) fn cascade() -> Row {
     let mut resources = array_resources("the k least keys in ascending order, equal ones each; EMPTY past the last");
@@ -47,7 +47,8 @@ pub(super) fn distinct_cascade() -> Row {
             Step::Pass(Pass::geometry("settle", "settle").uses("keys", Access::Read).uses("entries", Access::Atomic)),
             resolve(&["keys", "entries"]),
         ],
-        requires: vec![Fact::FragmentAtomics, Fact::OneSample],
+        requires: vec![Fact::OneSample],
+        needs: vec![Capability::FragmentAtomics],
         hazards: vec![
             Hazard::new(
                 "equal-keys",
@@ -90,7 +91,8 @@ pub(super) fn wide_cascade() -> Row {
         ],
         calls: vec!["overflow"],
         offers: [row.offers.as_slice(), &[Fact::LosesWhole]].concat(),
-        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::OneWordBesideKey],
+        requires: vec![Fact::OneWordBesideKey],
+        needs: vec![Capability::FragmentAtomics, Capability::U64Atomics],
         ..row
     }
 }
@@ -101,7 +103,7 @@ fn by_minima(row: Row) -> Row {
         calls: vec!["counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant],
         implies: vec![(Fact::DepthKey, Fact::Sorted)],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "slot_counter".into()),
             ("cull".into(), "early".into()),

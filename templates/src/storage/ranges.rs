@@ -1,7 +1,7 @@
 //! A storage of depth ranges: one fragment in each.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::vocabulary::{Access, Capability, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The nearest fragment of each of k ranges of depth.
 pub(super) fn depth_ranges() -> Row {
@@ -18,7 +18,8 @@ pub(super) fn depth_ranges() -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
         // Of two triangles that share an edge it keeps one: several samples would show cracks.
-        requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::OneSample],
+        requires: vec![Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::OneSample],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("sort".into(), "none".into())],
         parameters: vec![
             depth("near", "NEAR_MILLIONTHS", "0", "depth at which the first range begins, in millionths"),

@@ -1,7 +1,7 @@
 //! A storage that is written again until nothing changes: races are repaired, not prevented.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
 
 pub(super) fn repeated_array() -> Row {
     let mut resources = array_resources("keys in no order, each once; EMPTY: no fragment");
@@ -25,7 +25,8 @@ pub(super) fn repeated_array() -> Row {
         calls: vec!["counters"],
         offers: vec![Fact::KeepsBest, Fact::SurvivesRaces],
         // Of two triangles that share an edge it keeps one: several samples would show cracks.
-        requires: vec![Fact::FragmentAtomics, Fact::Race, Fact::OneSample],
+        requires: vec![Fact::Race, Fact::OneSample],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into())],
         hazards: hazards(),
         ..Row::new(

@@ -1,7 +1,7 @@
 //! A storage that fragments pass through: what leaves it is composited in order.
 
 use super::{array_resources, reset};
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Resource, Row, Step};
 
 /// The k nearest of those to come; the nearest of all leaves for every one that comes.
 pub(super) fn stream_array() -> Row {
@@ -40,7 +40,6 @@ pub(super) fn stream_array() -> Row {
         calls: vec!["resolve", "counters"],
         offers: vec![Fact::Streams, Fact::Indexed, Fact::Sorted],
         requires: vec![
-            Fact::FragmentAtomics,
             Fact::Critical,
             Fact::DepthKey,
             Fact::Limited,
@@ -48,6 +47,7 @@ pub(super) fn stream_array() -> Row {
             // What leaves is composited for the whole pixel.
             Fact::OneSample,
         ],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),
             ("sort".into(), "none".into()),

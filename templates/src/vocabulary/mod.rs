@@ -3,6 +3,7 @@
 //! Rows are data: a pass, a resource or a legality rule that cannot be said in these words is a reason to widen the words,
 //! never to compare a key in code.
 
+mod capability;
 mod classes;
 mod edit;
 mod effect;
@@ -14,10 +15,12 @@ mod resource;
 mod row;
 mod state;
 mod technique;
+mod words;
 
 /// A text that a row includes, or that a user's file gave.
 pub type Text = std::borrow::Cow<'static, str>;
 
+pub use capability::Capability;
 pub use classes::Classes;
 pub use edit::Edit;
 pub use effect::Effect;

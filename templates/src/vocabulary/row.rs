@@ -1,6 +1,6 @@
 //! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
 
-use super::{Edit, Fact, Formula, Resource, Step, Text, Use};
+use super::{Capability, Edit, Fact, Formula, Resource, Step, Text, Use};
 
 /// One way to choose: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,8 @@ pub struct Row {
     pub implies: Vec<(Fact, Fact)>,
     /// What it needs from them.
     pub requires: Vec<Fact>,
+    /// What it needs of the target and the device.
+    pub needs: Vec<Capability>,
     /// What it changes in the steps of others.
     pub edits: Vec<Edit>,
     /// Values on other axes that suit it, taken when nothing else is said.
@@ -215,6 +217,7 @@ impl Row {
             offers: Vec::new(),
             implies: Vec::new(),
             requires: Vec::new(),
+            needs: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),
             carries: Vec::new(),

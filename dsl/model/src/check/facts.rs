@@ -4,7 +4,7 @@
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Row};
 
-use crate::variant::{Chosen, is_target_fact};
+use crate::variant::Chosen;
 use crate::{Diagnostic, Diagnostics, Draft, codes, written};
 
 /// Checks every combination; `given` is what the payload and the `keep` line offer.
@@ -46,7 +46,7 @@ fn picks(choices: &[Chosen]) -> Vec<Pick<'_>> {
 /// What `row` requires and neither the others of the pick nor the description offer. Targets are asked later.
 fn missing(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> Vec<Fact> {
     let offered = |fact: &Fact| given.contains(fact) || pick.iter().any(|other| offers(other, *fact, given));
-    row.requires.iter().copied().filter(|fact| !is_target_fact(*fact) && !offered(fact)).collect()
+    row.requires.iter().copied().filter(|fact| !offered(fact)).collect()
 }
 
 fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {

@@ -1,7 +1,7 @@
 //! The pieces that statements are made of, each read or reported.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
-use fragbuf_templates::vocabulary::{Fact, Formula, FormulaError};
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError};
 
 use super::line::Line;
 use crate::near;
@@ -58,12 +58,33 @@ impl Reader {
         Ok(facts)
     }
 
+    /// Facts that other rows offer, and capabilities that targets do, in one list.
+    pub(super) fn requirements(&mut self, line: &mut Line<'_>) -> Read<(Vec<Fact>, Vec<Capability>)> {
+        let (mut facts, mut capabilities) = (Vec::new(), Vec::new());
+        loop {
+            let word = self.word(line, "a fact or a capability", "`critical`, `fragment-atomics`")?;
+            match Capability::ALL.iter().find(|capability| capability.word() == word.value) {
+                Some(capability) => capabilities.push(*capability),
+                None => facts.push(self.fact_of(&word, Capability::ALL)?),
+            }
+            if !line.sign(',') {
+                return Ok((facts, capabilities));
+            }
+        }
+    }
+
     pub(super) fn fact(&mut self, line: &mut Line<'_>) -> Read<Fact> {
         let word = self.word(line, "a fact", "`keeps-best`, `keeps-all`, `critical`")?;
+        self.fact_of(&word, &[])
+    }
+
+    /// The fact of a word; where there is none, the hint knows capabilities that could stand there too.
+    fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
         if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
             return Ok(*fact);
         }
-        let known: Vec<String> = Fact::ALL.iter().map(|fact| fact.word()).collect();
+        let facts = Fact::ALL.iter().map(|fact| fact.word());
+        let known: Vec<String> = facts.chain(capabilities.iter().map(|capability| capability.word())).collect();
         let message = format!("there is no fact `{}`", word.value);
         self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
     }

@@ -97,7 +97,7 @@ impl Statements {
         match word.value.as_str() {
             "paper" => row.paper = line.until(&[]).value.into(),
             "offers" => row.offers = self.reader.facts(line)?,
-            "requires" => row.requires = self.reader.facts(line)?,
+            "requires" => (row.requires, row.needs) = self.reader.requirements(line)?,
             "uses" => self.own.row.uses = self.uses(line)?,
             "buffer" => return self.buffer(line),
             "pass" => return self.pass(line),
