@@ -1,5 +1,5 @@
 //! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. Rows of an
-//! axis that state the same facts are interchangeable to the rules, so one combination of each kind is decided, and of
+//! axis that state the same facts and conditions are interchangeable to the rules, so one combination of each kind is decided, and of
 //! some kinds another, drawn by chance. A covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by
 //! definition.
 
@@ -22,11 +22,12 @@ fn descriptions() -> Vec<Draft> {
     vec![Draft::from_technique("kb", &Origin::new("case", 1, 1)), parsed(CUSTOM), parsed(DEPTH_ONLY), parsed(RESERVED)]
 }
 
-/// The rows of an axis, those together that state the same facts: the rules see nothing else of a row.
+/// The rows of an axis, those together that state the same facts and conditions: the rules see nothing else of a row.
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
     let facts = |row: &Row| {
+        let conditions = row.conditions.iter().map(|condition| condition.formula.clone()).collect::<Vec<_>>();
         let requires = (row.requires.clone(), row.needs.clone(), row.least.clone());
-        (row.offers.clone(), row.implies.clone(), requires, row.carries.len())
+        (row.offers.clone(), row.implies.clone(), requires, conditions, row.carries.len())
     };
     let mut classes: Vec<Vec<&Row>> = Vec::new();
     for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
@@ -59,20 +60,6 @@ enum Outlook {
 
 /// One combination in so many is tried with rows drawn by chance too.
 const DRAWN_OF: usize = 12;
-
-/// What a description gives, and rows may offer too.
-const GIVEN: [Fact; 10] = [
-    Fact::KeepsAll,
-    Fact::KeepsBest,
-    Fact::Limited,
-    Fact::LimitedToOne,
-    Fact::SampleCount,
-    Fact::DepthKey,
-    Fact::Color,
-    Fact::OneWordBesideDepth,
-    Fact::WordPerTarget,
-    Fact::OneWordBesideKey,
-];
 
 /// Choices of one class per axis: all, but for those that begin with what nothing later can make legal. Of them there is one.
 fn combinations(registry: &Registry) -> Vec<Combination> {
@@ -118,11 +105,9 @@ fn complete<'a>(
 /// Whether the rows chosen so far may become legal, whatever the description gives.
 fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
     let rows = || begin.iter().map(|class| class[0]);
-    let offers =
-        |row: &Row, fact: Fact| row.offers.contains(&fact) || row.implies.iter().any(|(_, then)| *then == fact);
     let may_be = |fact: Fact| {
         let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
-        GIVEN.contains(&fact) || rows().chain(later()).any(|row| offers(row, fact))
+        rows().chain(later()).any(|row| row.may_offer(fact))
     };
     let all = rows().all(|row| row.requires.iter().all(|fact| may_be(*fact)));
     if all { Outlook::Open } else { Outlook::Hopeless }

@@ -231,8 +231,8 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         let Some(template) = &caller.template else { continue };
         let is_chosen = registry.axis(&caller.axis).is_some_and(|axis| axis.chosen);
         // What no row of the axis offers is the affair of other axes, or of the description.
-        let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| offers(other, *fact));
-        let suits = || caller.requires.iter().all(|fact| offers(row, *fact) || is_others(fact));
+        let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| other.may_offer(*fact));
+        let suits = || caller.requires.iter().all(|fact| row.may_offer(*fact) || is_others(fact));
         let (name, place) = match is_chosen {
             true if suits() => (format!("`{}: {}`", caller.axis, caller.key), places.row.clone()),
             true => continue,
@@ -250,11 +250,6 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         }
     }
     needed
-}
-
-/// Whether a row offers a fact, in some description at least.
-fn offers(row: &Row, fact: Fact) -> bool {
-    row.offers.contains(&fact) || row.implies.iter().any(|(_, implied)| *implied == fact)
 }
 
 /// The line of the pass with this skeleton; the row's own where the row has no passes and serves everybody's.

@@ -1,5 +1,6 @@
 //! Axis `cull`: which fragments are turned away before they reach the storage.
 
+use crate::conditions::depth_key;
 use crate::vocabulary::{
     Access, Capability, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step,
     TextureFormat, Use,
@@ -56,7 +57,8 @@ fn occupancy_early() -> Row {
         resources: [row.resources, vec![limits]].concat(),
         calls: vec!["storage"],
         // Keys are what is tested: the rasteriser's depth, which a caller's own shader may replace.
-        requires: vec![Fact::BestSuffice, Fact::BoundAnyInstant, Fact::DepthKey, Fact::OneSample],
+        requires: vec![Fact::BestSuffice, Fact::BoundAnyInstant, Fact::OneSample],
+        conditions: vec![depth_key()],
         needs: vec![Capability::FragmentAtomics, Capability::EarlyDepth, Capability::OwnEntryPoints],
         edits: vec![before_store(limit), Edit::SetState("store".to_owned(), test(Compare::LessEqual, false, true))],
         ..row

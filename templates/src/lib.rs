@@ -18,6 +18,7 @@ macro_rules! template {
 }
 
 mod addressing;
+mod conditions;
 mod counters;
 mod cull;
 mod opaque;

@@ -1,5 +1,6 @@
 //! Axis `overflow`: what becomes of a fragment that finds no place.
 
+use crate::conditions::{ADD_COLOR, color, depth_key};
 use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Resource, Row, Template, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -18,7 +19,8 @@ pub(crate) fn rows() -> Vec<Row> {
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
             calls: vec!["counters", "samples"],
-            requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve],
+            requires: vec![Fact::LosesWhole, Fact::OneResolve],
+            conditions: vec![color(ADD_COLOR)],
             needs: vec![Capability::FragmentAtomics],
             ..row(
                 "weighted_tail",
@@ -53,7 +55,8 @@ fn tail_blend() -> Row {
     Row {
         resources: vec![tail.by("channel", "4").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("blended", Access::Coherent)],
-        requires: vec![Fact::Color, Fact::LosesWhole, Fact::DisplacesInTurn, Fact::Critical, Fact::CullsNothing],
+        requires: vec![Fact::LosesWhole, Fact::DisplacesInTurn, Fact::Critical, Fact::CullsNothing],
+        conditions: vec![color(ADD_COLOR)],
         needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "samples"],
         hazards: vec![Hazard::new(
@@ -111,8 +114,6 @@ fn merge_closest() -> Row {
 fn merging(slots: Fact, row: Row) -> Row {
     Row {
         requires: vec![
-            Fact::Color,
-            Fact::DepthKey,
             Fact::LosesWhole,
             Fact::DisplacesInTurn,
             slots,
@@ -121,6 +122,7 @@ fn merging(slots: Fact, row: Row) -> Row {
             Fact::Critical,
             Fact::CullsNothing,
         ],
+        conditions: vec![color(ADD_COLOR), depth_key()],
         needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "storage"],
         ..row

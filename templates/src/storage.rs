@@ -50,7 +50,7 @@ fn sorted_array() -> Row {
         calls: vec!["overflow"],
         offers: [OF_THE_K_BEST.as_slice(), &[Fact::SurvivesRaces, Fact::KeepsArrival]].concat(),
         // Entries are in the order of their keys.
-        implies: vec![(Fact::DepthKey, Fact::Sorted), (Fact::DepthKey, Fact::OrderedSlots)],
+        implies: vec![("depth_key".into(), Fact::Sorted), ("depth_key".into(), Fact::OrderedSlots)],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
@@ -95,7 +95,7 @@ fn fixed_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
-        implies: vec![(Fact::Limited, Fact::BestSuffice)],
+        implies: vec![("limited".into(), Fact::BestSuffice)],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(

@@ -161,13 +161,8 @@ fn ranges(subject: &Subject, k: usize) -> Option<Ranges> {
 
 /// Whether the row that the plan starts from, and not a sort behind it, promises the order of depth.
 fn is_sorted(subject: &Subject) -> bool {
-    let has_depth_key = subject.plan.variant.criterion.is_none();
-    let storages = subject.plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
-    storages.map(|selected| &selected.row).any(|row| {
-        let implied = row
-            .implies
-            .iter()
-            .any(|(given, offered)| *offered == Fact::Sorted && (*given != Fact::DepthKey || has_depth_key));
-        row.offers.contains(&Fact::Sorted) || implied
-    })
+    let plan = &subject.plan;
+    let given = plan.variant.given(&plan.selection);
+    let mut storages = plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
+    storages.any(|selected| selected.row.offers_to(&given, Fact::Sorted))
 }

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Capability, Fact, Row, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Fact, Given, Row, Soundness};
 
+use crate::check::given;
 use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
 
 /// A checked fragment buffer.
@@ -69,6 +70,12 @@ impl Variant {
         Variant(description)
     }
 
+    /// What the description gives to conditions of the rows of a selection.
+    pub fn given(&self, selection: &Selection) -> Given {
+        let rows = selection.rows.iter().map(|selected| &*selected.row);
+        with_carried(given(&self.attributes, self.criterion.as_ref(), self.keep), rows)
+    }
+
     /// The rows for a target with the capabilities `target`: the first alternative on each axis that it can express. `Err`:
     /// the last alternative of an axis, and what it needs.
     pub fn select(&self, target: &[Capability]) -> Result<Selection, Refusal> {
@@ -119,6 +126,12 @@ impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "`{}: {}` requires {}", self.axis, self.value, self.capability.meaning())
     }
+}
+
+/// The same with the words that these rows carry.
+pub(crate) fn with_carried<'a>(given: Given, rows: impl Iterator<Item = &'a Row>) -> Given {
+    let carried: usize = rows.map(|row| row.carries.len()).sum();
+    Given { payload_words: given.payload_words + carried as u32, ..given }
 }
 
 fn missing_on_target(row: &Row, target: &[Capability]) -> Option<Capability> {

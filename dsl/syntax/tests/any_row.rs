@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
 
 use fragbuf_syntax::row;
-use fragbuf_templates::vocabulary::{Access, Element, Fact, Init, Loads, Soundness, Step};
+use fragbuf_templates::vocabulary::{Access, Capability, Element, Fact, Init, Loads, Soundness, Step};
 
 const GOOD: &str = "// What it is.\n\
     //: storage -- all of it\n\
@@ -14,8 +14,9 @@ const GOOD: &str = "// What it is.\n\
     //: pass store as again: heads atomic rechecked, rest coherent\n\
     //: host allocate: reads heads[pixels]; sets fragments\n\
     //: offers keeps-best, bound-any-instant\n\
-    //: requires critical\n\
-    //: implies sorted when depth-key\n\
+    //: requires critical, fragment-atomics\n\
+    //: when keep <= 64 && color -- write `keep 64;`\n\
+    //: implies sorted when depth_key\n\
     //: suits sync spin_lock, cull early\n\
     //: parameter limit LIMIT = 2 * capacity, from 1 to 99 -- tries\n\
     //: hazard torn unless critical -- two in one\n\
@@ -47,8 +48,11 @@ fn a_row_says_what_its_lines_say() {
     assert_eq!(row.offers, [Fact::KeepsBest, Fact::BoundAnyInstant]);
     assert_eq!(
         (row.requires.as_slice(), row.implies.as_slice()),
-        (&[Fact::Critical][..], &[(Fact::DepthKey, Fact::Sorted)][..])
+        (&[Fact::Critical][..], &[("depth_key".into(), Fact::Sorted)][..])
     );
+    let [condition] = row.conditions.as_slice() else { unreachable!("one condition: {:?}", row.conditions) };
+    assert_eq!((&*condition.formula.0, &*condition.hint), ("keep <= 64 && color", "write `keep 64;`"));
+    assert_eq!(row.needs, [Capability::FragmentAtomics]);
     assert_eq!(row.defaults, [("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())]);
     let limit = &row.parameters[0];
     assert_eq!((&*limit.name, &*limit.constant, limit.range), ("limit", "LIMIT", (1, 99)));

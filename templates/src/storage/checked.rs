@@ -1,7 +1,8 @@
 //! A storage that writers race in, and notice when they have.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Capability, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::conditions::{depth_key, limited};
+use crate::vocabulary::{Access, Capability, Condition, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The sorted array with a checksum in every entry.
 pub(super) fn checked_array() -> Row {
@@ -15,7 +16,15 @@ pub(super) fn checked_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::KeepsBest, Fact::Indexed, Fact::SurvivesRaces],
-        requires: vec![Fact::DepthKey, Fact::OneWordBesideDepth, Fact::Limited],
+        conditions: vec![
+            depth_key(),
+            Condition::new(
+                "payload_words <= 2",
+                "at most one word beside depth in the payload",
+                "leave depth and one attribute of one word, such as `color: rgba8`, in the fragment",
+            ),
+            limited(),
+        ],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "insertion".into())],
         parameters: vec![Parameter::number(

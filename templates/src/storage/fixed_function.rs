@@ -1,8 +1,9 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
+use crate::conditions::{depth_key, word_per_target};
 use crate::vocabulary::{
-    Access, Blend, Capability, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row,
-    Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
+    Access, Blend, Capability, Compare, Condition, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource,
+    Row, Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
 /// The nearest fragment, by the depth test.
@@ -35,7 +36,12 @@ pub(super) fn depth_tested() -> Row {
                     .target("output", Blend::Over),
             ),
         ],
-        requires: vec![Fact::DepthKey, Fact::LimitedToOne, Fact::WordPerTarget, Fact::OneSample, Fact::LeftToTests],
+        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        conditions: vec![
+            depth_key(),
+            Condition::new("keep == 1", "a limit of one: `keep 1`", "write `keep 1;`"),
+            word_per_target(),
+        ],
         needs: vec![Capability::OwnEntryPoints],
         hazards: vec![
             Hazard::new("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
@@ -106,7 +112,16 @@ pub(super) fn stencil_routed() -> Row {
         ],
         calls: vec!["counters"],
         offers: vec![Fact::FixedFunction],
-        requires: vec![Fact::DepthKey, Fact::SampleCount, Fact::WordPerTarget, Fact::OneSample, Fact::LeftToTests],
+        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        conditions: vec![
+            depth_key(),
+            Condition::new(
+                "keep == 2 || keep == 4 || keep == 8",
+                "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`",
+                "write `keep 4;`",
+            ),
+            word_per_target(),
+        ],
         needs: vec![Capability::SampleMask, Capability::OwnEntryPoints],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL],
         hazards: vec![

@@ -1,6 +1,7 @@
 //! Storages of several lists or pages per pixel, through one pool.
 
 use super::resolve;
+use crate::conditions::depth_key;
 use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
 
 /// Lists whose links lead from page to page.
@@ -91,7 +92,7 @@ pub(super) fn bucket_lists() -> Row {
         ],
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::DepthKey],
+        conditions: vec![depth_key()],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "insertion".into())],
         ..Row::new(

@@ -1,7 +1,9 @@
 //! Storages of atomic minima: no lock, each slot keeps the lesser.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use crate::vocabulary::{
+    Access, Capability, Condition, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until,
+};
 
 pub(super) fn cascade() -> Row {
     let mut resources = array_resources("the k least keys in ascending order, equal ones each; EMPTY past the last");
@@ -91,7 +93,11 @@ pub(super) fn wide_cascade() -> Row {
         ],
         calls: vec!["overflow"],
         offers: [row.offers.as_slice(), &[Fact::LosesWhole]].concat(),
-        requires: vec![Fact::OneWordBesideKey],
+        conditions: vec![Condition::new(
+            "entry_words <= 2",
+            "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone",
+            "leave depth and one attribute of one word in the fragment, or with a criterion depth alone",
+        )],
         needs: vec![Capability::FragmentAtomics, Capability::U64Atomics],
         ..row
     }
@@ -102,7 +108,7 @@ fn by_minima(row: Row) -> Row {
     Row {
         calls: vec!["counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant],
-        implies: vec![(Fact::DepthKey, Fact::Sorted)],
+        implies: vec![("depth_key".into(), Fact::Sorted)],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "slot_counter".into()),

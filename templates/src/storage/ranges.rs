@@ -1,6 +1,7 @@
 //! A storage of depth ranges: one fragment in each.
 
 use super::{array_resources, reset, resolve};
+use crate::conditions::{depth_key, limited};
 use crate::vocabulary::{Access, Capability, Fact, Hazard, Parameter, Pass, Row, Step};
 
 /// The nearest fragment of each of k ranges of depth.
@@ -18,7 +19,8 @@ pub(super) fn depth_ranges() -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
         // Of two triangles that share an edge it keeps one: several samples would show cracks.
-        requires: vec![Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::OneSample],
+        requires: vec![Fact::Critical, Fact::OneSample],
+        conditions: vec![depth_key(), limited()],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("sort".into(), "none".into())],
         parameters: vec![

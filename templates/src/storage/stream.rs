@@ -1,6 +1,7 @@
 //! A storage that fragments pass through: what leaves it is composited in order.
 
 use super::{array_resources, reset};
+use crate::conditions::{depth_key, limited};
 use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Resource, Row, Step};
 
 /// The k nearest of those to come; the nearest of all leaves for every one that comes.
@@ -41,12 +42,11 @@ pub(super) fn stream_array() -> Row {
         offers: vec![Fact::Streams, Fact::Indexed, Fact::Sorted],
         requires: vec![
             Fact::Critical,
-            Fact::DepthKey,
-            Fact::Limited,
             Fact::ValuesPairs,
             // What leaves is composited for the whole pixel.
             Fact::OneSample,
         ],
+        conditions: vec![depth_key(), limited()],
         needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),

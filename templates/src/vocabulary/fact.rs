@@ -1,9 +1,9 @@
-//! What rows offer each other. Legality is `requires ⊆ offers`, over the chosen rows and the description.
+//! What rows offer each other. Legality is `requires ⊆ offers` over the chosen rows, and conditions that hold.
 
 use super::words::words;
 
 words! {
-    /// One thing that a row or a description can offer, and another row require.
+    /// One thing that a row can offer, and another require.
     Fact {
         // Between a storage and a sync.
         Critical "that writers of one pixel take turns";
@@ -40,14 +40,5 @@ words! {
         StableSort "a sort that leaves fragments of equal depth as the storage gives them";
         // What they are worth.
         ValuesPairs "a value for two neighbouring fragments";
-        // What a description offers.
-        Limited "a limit on what is kept: `keep 8`";
-        LimitedToOne "a limit of one: `keep 1`";
-        SampleCount "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`";
-        DepthKey "that depth decides which fragment is worst: no criterion";
-        Color "an attribute `color` of format rgba8, rgba16 or vec4";
-        OneWordBesideDepth "at most one word beside depth in the payload";
-        WordPerTarget "at most eight words in the payload: there are eight targets";
-        OneWordBesideKey "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone";
     }
 }

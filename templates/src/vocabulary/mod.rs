@@ -5,6 +5,7 @@
 
 mod capability;
 mod classes;
+mod condition;
 mod edit;
 mod effect;
 mod fact;
@@ -22,6 +23,7 @@ pub type Text = std::borrow::Cow<'static, str>;
 
 pub use capability::Capability;
 pub use classes::Classes;
+pub use condition::{Condition, Given};
 pub use edit::Edit;
 pub use effect::Effect;
 pub use fact::Fact;

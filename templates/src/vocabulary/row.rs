@@ -1,6 +1,6 @@
 //! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
 
-use super::{Capability, Edit, Fact, Formula, Resource, Step, Text, Use};
+use super::{Capability, Condition, Edit, Fact, Formula, Given, Resource, Step, Text, Use};
 
 /// One way to choose: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +38,12 @@ pub struct Row {
     pub calls: Vec<&'static str>,
     /// What it gives to the other rows.
     pub offers: Vec<Fact>,
-    /// (given, offered): what it offers only where the description gives something.
-    pub implies: Vec<(Fact, Fact)>,
+    /// (condition, fact): what it offers only where the description meets a condition.
+    pub implies: Vec<(Formula, Fact)>,
     /// What it needs from them.
     pub requires: Vec<Fact>,
+    /// What it needs of the description.
+    pub conditions: Vec<Condition>,
     /// What it needs of the target and the device.
     pub needs: Vec<Capability>,
     /// What it changes in the steps of others.
@@ -202,6 +204,16 @@ impl Hazard {
 }
 
 impl Row {
+    /// Whether it offers a fact to a description that gives this.
+    pub fn offers_to(&self, given: &Given, fact: Fact) -> bool {
+        self.offers.contains(&fact) || self.implies.iter().any(|(when, then)| *then == fact && given.meets(when))
+    }
+
+    /// Whether it offers a fact to some description.
+    pub fn may_offer(&self, fact: Fact) -> bool {
+        self.offers.contains(&fact) || self.implies.iter().any(|(_, implied)| *implied == fact)
+    }
+
     /// A row with nothing but its names.
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
         Row {
@@ -217,6 +229,7 @@ impl Row {
             offers: Vec::new(),
             implies: Vec::new(),
             requires: Vec::new(),
+            conditions: Vec::new(),
             needs: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),

@@ -12,8 +12,9 @@
 //! //: pass resolve: taken read, entries read
 //! //: host allocate: reads offsets[pixels]; sets fragments    a decision of the host between two passes
 //! //: offers keeps-best, indexed                              facts
-//! //: requires fragment-atomics
-//! //: implies sorted when depth-key
+//! //: requires critical, fragment-atomics                      facts of other rows, capabilities of targets
+//! //: when keep <= 64 -- write `keep 64;` or less              a condition on the description, and how to meet it
+//! //: implies sorted when depth_key                            a fact that is offered where a condition holds
 //! //: suits sync slot_counter, cull early                     values on other axes when nobody says another
 //! //: parameter limit LIMIT = 4096, from 1 to 65536 -- tries
 //! //: hazard torn unless critical -- key and payload of two fragments in one slot

@@ -1,7 +1,7 @@
 //! The pieces that statements are made of, each read or reported.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError};
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given};
 
 use super::line::Line;
 use crate::near;
@@ -10,6 +10,20 @@ use crate::near;
 pub(super) struct Stop;
 
 pub(super) type Read<T> = Result<T, Stop>;
+
+/// Words that were facts before conditions had formulas, and the formula of each.
+const RETIRED: [(&str, &str); 10] = [
+    ("limited", "limited"),
+    ("limited-to-one", "keep == 1"),
+    ("sample-count", "keep == 2 || keep == 4 || keep == 8"),
+    ("depth-key", "depth_key"),
+    ("color", "color"),
+    ("one-word-beside-depth", "payload_words <= 2"),
+    ("word-per-target", "payload_words <= 8"),
+    ("one-word-beside-key", "entry_words <= 2"),
+    ("keeps-best", "limited"),
+    ("keeps-all", "limited == 0"),
+];
 
 /// The mistakes so far.
 pub(super) struct Reader {
@@ -78,10 +92,32 @@ impl Reader {
         self.fact_of(&word, &[])
     }
 
+    /// A formula over what the description gives.
+    pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
+        let text = line.until(&[]);
+        if let Some((_, now)) = RETIRED.iter().find(|(word, now)| *word == text.value && word != now) {
+            let message = format!("`{}` is no condition", text.value);
+            return self.stop(codes::ROW, &text.origin, message, format!("write `{now}`"));
+        }
+        let symbols = Given::SYMBOLS.map(|(name, ..)| name);
+        self.formula_of(&text, &symbols, "`== != < <= > >= && ||`, `+ - * /`")?;
+        Ok(text.value.into())
+    }
+
     /// The fact of a word; where there is none, the hint knows capabilities that could stand there too.
     fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
         if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
             return Ok(*fact);
+        }
+        if let Some((_, formula)) = RETIRED.iter().find(|(retired, _)| *retired == word.value) {
+            let message = format!("`{}` is a condition on the description, not a fact", word.value);
+            let hint = format!("write it on a line of its own: `//: when {formula} -- how to meet it`");
+            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
+        }
+        if Capability::ALL.iter().any(|capability| capability.word() == word.value) {
+            let message = format!("`{}` is a capability, which targets offer and rows require", word.value);
+            let hint = format!("leave it out here, and write `//: requires {}` where the row needs it", word.value);
+            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
         }
         let facts = Fact::ALL.iter().map(|fact| fact.word());
         let known: Vec<String> = facts.chain(capabilities.iter().map(|capability| capability.word())).collect();
@@ -100,6 +136,10 @@ impl Reader {
 
     /// Reports a formula that cannot be read, or that depends on what it may not.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[&str]) -> Read<()> {
+        self.formula_of(formula, symbols, "`+ - * /`")
+    }
+
+    fn formula_of(&mut self, formula: &Spanned<String>, symbols: &[&str], signs: &str) -> Read<()> {
         let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
         let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
             // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
@@ -107,7 +147,7 @@ impl Reader {
             Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
             Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
         };
-        let hint = format!("the formula may use {}, `+ - * /`, min, max, ceil_div and pow2", symbols.join(", "));
+        let hint = format!("the formula may use {}, {signs}, min, max, ceil_div and pow2", symbols.join(", "));
         self.stop(codes::ROW, &formula.origin, problem, hint)
     }
 

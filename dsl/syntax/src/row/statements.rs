@@ -2,8 +2,8 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness, Step, Takes,
-    Use,
+    Access, Condition, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness,
+    Step, Takes, Use,
 };
 
 use super::line::Line;
@@ -11,7 +11,7 @@ use super::reader::{Read, Reader, Stop};
 use crate::near;
 
 /// The words that begin a line.
-const WORDS: [&str; 13] = [
+const WORDS: [&str; 14] = [
     "paper",
     "buffer",
     "pass",
@@ -19,6 +19,7 @@ const WORDS: [&str; 13] = [
     "uses",
     "offers",
     "requires",
+    "when",
     "implies",
     "suits",
     "parameter",
@@ -102,6 +103,7 @@ impl Statements {
             "buffer" => return self.buffer(line),
             "pass" => return self.pass(line),
             "host" => return self.host(line),
+            "when" => return self.when(line),
             "implies" => return self.implies(line),
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
@@ -250,14 +252,23 @@ impl Statements {
         Ok(uses)
     }
 
-    /// `implies fact when fact`
+    /// `when condition -- how to meet it`
+    fn when(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let formula = self.reader.condition(line)?;
+        let hint = line.summary.map_or_else(|| format!("change the description so that `{formula}`"), str::to_owned);
+        let meaning = format!("`{formula}`");
+        self.own.row.conditions.push(Condition::new(formula, meaning, hint));
+        Ok(())
+    }
+
+    /// `implies fact when condition`
     fn implies(&mut self, line: &mut Line<'_>) -> Read<()> {
         let then = self.reader.fact(line)?;
         if !line.exactly("when") {
-            return self.reader.unexpected(line, "`when`", "`implies sorted when depth-key`");
+            return self.reader.unexpected(line, "`when`", "`implies sorted when depth_key`");
         }
-        let given = self.reader.fact(line)?;
-        self.own.row.implies.push((given, then));
+        let when = self.reader.condition(line)?;
+        self.own.row.implies.push((when, then));
         Ok(())
     }
 
