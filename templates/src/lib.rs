@@ -29,6 +29,7 @@ mod resolve;
 mod samples;
 mod select;
 mod shared;
+mod shorthand;
 mod sort;
 mod storage;
 mod sync;
@@ -38,4 +39,5 @@ mod ties;
 
 pub use counters::COUNTERS;
 pub use registry::Registry;
+pub use shorthand::Shorthand;
 pub use table_1::{PaperRow, TABLE_1};

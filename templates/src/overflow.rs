@@ -1,7 +1,10 @@
 //! Axis `overflow`: what becomes of a fragment that finds no place.
 
 use crate::conditions::{ADD_COLOR, color, depth_key};
-use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Resource, Row, Template, Use};
+use crate::vocabulary::{
+    Access, Blended, Capability, Element, Fact, Hazard, Merges, Permits, PromisedKeys, Resource, Row, Template, Text,
+    Use,
+};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -62,6 +65,7 @@ fn tail_blend() -> Row {
         hazards: vec![Hazard::new(
             "shows-arrival",
             "what is not kept is blended in the order of arrival, as if whatever comes later lay before the rest",
+            Permits::SHOWS_ARRIVAL,
         )],
         ..row(
             "tail_blend",
@@ -74,10 +78,12 @@ fn tail_blend() -> Row {
 
 fn merge_last() -> Row {
     Row {
+        merges: Some(MERGED_FARTHEST),
         hazards: vec![Hazard::new(
             "merged-farthest",
             "the colour of the farthest kept fragment is its own over those of fragments that are not kept, in an order \
              that depends on arrival",
+            Permits::NOTHING,
         )],
         ..merging(
             Fact::CanReplace,
@@ -93,10 +99,12 @@ fn merge_last() -> Row {
 
 fn merge_closest() -> Row {
     Row {
+        merges: Some(MERGED_NEIGHBOURS),
         hazards: vec![Hazard::new(
             "merged-neighbours",
             "where there are more than k, the two nearest to each other in depth become one, with the depth and the other \
              attributes of the nearer; which two depends on arrival",
+            Permits::NOTHING,
         )],
         ..merging(
             Fact::OrderedSlots,
@@ -109,6 +117,14 @@ fn merge_closest() -> Row {
         )
     }
 }
+
+/// Colours of fragments that are not kept go into the farthest entry: which of them lies before which depends on arrival.
+pub(crate) const MERGED_FARTHEST: Merges =
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::All, blended: Blended::Worst };
+
+/// Of two neighbours the nearer stays, with the colours of both; the nearest of all is never gone.
+pub(crate) const MERGED_NEIGHBOURS: Merges =
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::Best, blended: Blended::Any };
 
 /// What rows share that merge colours of kept fragments; `slots` is what they need of the storage.
 fn merging(slots: Fact, row: Row) -> Row {

@@ -8,7 +8,9 @@ use fragbuf_codegen::{EntryPoint, Form, LineMap, Linking, Plan, Stage, link, pla
 use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Capability, Fact, Kind, Pass, Row, Soundness, Step, Template, Use};
+use fragbuf_templates::vocabulary::{
+    Access, Capability, Fact, Kind, Pass, Permits, Row, Soundness, Step, Template, Use,
+};
 
 use crate::stream::StreamPrograms;
 use crate::turns::{Turn, turns};
@@ -170,6 +172,11 @@ impl Subject {
             turns,
             plan,
         }))
+    }
+
+    /// What the rows state that may go wrong, hazard by hazard.
+    pub(crate) fn permits(&self) -> impl Iterator<Item = &Permits> {
+        self.plan.hazards.iter().map(|hazard| &hazard.permits)
     }
 
     /// Whether fragments may be lost, doubled or torn by design.

@@ -2,7 +2,7 @@
 
 use fragbuf_checker::{Limits, Model, Report};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Row};
+use fragbuf_templates::vocabulary::Row;
 
 use crate::subjects::{limits, report};
 
@@ -62,7 +62,7 @@ fn a_row_that_states_fewer_hazards_than_it_has_fails() {
         let hazards = Registry::builtin().row("storage", racy.2).unwrap().hazards.clone();
         assert!(hazards.len() > 1);
         for hazard in hazards {
-            assert!(Effect::of(&hazard.name).is_some(), "{} says no effect", hazard.name);
+            assert!(hazard.permits.is_something(), "{} permits nothing", hazard.name);
             let registry = with(racy.2, |row| row.hazards.retain(|other| other.name != hazard.name));
             assert!(fails(racy, &registry), "{} without {}", racy.0, hazard.name);
         }

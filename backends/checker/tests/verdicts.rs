@@ -4,7 +4,8 @@ use fragbuf_backends::tier;
 use fragbuf_checker::{Error, Limits, Model, Report};
 use fragbuf_model::Selection;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Effect, Fact};
+use fragbuf_templates::Shorthand;
+use fragbuf_templates::vocabulary::{Capability, Fact};
 
 use crate::subjects::{limits, report, target, variant};
 
@@ -215,8 +216,8 @@ fn tiers_follow_from_the_model() {
     let holds = |key: &str, set: &[(&str, &str)], target: &str, model: Model| {
         let report = report(key, set, target, &limits(2, model), &registry).unwrap();
         // What a row loses by design, and says so, is no matter of its tier; what it loses uncounted by a race is.
-        let loses = |effect| matches!(effect, Effect::Lost | Effect::Unsettled);
-        let races = report.hazards.iter().any(|(name, _)| Effect::of(name).is_some_and(loses));
+        let loses = |name: &str| matches!(Shorthand::of(name), Some(Shorthand::Permits(permits)) if permits.lost);
+        let races = report.hazards.iter().any(|(name, _)| loses(name));
         report.failure.is_none() || (report.is_stated && !races)
     };
     let mut cases: Vec<(&str, &[(&str, &str)])> = vec![("kb", LOCKED)];

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Capability, Fact, Given, Row, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Fact, Given, Kept, Merges, Row, Soundness};
 
 use crate::check::given;
 use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
@@ -162,6 +162,16 @@ impl Selection {
     /// The files of the user's own among the rows' templates, by their names in messages.
     pub fn own_files(&self) -> impl Iterator<Item = &str> {
         self.rows.iter().filter_map(|selected| selected.row.template.as_ref()?.own.as_deref())
+    }
+
+    /// Which fragments stay, as the row says that stores them; `None`: none says so.
+    pub fn kept(&self) -> Option<Kept> {
+        self.rows.iter().find_map(|selected| selected.row.kept())
+    }
+
+    /// How entries become one, where a row merges them.
+    pub fn merges(&self) -> Option<&Merges> {
+        self.rows.iter().find_map(|selected| selected.row.merges.as_ref())
     }
 
     /// Everything that the rows offer.

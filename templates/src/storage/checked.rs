@@ -2,7 +2,7 @@
 
 use super::{array_resources, reset, resolve};
 use crate::conditions::{depth_key, limited};
-use crate::vocabulary::{Access, Capability, Condition, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::vocabulary::{Access, Capability, Condition, Fact, Hazard, Parameter, Pass, Permits, Row, Step};
 
 /// The sorted array with a checksum in every entry.
 pub(super) fn checked_array() -> Row {
@@ -39,26 +39,38 @@ pub(super) fn checked_array() -> Row {
                 "equal-fragments",
                 "of fragments with the same words, or of one key with `ties: unordered`, one is kept; the others \
                        are counted",
+                Permits::ONE_OF_EQUAL_FRAGMENTS,
             ),
             Hazard::new(
                 "lost-update",
                 "a fragment is written over after its last look at the slots, unseen and uncounted",
+                Permits::LOST,
             )
             .unless(Fact::Critical),
             Hazard::new(
                 "given-up",
                 "a fragment that is written over every time it looks is given up after its last try, and counted",
+                Permits::GIVES_UP,
             )
             .unless(Fact::Critical),
-            Hazard::new("torn", "a slot of two fragments' words passes the check, one time in four that there is one")
-                .unless(Fact::Critical),
+            Hazard::new(
+                "torn",
+                "a slot of two fragments' words passes the check, one time in four that there is one",
+                Permits::TORN,
+            )
+            .unless(Fact::Critical),
             Hazard::new(
                 "stale",
                 "a key is seen before what stands beside it, and what stood there before the frame passes the check",
+                Permits::STALE,
             )
             .unless(Fact::Critical),
-            Hazard::new("counted-twice", "a fragment that races displaced more than once is counted each time")
-                .unless(Fact::Critical),
+            Hazard::new(
+                "counted-twice",
+                "a fragment that races displaced more than once is counted each time",
+                Permits::COUNTED_TWICE,
+            )
+            .unless(Fact::Critical),
         ],
         ..Row::new(
             "storage",

@@ -2,7 +2,7 @@
 
 use super::resolve;
 use crate::conditions::depth_key;
-use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Permits, Resource, Row, Step};
 
 /// Lists whose links lead from page to page.
 pub(super) fn paged_list() -> Row {
@@ -52,6 +52,7 @@ pub(super) fn paged_list() -> Row {
             "leaked-page",
             "of pages that several fragments of a pixel take at once one is used: the others are missing from the \
                    pool, and fragments may find it empty that there was room for; both are counted",
+            Permits::NOTHING,
         )],
         ..Row::new(
             "storage",

@@ -2,7 +2,7 @@
 
 use super::{array_resources, reset, resolve};
 use crate::vocabulary::{
-    Access, Capability, Condition, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until,
+    Access, Capability, Condition, Element, Fact, Hazard, Pass, Permits, Repeat, Resource, Row, Step, Until,
 };
 
 pub(super) fn cascade() -> Row {
@@ -55,10 +55,12 @@ pub(super) fn distinct_cascade() -> Row {
             Hazard::new(
                 "equal-keys",
                 "of fragments with equal keys one is kept, the last to write; the others are counted",
+                Permits::ONE_OF_EQUAL_KEYS,
             ),
             Hazard::new(
                 "torn-equal-keys",
                 "what stands beside a key comes from several fragments of that key, where it is several words",
+                Permits::TORN_EQUAL_KEYS,
             ),
         ],
         ..by_minima(Row::new(

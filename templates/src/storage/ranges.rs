@@ -2,7 +2,11 @@
 
 use super::{array_resources, reset, resolve};
 use crate::conditions::{depth_key, limited};
-use crate::vocabulary::{Access, Capability, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::vocabulary::{Access, Capability, Fact, Hazard, Kept, Parameter, Pass, Permits, Row, Step};
+
+/// The range of a depth, one of k equal ones; what lies outside of all belongs to the first or the last.
+pub(crate) const DEPTH_RANGE: &str = "min(k - 1, (max(depth_millionths, NEAR_MILLIONTHS) - NEAR_MILLIONTHS) * k / \
+     (max(FAR_MILLIONTHS, NEAR_MILLIONTHS + 1) - NEAR_MILLIONTHS))";
 
 /// The nearest fragment of each of k ranges of depth.
 pub(super) fn depth_ranges() -> Row {
@@ -27,9 +31,11 @@ pub(super) fn depth_ranges() -> Row {
             depth("near", "NEAR_MILLIONTHS", "0", "depth at which the first range begins, in millionths"),
             depth("far", "FAR_MILLIONTHS", "1000000", "depth at which the last range ends, in millionths"),
         ],
+        keeps: Some(Kept::best_of_each(DEPTH_RANGE)),
         hazards: vec![Hazard::new(
             "one-per-range",
             "of the fragments in one range of depth the nearest is kept; the others are counted",
+            Permits::NOTHING,
         )],
         ..Row::new("storage", "depth_ranges", "the nearest fragment in each of k equal ranges of depth", "B06 §4.2")
     }

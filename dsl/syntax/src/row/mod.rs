@@ -17,6 +17,7 @@
 //! //: implies sorted when depth_key                            a fact that is offered where a condition holds
 //! //: suits sync slot_counter, cull early                     values on other axes when nobody says another
 //! //: parameter limit LIMIT = 4096, from 1 to 65536 -- tries
+//! //: keeps best 1 of each key / 1000                         which fragments stay, where no fact says so
 //! //: hazard torn unless critical -- key and payload of two fragments in one slot
 //! //: soundness atomics                                       atomics, interlock, lock or racy
 //! ```

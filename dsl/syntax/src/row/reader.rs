@@ -1,7 +1,8 @@
 //! The pieces that statements are made of, each read or reported.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given};
+use fragbuf_templates::Shorthand;
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits};
 
 use super::line::Line;
 use crate::near;
@@ -123,6 +124,17 @@ impl Reader {
         let known: Vec<String> = facts.chain(capabilities.iter().map(|capability| capability.word())).collect();
         let message = format!("there is no fact `{}`", word.value);
         self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
+    }
+
+    /// What one name of a hazard permits.
+    pub(super) fn permits(&mut self, word: &Spanned<String>) -> Read<Permits> {
+        if let Some(Shorthand::Permits(permits)) = Shorthand::of(&word.value) {
+            return Ok(permits);
+        }
+        let known = Shorthand::ALL.into_iter().filter(|(_, one)| matches!(one, Shorthand::Permits(_)));
+        let known: Vec<&str> = known.map(|(name, _)| name).collect();
+        let message = format!("a hazard cannot permit `{}`", word.value);
+        self.stop(codes::ROW, &word.origin, message, near::hint(&word.value, &known))
     }
 
     /// The value of a word in a table.

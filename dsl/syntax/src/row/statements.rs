@@ -1,9 +1,10 @@
 //! What each line of a row says.
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
+use fragbuf_templates::Shorthand;
 use fragbuf_templates::vocabulary::{
-    Access, Condition, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, Soundness,
-    Step, Takes, Use,
+    Access, Condition, Definition, Element, Hazard, Host, Init, Kept, Life, Loads, Parameter, Pass, Permits, Resource,
+    Side, Soundness, Step, Takes, Use,
 };
 
 use super::line::Line;
@@ -11,7 +12,7 @@ use super::reader::{Read, Reader, Stop};
 use crate::near;
 
 /// The words that begin a line.
-const WORDS: [&str; 14] = [
+const WORDS: [&str; 15] = [
     "paper",
     "buffer",
     "pass",
@@ -24,6 +25,7 @@ const WORDS: [&str; 14] = [
     "suits",
     "parameter",
     "defines",
+    "keeps",
     "hazard",
     "soundness",
 ];
@@ -108,6 +110,7 @@ impl Statements {
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
             "defines" => return self.defines(line),
+            "keeps" => return self.keeps(line),
             "hazard" => return self.hazard(line),
             "soundness" => return self.soundness(line),
             // The first line, when the row has no axis: that has been said.
@@ -330,12 +333,58 @@ impl Statements {
         Ok(())
     }
 
-    /// `hazard name unless fact -- what`
+    /// `keeps best 1 of each key / 1000`
+    fn keeps(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`keeps best k`, `keeps best 1 of each key / 1000`";
+        let side = self.reader.word(line, "`best` or `worst`", SHAPE)?;
+        let side = self.reader.one_of(&side, &[("best", Side::Best), ("worst", Side::Worst)], "no side")?;
+        let text = line.until(&[]);
+        let (most, group) = match text.value.split_once(" of each ") {
+            Some((most, group)) => (most.trim(), Some(group.trim())),
+            None => (text.value.as_str(), None),
+        };
+        let at = |part: &str| Spanned::new(part.to_owned(), text.origin.clone());
+        self.reader.formula(&at(most), &["k"])?;
+        if let Some(group) = group {
+            let constants = self.own.row.parameters.iter().map(|parameter| parameter.constant.to_string());
+            let symbols: Vec<String> =
+                ["k", "key", "depth_millionths"].map(str::to_owned).into_iter().chain(constants).collect();
+            let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
+            self.reader.formula(&at(group), &symbols)?;
+        }
+        let (most, group) = (Some(most.to_owned().into()), group.map(|group| group.to_owned().into()));
+        self.own.row.keeps = Some(Kept { side, most, group });
+        Ok(())
+    }
+
+    /// `hazard name permits name, name unless fact -- what`
     fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
         let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
+        let mut permits = self.permits_of(&name);
+        if line.exactly("permits") {
+            permits = Permits::NOTHING;
+            loop {
+                let word = self.reader.word(line, "what it permits", "`hazard mixed permits torn, stale`")?;
+                permits = permits.and(&self.reader.permits(&word)?);
+                if !line.sign(',') {
+                    break;
+                }
+            }
+        }
         let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
-        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), unless });
+        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), permits, unless });
         Ok(())
+    }
+
+    /// What a hazard's name permits by itself; some names say what the row keeps or merges.
+    fn permits_of(&mut self, name: &Spanned<String>) -> Permits {
+        match Shorthand::of(&name.value) {
+            Some(Shorthand::Permits(permits)) => return permits,
+            Some(Shorthand::Keeps(kept)) => self.own.row.keeps = Some(kept),
+            Some(Shorthand::Merges(merges)) => self.own.row.merges = Some(merges),
+            None => {}
+        }
+        Permits::NOTHING
     }
 
     fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
