@@ -4,7 +4,6 @@
 //! never to compare a key in code.
 
 mod capability;
-mod classes;
 mod condition;
 mod edit;
 mod fact;
@@ -23,9 +22,8 @@ mod words;
 pub type Text = std::borrow::Cow<'static, str>;
 
 pub use capability::Capability;
-pub use classes::Classes;
 pub use condition::{Condition, Given};
-pub use edit::Edit;
+pub use edit::{Edit, Split};
 pub use fact::Fact;
 pub use formula::{Expression, Formula, FormulaError};
 pub use hazard::Hazard;
