@@ -53,7 +53,7 @@ pub(super) fn depth_tested() -> Row {
             Hazard::new("uncounted", "what the depth test turns away is not counted", Permits::UNCOUNTED),
         ],
         // One fragment is in order.
-        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::Sorted],
+        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::LeavesDepth, Fact::Sorted],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL, UNSORTED],
         ..Row::new(
             "storage",

@@ -29,7 +29,6 @@ words! {
         LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
         KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
         Indexed "kept fragments with an index";
-        Passes "a build step for every kept fragment";
         Streams "a storage that hands fragments on in order, two neighbours at a time";
         // What comes to it.
         CullsNothing "that no fragment is turned away before the storage sees it";
@@ -38,6 +37,9 @@ words! {
         OneResolve "one resolve pass that serves every pixel";
         OneSample "one sample per pixel";
         StableSort "a sort that leaves fragments of equal depth as the storage gives them";
+        // What a caller may be told, or take over.
+        CountsEvents "that every event of a frame is counted, and not losses alone";
+        LeavesDepth "the depth of the nearest fragment, left in a depth buffer";
         // What they are worth.
         ValuesPairs "a value for two neighbouring fragments";
     }
