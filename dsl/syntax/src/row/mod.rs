@@ -23,6 +23,7 @@
 //! ```
 
 mod line;
+mod promises;
 mod reader;
 mod statements;
 

@@ -159,7 +159,8 @@ impl Reader {
             Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
             Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
         };
-        let hint = format!("the formula may use {}, {signs}, min, max, ceil_div and pow2", symbols.join(", "));
+        let hint =
+            format!("the formula may use {}, {signs}, min, max, ceil_div, pow2 and log2_ceil", symbols.join(", "));
         self.stop(codes::ROW, &formula.origin, problem, hint)
     }
 
