@@ -4,7 +4,7 @@
 use fragbuf::{Registry, TARGETS};
 use fragbuf_codegen::plan;
 use fragbuf_model::Selection;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::cases::{checked, text};
 
@@ -91,20 +91,20 @@ fn every_target_takes_it_or_says_what_it_lacks() {
     for (key, ..) in CATALOGUE {
         let variant = checked(&text(&format!("buffer B from {key} {{ }}")), &[]).unwrap();
         let refusals = TARGETS.iter().filter_map(|target| {
-            let refusal = variant.select(&[target.offers, &[Fact::OwnEntryPoints]].concat()).err()?;
-            Some((key, target.name, refusal.fact))
+            let refusal = variant.select(&[target.offers, &[Capability::OwnEntryPoints]].concat()).err()?;
+            Some((key, target.name, refusal.capability))
         });
         let of_key: Vec<_> = refusals.collect();
         assert!(of_key.len() < TARGETS.len(), "{key}");
         refused.extend(of_key);
     }
     let expected = [
-        ("kb_mdt64", "wgsl", Fact::U64Atomics),
-        ("kb_mdt64", "glsl-es", Fact::U64Atomics),
-        ("kb_mdt64", "hlsl", Fact::U64Atomics),
-        ("kb_mdt64", "msl", Fact::U64Atomics),
-        ("kb_sr", "glsl-es", Fact::SampleMask),
-        ("kb_sr", "msl", Fact::SampleMask),
+        ("kb_mdt64", "wgsl", Capability::U64Atomics),
+        ("kb_mdt64", "glsl-es", Capability::U64Atomics),
+        ("kb_mdt64", "hlsl", Capability::U64Atomics),
+        ("kb_mdt64", "msl", Capability::U64Atomics),
+        ("kb_sr", "glsl-es", Capability::SampleMask),
+        ("kb_sr", "msl", Capability::SampleMask),
     ];
     refused.sort_by_key(|(key, target, _)| expected.iter().position(|(k, t, _)| k == key && t == target));
     assert_eq!(refused, expected);

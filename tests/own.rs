@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use fragbuf::load::{Description, load};
 use fragbuf::report::render;
+use fragbuf::vocabulary::Symbol;
 use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate, target};
+use fragbuf_codegen::{PlanValue, SymbolId};
 use fragbuf_model::codes;
 
 use crate::validators::validate;
@@ -285,11 +287,44 @@ fn a_sort_of_the_users_own() {
     assert!(faults.iter().all(|fault| fault.code == codes::UNMET && fault.hint.contains("`sort: shell`")), "{faults}");
 }
 
+/// A row states what it needs of the description, and how a user meets it.
+#[test]
+fn a_condition_of_the_users_own() {
+    let file = example("first_k.wgsl");
+    let with_condition = |line: &str| file.replace("//: suits", &format!("{line}\n//: suits"));
+    let four = with_condition("//: when keep == 4 && payload_words <= 2 -- write `keep 4;`, and leave the payload out");
+    let (unmet, _) = faults(&with("condition", DESCRIPTION, &four)).unwrap_err();
+    let said = unmet.to_string();
+    assert!(unmet.iter().all(|fault| fault.code == codes::UNMET) && said.contains("requires `keep == 4"), "{said}");
+    assert!(said.contains("= help: write `keep 4;`, and leave the payload out"), "{said}");
+    let met = DESCRIPTION.replace("keep 8", "keep 4");
+    assert_eq!(faults(&with("condition_met", &met, &four)).map_err(|(faults, _)| faults.to_string()), Ok(()));
+    for (line, code, hint) in [
+        ("//: when k == 4 -- write `keep 4;`", codes::ROW, "the formula may use keep, limited"),
+        ("//: requires limited-to-one", codes::UNKNOWN_FACT, "`//: when keep == 1"),
+        ("//: offers fragment-atomics", codes::UNKNOWN_FACT, "`//: requires fragment-atomics`"),
+        ("//: implies sorted when depth-key", codes::ROW, "write `depth_key`"),
+    ] {
+        let (faults, _) = faults(&with("condition_unread", DESCRIPTION, &with_condition(line))).unwrap_err();
+        let is_it = |fault: &&fragbuf::Diagnostic| fault.code == code && fault.hint.contains(hint);
+        assert!(faults.iter().find(is_it).is_some(), "{line}: {faults}");
+    }
+}
+
+/// The guide's table of symbols is the vocabulary's.
+#[test]
+fn the_guide_names_every_symbol_of_conditions() {
+    let guide = include_str!("../src/guide/extend.md");
+    for Symbol { name: symbol, meaning, .. } in fragbuf::vocabulary::Given::symbols() {
+        assert!(guide.contains(&format!("| `{symbol}` | {meaning} |")), "`{symbol}` | {meaning}");
+    }
+}
+
 /// A hint names the file as a description would.
 #[test]
 fn hints_name_the_file_as_a_description_does() {
     let file =
-        example("first_k.wgsl").replace("suits sync slot_counter", "suits sync spin_lock").replace("own-", "fragment-");
+        example("first_k.wgsl").replace("suits sync slot_counter", "suits sync spin_lock").replace("own-atomics, ", "");
     let description = DESCRIPTION.replace("keep 8", "sync: slot_counter; keep 8");
     let (faults, _) = faults(&with("hint", &description, &file)).unwrap_err();
     assert!(faults.to_string().contains("`storage: wgsl(\"mine.wgsl\")` does not offer it"), "{faults}");

@@ -1,5 +1,5 @@
 //! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. Rows of an
-//! axis that state the same facts are interchangeable to the rules, so one combination of each kind is decided, and of
+//! axis that state the same facts and conditions are interchangeable to the rules, so one combination of each kind is decided, and of
 //! some kinds another, drawn by chance. A covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by
 //! definition.
 
@@ -8,12 +8,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fragbuf::vocabulary::{Fact, Row, Template};
+use fragbuf::vocabulary::{Capability, Fact, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::{Linking, Profile, link, plan, verify};
-use fragbuf_model::{
-    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned, is_target_fact,
-};
+use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
 use crate::validators::validate;
@@ -24,9 +22,17 @@ fn descriptions() -> Vec<Draft> {
     vec![Draft::from_technique("kb", &Origin::new("case", 1, 1)), parsed(CUSTOM), parsed(DEPTH_ONLY), parsed(RESERVED)]
 }
 
-/// The rows of an axis, those together that state the same facts: the rules see nothing else of a row.
+/// What callers are told of a technique. No row requires it.
+const TOLD: [Fact; 2] = [Fact::CountsEvents, Fact::LeavesDepth];
+
+/// The rows of an axis, those together that state the same facts and conditions: the rules see nothing else of a row.
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
-    let facts = |row: &Row| (row.offers.clone(), row.implies.clone(), row.requires.clone(), row.least.clone());
+    let facts = |row: &Row| {
+        let conditions = row.conditions.iter().map(|condition| condition.formula.clone()).collect::<Vec<_>>();
+        let requires = (row.requires.clone(), row.needs.clone(), row.least.clone());
+        let offers: Vec<Fact> = row.offers.iter().copied().filter(|fact| !TOLD.contains(fact)).collect();
+        (offers, row.implies.clone(), requires, conditions, row.carries.len())
+    };
     let mut classes: Vec<Vec<&Row>> = Vec::new();
     for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
         match classes.iter_mut().find(|class| facts(class[0]) == facts(row)) {
@@ -58,20 +64,6 @@ enum Outlook {
 
 /// One combination in so many is tried with rows drawn by chance too.
 const DRAWN_OF: usize = 12;
-
-/// What a description gives, and rows may offer too.
-const GIVEN: [Fact; 10] = [
-    Fact::KeepsAll,
-    Fact::KeepsBest,
-    Fact::Limited,
-    Fact::LimitedToOne,
-    Fact::SampleCount,
-    Fact::DepthKey,
-    Fact::Color,
-    Fact::OneWordBesideDepth,
-    Fact::WordPerTarget,
-    Fact::OneWordBesideKey,
-];
 
 /// Choices of one class per axis: all, but for those that begin with what nothing later can make legal. Of them there is one.
 fn combinations(registry: &Registry) -> Vec<Combination> {
@@ -117,11 +109,9 @@ fn complete<'a>(
 /// Whether the rows chosen so far may become legal, whatever the description gives.
 fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
     let rows = || begin.iter().map(|class| class[0]);
-    let offers =
-        |row: &Row, fact: Fact| row.offers.contains(&fact) || row.implies.iter().any(|(_, then)| *then == fact);
     let may_be = |fact: Fact| {
         let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
-        GIVEN.contains(&fact) || is_target_fact(fact) || rows().chain(later()).any(|row| offers(row, fact))
+        rows().chain(later()).any(|row| row.may_offer(fact))
     };
     let all = rows().all(|row| row.requires.iter().all(|fact| may_be(*fact)));
     if all { Outlook::Open } else { Outlook::Hopeless }
@@ -146,6 +136,7 @@ fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft
 #[test]
 fn every_combination_generates_or_is_refused_with_a_way_out() {
     let registry = Registry::builtin();
+    assert!(registry.rows().iter().all(|row| row.requires.iter().all(|fact| !TOLD.contains(fact))));
     let combinations = combinations(&registry);
     let descriptions = descriptions();
     let decided = decided(&registry, &descriptions, &combinations);
@@ -236,7 +227,7 @@ fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<
     let mut known: Vec<(Profile, Selection)> = Vec::new();
     let mut texts = Vec::new();
     for target in TARGETS {
-        let offers = [target.offers, &[Fact::OwnEntryPoints]].concat();
+        let offers = [target.offers, &[Capability::OwnEntryPoints]].concat();
         let Ok(selection) = variant.select(&offers) else { continue };
         let one = (target.profile, selection);
         if known.contains(&one) {

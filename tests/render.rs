@@ -184,7 +184,7 @@ fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
     let registry = Registry::builtin();
     let narrow = |key: &String| {
         let storage = registry.technique(key).unwrap().choices.iter().find(|(axis, _)| *axis == "storage").unwrap().1;
-        registry.row("storage", storage).unwrap().requires.contains(&Fact::OneWordBesideKey)
+        registry.row("storage", storage).unwrap().conditions.iter().any(|one| one.formula.mentions("entry_words"))
     };
     let (narrow, others): (Vec<String>, Vec<String>) = techniques(KeepDefault::Best(8)).into_iter().partition(narrow);
     for key in others {

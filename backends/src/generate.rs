@@ -3,7 +3,7 @@
 use fragbuf_codegen::{Form, Linking, Plan, Profile, link, plan};
 use fragbuf_model::{Diagnostic, Diagnostics, Refusal, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Loads};
+use fragbuf_templates::vocabulary::{Capability, Loads};
 
 use crate::target::{Emission, File, Guards, InterlockOrder, Target};
 use crate::{Checked, check};
@@ -74,13 +74,13 @@ fn plan_for(
     registry: &Registry,
     generation: &mut Generation,
 ) -> Result<Option<usize>, Diagnostics> {
-    if request.form == Form::Module && !target.offers.contains(&Fact::Linkable) {
-        let refusal = Refusal { axis: "form".to_owned(), value: "module".to_owned(), fact: Fact::Linkable };
+    if request.form == Form::Module && !target.offers.contains(&Capability::Linkable) {
+        let refusal = Refusal { axis: "form".to_owned(), value: "module".to_owned(), capability: Capability::Linkable };
         generation.refusals.push((target, refusal));
         return Ok(None);
     }
     let mut offers = target.offers.to_vec();
-    offers.extend((request.form == Form::Program).then_some(Fact::OwnEntryPoints));
+    offers.extend((request.form == Form::Program).then_some(Capability::OwnEntryPoints));
     let selection = match variant.select(&offers) {
         Ok(selection) => selection,
         Err(refusal) => {
@@ -148,7 +148,7 @@ fn emit(
             target: target.name,
             prefix: &prefix,
             rechecked: rechecked.map(|usage| format!("{prefix}{}", usage.resource)).collect(),
-            interlock: match plan.requires.contains(&Fact::OrderedInterlock) {
+            interlock: match plan.requires.contains(&Capability::OrderedInterlock) {
                 true => InterlockOrder::Submission,
                 false => InterlockOrder::Any,
             },

@@ -86,7 +86,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
     map.insert("symbols".into(), symbols(plan));
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
-    map.insert("features".into(), plan.requires.iter().map(|fact| Value::from(fact.word())).collect());
+    map.insert("features".into(), plan.requires.iter().map(|capability| Value::from(capability.word())).collect());
     map.insert(
         "constants".into(),
         plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),

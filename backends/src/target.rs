@@ -1,7 +1,7 @@
 //! The targets: what each can express, which WGSL profile it is made from, and who makes it.
 
 use fragbuf_codegen::{Profile, Stage};
-use fragbuf_templates::vocabulary::{Fact, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Soundness};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use crate::{Checked, glsl, hlsl, msl, spirv, wgsl};
@@ -16,7 +16,7 @@ pub struct Target {
     /// The WGSL that it is made from.
     pub profile: Profile,
     /// What it can express.
-    pub offers: &'static [Fact],
+    pub offers: &'static [Capability],
     pub(crate) emit: fn(&Emission<'_>) -> Result<Vec<File>, String>,
 }
 
@@ -82,17 +82,17 @@ pub struct File {
 }
 
 /// What both dialects of desktop GLSL offer.
-const GLSL_FACTS: &[Fact] = &[
-    Fact::FragmentAtomics,
-    Fact::Fences,
-    Fact::Coherent,
-    Fact::Interlock,
-    Fact::OrderedInterlock,
-    Fact::U64Atomics,
-    Fact::EarlyDepth,
-    Fact::SampleMask,
-    Fact::Coverage,
-    Fact::Linkable,
+const GLSL_CAPABILITIES: &[Capability] = &[
+    Capability::FragmentAtomics,
+    Capability::Fences,
+    Capability::Coherent,
+    Capability::Interlock,
+    Capability::OrderedInterlock,
+    Capability::U64Atomics,
+    Capability::EarlyDepth,
+    Capability::SampleMask,
+    Capability::Coverage,
+    Capability::Linkable,
 ];
 
 /// Every target, in the order in which files and manifests list them.
@@ -101,7 +101,7 @@ pub const TARGETS: &[Target] = &[
         name: "wgsl",
         summary: "the WGSL standard: browsers and every wgpu back end",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics, Fact::SampleMask, Fact::Coverage, Fact::Linkable],
+        offers: &[Capability::FragmentAtomics, Capability::SampleMask, Capability::Coverage, Capability::Linkable],
         emit: wgsl::emit,
     },
     Target {
@@ -109,13 +109,13 @@ pub const TARGETS: &[Target] = &[
         summary: "WGSL with naga's coherent buffers, 64-bit atomics and early depth tests: wgpu on native back ends",
         profile: Profile::Native,
         offers: &[
-            Fact::FragmentAtomics,
-            Fact::Coherent,
-            Fact::U64Atomics,
-            Fact::EarlyDepth,
-            Fact::SampleMask,
-            Fact::Coverage,
-            Fact::Linkable,
+            Capability::FragmentAtomics,
+            Capability::Coherent,
+            Capability::U64Atomics,
+            Capability::EarlyDepth,
+            Capability::SampleMask,
+            Capability::Coverage,
+            Capability::Linkable,
         ],
         emit: wgsl::emit,
     },
@@ -123,21 +123,21 @@ pub const TARGETS: &[Target] = &[
         name: "glsl",
         summary: "GLSL 4.50 for OpenGL 4.5, explicit locations and bindings",
         profile: Profile::Native,
-        offers: GLSL_FACTS,
+        offers: GLSL_CAPABILITIES,
         emit: glsl::emit_opengl,
     },
     Target {
         name: "glsl-vulkan",
         summary: "GLSL 4.50 for Vulkan 1.1",
         profile: Profile::Native,
-        offers: GLSL_FACTS,
+        offers: GLSL_CAPABILITIES,
         emit: glsl::emit_vulkan,
     },
     Target {
         name: "glsl-es",
         summary: "GLSL 3.10 ES for OpenGL ES 3.1, where fragment shaders may write buffers",
         profile: Profile::Native,
-        offers: &[Fact::FragmentAtomics, Fact::Fences, Fact::Coherent, Fact::Linkable],
+        offers: &[Capability::FragmentAtomics, Capability::Fences, Capability::Coherent, Capability::Linkable],
         emit: glsl::emit_es,
     },
     Target {
@@ -145,15 +145,15 @@ pub const TARGETS: &[Target] = &[
         summary: "SPIR-V 1.3 for Vulkan 1.1, one module per entry point",
         profile: Profile::Native,
         offers: &[
-            Fact::FragmentAtomics,
-            Fact::Fences,
-            Fact::Coherent,
-            Fact::Interlock,
-            Fact::OrderedInterlock,
-            Fact::U64Atomics,
-            Fact::EarlyDepth,
-            Fact::SampleMask,
-            Fact::Coverage,
+            Capability::FragmentAtomics,
+            Capability::Fences,
+            Capability::Coherent,
+            Capability::Interlock,
+            Capability::OrderedInterlock,
+            Capability::U64Atomics,
+            Capability::EarlyDepth,
+            Capability::SampleMask,
+            Capability::Coverage,
         ],
         emit: spirv::emit,
     },
@@ -162,12 +162,12 @@ pub const TARGETS: &[Target] = &[
         summary: "HLSL, shader model 6.0",
         profile: Profile::Native,
         offers: &[
-            Fact::FragmentAtomics,
-            Fact::Fences,
-            Fact::Coherent,
-            Fact::SampleMask,
-            Fact::Coverage,
-            Fact::Linkable,
+            Capability::FragmentAtomics,
+            Capability::Fences,
+            Capability::Coherent,
+            Capability::SampleMask,
+            Capability::Coverage,
+            Capability::Linkable,
         ],
         emit: hlsl::emit,
     },
@@ -175,7 +175,7 @@ pub const TARGETS: &[Target] = &[
         name: "msl",
         summary: "Metal Shading Language 2.4",
         profile: Profile::Portable,
-        offers: &[Fact::FragmentAtomics, Fact::Coverage],
+        offers: &[Capability::FragmentAtomics, Capability::Coverage],
         emit: msl::emit,
     },
 ];
@@ -191,7 +191,7 @@ pub const TIERS: [&str; 5] = ["T1", "T2", "T3", "T4", "T5"];
 /// The soundness tier of a variant on a target: T1 single-object atomics, T2 interlock, T3 lock with fences, T4 lock
 /// without, T5 racy by design.
 pub fn tier(soundness: Soundness, target: &Target) -> &'static str {
-    let fenced = target.offers.contains(&Fact::Fences) && target.offers.contains(&Fact::Coherent);
+    let fenced = target.offers.contains(&Capability::Fences) && target.offers.contains(&Capability::Coherent);
     match soundness {
         Soundness::Atomics => "T1",
         Soundness::Interlock => "T2",

@@ -5,7 +5,7 @@
 //! Which functions are needed follows from the rows that call them; nothing here names one.
 
 use fragbuf_model::codes::{CONTRACT, REFUSED, ROW, UNKNOWN_AXIS, UNKNOWN_VALUE};
-use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, is_target_fact, mangled};
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, RowPlaces, mangled};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Fact, Host, Kind, Pass, Row, State, Step};
 
@@ -245,9 +245,8 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         let Some(template) = &caller.template else { continue };
         let is_chosen = registry.axis(&caller.axis).is_some_and(|axis| axis.chosen);
         // What no row of the axis offers is the affair of other axes, or of the description.
-        let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| offers(other, *fact));
-        let suits =
-            || caller.requires.iter().all(|fact| offers(row, *fact) || is_target_fact(*fact) || is_others(fact));
+        let is_others = |fact: &Fact| !registry.rows_of(&row.axis).any(|other| other.may_offer(*fact));
+        let suits = || caller.requires.iter().all(|fact| row.may_offer(*fact) || is_others(fact));
         let (name, place) = match is_chosen {
             true if suits() => (format!("`{}: {}`", caller.axis, caller.key), places.row.clone()),
             true => continue,
@@ -265,11 +264,6 @@ fn needed(row: &Row, places: &RowPlaces, registry: &Registry) -> Vec<(&'static C
         }
     }
     needed
-}
-
-/// Whether a row offers a fact, in some description at least.
-fn offers(row: &Row, fact: Fact) -> bool {
-    row.offers.contains(&fact) || row.implies.iter().any(|(_, implied)| *implied == fact)
 }
 
 /// The line of the pass with this skeleton; the row's own where the row has no passes and serves everybody's.

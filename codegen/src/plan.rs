@@ -14,10 +14,10 @@ use summary::{passes, words_per_pixel};
 
 use std::sync::Arc;
 
-use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes, is_target_fact};
+use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Fact, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Row, Soundness, Step, When,
+    Capability, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Row, Soundness, Step, When,
 };
 
 use crate::frame::{Context, Lowered, lower};
@@ -52,7 +52,7 @@ pub struct Plan {
     /// Times that the scene is drawn.
     pub geometry_passes: String,
     /// What a target must offer.
-    pub requires: Vec<Fact>,
+    pub requires: Vec<Capability>,
     /// What the safety under concurrency rests on.
     pub soundness: Soundness,
     /// What can go wrong by design.
@@ -107,10 +107,9 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let (symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
     let offers = selection.offers();
-    let mut requires: Vec<Fact> = rows().flat_map(|row| row.requires.iter().copied()).collect();
+    let mut requires: Vec<Capability> = rows().flat_map(|row| row.needs.iter().copied()).collect();
     requires.sort();
     requires.dedup();
-    requires.retain(|fact| is_target_fact(*fact));
     Ok(Plan {
         variant: variant.clone(),
         selection: selection.clone(),
@@ -139,16 +138,13 @@ fn symbols(
     selection: &Selection,
     layout: &Layout,
 ) -> Result<(SymbolTable, Vec<(String, u32)>), FormulaError> {
-    let numbers = [
-        (SymbolId::CAPACITY, bucket(variant.keep)),
-        (SymbolId::ENTRY_WORDS, layout.entry_words()),
-        (SymbolId::BESIDE_WORDS, layout.beside_words()),
-    ];
-    let numbers = numbers.map(|(id, number)| (id, u64::from(number)));
+    let given = variant.given(selection);
+    let capacity = u64::from(bucket(variant.keep));
+    let number = |name: &str| if name == "capacity" { Some(capacity) } else { given.value(name) };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
     let defined: Vec<(&str, &Formula)> =
         rows().flat_map(|row| &row.defines).map(|defined| (&*defined.symbol, &defined.value)).collect();
-    let mut table = SymbolTable::new(&numbers, &defined)?;
+    let mut table = SymbolTable::new(&number, &defined)?;
     let mut constants =
         vec![("CAPACITY".to_owned(), bucket(variant.keep)), ("BESIDE_WORDS".to_owned(), layout.beside_words())];
     for selected in &selection.rows {

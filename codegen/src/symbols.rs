@@ -120,12 +120,17 @@ pub enum Term {
 }
 
 impl SymbolTable {
-    /// The table of a plan: `numbers` are the values of generation time by symbol, `defined` the formulas that rows give
-    /// instead of a default. Parameters are added one by one ([`SymbolTable::add`]), because each may rest on the former.
-    pub(crate) fn new(numbers: &[(SymbolId, u64)], defined: &[(&str, &Formula)]) -> Result<Self, FormulaError> {
+    /// The table of a plan: `number` gives the values of generation time, `defined` the formulas that rows give instead of a
+    /// default. Parameters are added one by one ([`SymbolTable::add`]), because each may rest on the former.
+    pub(crate) fn new(
+        number: &dyn Fn(&str) -> Option<u64>,
+        defined: &[(&str, &Formula)],
+    ) -> Result<Self, FormulaError> {
         let mut table = SymbolTable { symbols: SYMBOLS.iter().map(open).collect() };
-        for (id, number) in numbers {
-            table.symbols[id.index()].value = PlanValue::Number(*number);
+        for symbol in &mut table.symbols {
+            if let Some(number) = number(&symbol.name) {
+                symbol.value = PlanValue::Number(number);
+            }
         }
         // Formulas are over symbols that have none themselves, so that none goes round in a circle.
         let mut defaults = Vec::new();
@@ -288,7 +293,7 @@ mod tests {
     use super::*;
 
     fn table() -> SymbolTable {
-        SymbolTable::new(&[(SymbolId::ENTRY_WORDS, 2)], &[]).unwrap()
+        SymbolTable::new(&|name| (name == "entry_words").then_some(2), &[]).unwrap()
     }
 
     #[test]
@@ -321,6 +326,6 @@ mod tests {
     #[test]
     fn a_definition_in_a_circle_is_refused() {
         let circle = Formula::from("pixels * 2");
-        assert!(SymbolTable::new(&[], &[("pixels", &circle)]).is_err());
+        assert!(SymbolTable::new(&|_| None, &[("pixels", &circle)]).is_err());
     }
 }

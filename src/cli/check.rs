@@ -142,7 +142,7 @@ impl Check {
         let Some(name) = &self.target else {
             let able = TARGETS.iter().find(|target| {
                 let mut offers = target.offers.to_vec();
-                offers.push(fragbuf_templates::vocabulary::Fact::OwnEntryPoints);
+                offers.push(fragbuf_templates::vocabulary::Capability::OwnEntryPoints);
                 variant.select(&offers).is_ok()
             });
             return able.ok_or_else(|| Failure::Usage("no target can express the description".to_owned()));
@@ -172,7 +172,7 @@ fn as_text(key: &str, on: &str, limits: &Limits, report: &Report) -> String {
     let head = format!("{key} on {on}, {}", model_name(limits.model));
     let Some(schedule) = &report.failure else {
         let scope = if report.is_whole { "in every order" } else { "in every order tried" };
-        let unjudged = "  Which fragments stay is not judged: the storage offers neither keeps-all nor keeps-best.\n";
+        let unjudged = "  Which fragments stay is not judged: the storage offers neither keeps-all nor keeps-best, and has no line `keeps`.\n";
         let note = if report.is_judged { "" } else { unjudged };
         return format!("{head}: no failure {scope} ({cases})\n{note}");
     };

@@ -88,7 +88,7 @@ fn yes(is_so: bool) -> String {
 
 /// What a target must offer.
 fn features(plan: &Plan) -> String {
-    let words: Vec<String> = plan.requires.iter().map(|fact| fact.word()).collect();
+    let words: Vec<String> = plan.requires.iter().map(|capability| capability.word()).collect();
     words.join("+")
 }
 

@@ -1,6 +1,6 @@
 //! Axis `counters`: what is counted while the passes run.
 
-use crate::vocabulary::{Access, Element, Resource, Row, Template, Use};
+use crate::vocabulary::{Access, Element, Fact, Resource, Row, Template, Use};
 
 /// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
 /// same order.
@@ -40,10 +40,11 @@ pub const COUNTERS: [(&str, bool, &str); 14] = [
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
+        counting("losses", "losses only: memory is touched when a fragment is lost", template!("counters/losses")),
         Row {
-            ..counting("losses", "losses only: memory is touched when a fragment is lost", template!("counters/losses"))
+            offers: vec![Fact::CountsEvents],
+            ..counting("all", "everything, for statistics: every fragment pays for it", template!("counters/all"))
         },
-        Row { ..counting("all", "everything, for statistics: every fragment pays for it", template!("counters/all")) },
         Row { template: Some(template!("counters/none")), ..Row::new("counters", "none", "nothing", "") },
     ]
 }

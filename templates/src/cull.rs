@@ -1,7 +1,9 @@
 //! Axis `cull`: which fragments are turned away before they reach the storage.
 
+use crate::conditions::depth_key;
 use crate::vocabulary::{
-    Access, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step, TextureFormat, Use,
+    Access, Capability, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step,
+    TextureFormat, Use,
 };
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -31,7 +33,8 @@ fn occupancy() -> Row {
         template: Some(template!("cull/occupancy")),
         uses: vec![Use::new("occupancy", Access::Read)],
         offers: vec![Fact::CullInShader],
-        requires: vec![Fact::FragmentAtomics, Fact::BestSuffice],
+        requires: vec![Fact::BestSuffice],
+        needs: vec![Capability::FragmentAtomics],
         edits: vec![before_store(narrow)],
         ..by_occupancy("occupancy", "fragments beyond the k-th occupied bucket, which two passes before find")
     }
@@ -54,15 +57,9 @@ fn occupancy_early() -> Row {
         resources: [row.resources, vec![limits]].concat(),
         calls: vec!["storage"],
         // Keys are what is tested: the rasteriser's depth, which a caller's own shader may replace.
-        requires: vec![
-            Fact::FragmentAtomics,
-            Fact::BestSuffice,
-            Fact::BoundAnyInstant,
-            Fact::DepthKey,
-            Fact::EarlyDepth,
-            Fact::OwnEntryPoints,
-            Fact::OneSample,
-        ],
+        requires: vec![Fact::BestSuffice, Fact::BoundAnyInstant, Fact::OneSample],
+        conditions: vec![depth_key()],
+        needs: vec![Capability::FragmentAtomics, Capability::EarlyDepth, Capability::OwnEntryPoints],
         edits: vec![before_store(limit), Edit::SetState("store".to_owned(), test(Compare::LessEqual, false, true))],
         ..row
     }

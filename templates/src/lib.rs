@@ -18,6 +18,7 @@ macro_rules! template {
 }
 
 mod addressing;
+mod conditions;
 mod counters;
 mod cull;
 mod host;
@@ -29,6 +30,7 @@ mod resolve;
 mod samples;
 mod select;
 mod shared;
+mod shorthand;
 mod sort;
 mod storage;
 mod sync;
@@ -38,4 +40,5 @@ mod ties;
 
 pub use counters::COUNTERS;
 pub use registry::Registry;
+pub use shorthand::Shorthand;
 pub use table_1::{PaperRow, TABLE_1};

@@ -1,6 +1,8 @@
 //! Axis `opaque`: what becomes of fragments behind opaque surfaces, whose depth buffer the caller brings.
 
-use crate::vocabulary::{Access, Compare, DepthState, Edit, Element, Fact, Init, Resource, Row, TextureFormat, Use};
+use crate::vocabulary::{
+    Access, Capability, Compare, DepthState, Edit, Element, Fact, Init, Resource, Row, TextureFormat, Use,
+};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![none(), in_shader(), early()]
@@ -35,13 +37,8 @@ fn early() -> Row {
     Row {
         template: Some(template!("opaque/none")),
         resources: vec![depth_buffer()],
-        requires: vec![
-            Fact::LeftToShaders,
-            Fact::CullInShader,
-            Fact::OneSample,
-            Fact::EarlyDepth,
-            Fact::OwnEntryPoints,
-        ],
+        requires: vec![Fact::LeftToShaders, Fact::CullInShader, Fact::OneSample],
+        needs: vec![Capability::EarlyDepth, Capability::OwnEntryPoints],
         edits: vec![Edit::TestDepth(test)],
         ..Row::new(
             "opaque",

@@ -1,6 +1,10 @@
 //! Axis `overflow`: what becomes of a fragment that finds no place.
 
-use crate::vocabulary::{Access, Element, Fact, Hazard, Resource, Row, Template, Use};
+use crate::conditions::{ADD_COLOR, color, depth_key};
+use crate::vocabulary::{
+    Access, Blended, Capability, Element, Fact, Hazard, Merges, Permits, PromisedKeys, Resource, Row, Template, Text,
+    Use,
+};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -18,7 +22,9 @@ pub(crate) fn rows() -> Vec<Row> {
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
             calls: vec!["counters", "samples"],
-            requires: vec![Fact::Color, Fact::LosesWhole, Fact::OneResolve, Fact::FragmentAtomics],
+            requires: vec![Fact::LosesWhole, Fact::OneResolve],
+            conditions: vec![color(ADD_COLOR)],
+            needs: vec![Capability::FragmentAtomics],
             ..row(
                 "weighted_tail",
                 "it counts in a mean colour behind what is kept; the same for every order of arrival",
@@ -35,7 +41,7 @@ pub(crate) fn rows() -> Vec<Row> {
                     .cleared(0),
             ],
             uses: vec![Use::new("failed", Access::Atomic)],
-            requires: vec![Fact::FragmentAtomics],
+            needs: vec![Capability::FragmentAtomics],
             ..row(
                 "fail",
                 "the whole frame is magenta if one found no room, or a lock was not free in time",
@@ -52,18 +58,14 @@ fn tail_blend() -> Row {
     Row {
         resources: vec![tail.by("channel", "4").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("blended", Access::Coherent)],
-        requires: vec![
-            Fact::Color,
-            Fact::LosesWhole,
-            Fact::DisplacesInTurn,
-            Fact::Critical,
-            Fact::CullsNothing,
-            Fact::FragmentAtomics,
-        ],
+        requires: vec![Fact::LosesWhole, Fact::DisplacesInTurn, Fact::Critical, Fact::CullsNothing],
+        conditions: vec![color(ADD_COLOR)],
+        needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "samples"],
         hazards: vec![Hazard::new(
             "shows-arrival",
             "what is not kept is blended in the order of arrival, as if whatever comes later lay before the rest",
+            Permits::SHOWS_ARRIVAL,
         )],
         ..row(
             "tail_blend",
@@ -76,10 +78,12 @@ fn tail_blend() -> Row {
 
 fn merge_last() -> Row {
     Row {
+        merges: Some(MERGED_FARTHEST),
         hazards: vec![Hazard::new(
             "merged-farthest",
             "the colour of the farthest kept fragment is its own over those of fragments that are not kept, in an order \
              that depends on arrival",
+            Permits::NOTHING,
         )],
         ..merging(
             Fact::CanReplace,
@@ -95,10 +99,12 @@ fn merge_last() -> Row {
 
 fn merge_closest() -> Row {
     Row {
+        merges: Some(MERGED_NEIGHBOURS),
         hazards: vec![Hazard::new(
             "merged-neighbours",
             "where there are more than k, the two nearest to each other in depth become one, with the depth and the other \
              attributes of the nearer; which two depends on arrival",
+            Permits::NOTHING,
         )],
         ..merging(
             Fact::OrderedSlots,
@@ -112,12 +118,18 @@ fn merge_closest() -> Row {
     }
 }
 
+/// Colours of fragments that are not kept go into the farthest entry: which of them lies before which depends on arrival.
+pub(crate) const MERGED_FARTHEST: Merges =
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::All, blended: Blended::Worst };
+
+/// Of two neighbours the nearer stays, with the colours of both; the nearest of all is never gone.
+pub(crate) const MERGED_NEIGHBOURS: Merges =
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::Best, blended: Blended::Any };
+
 /// What rows share that merge colours of kept fragments; `slots` is what they need of the storage.
 fn merging(slots: Fact, row: Row) -> Row {
     Row {
         requires: vec![
-            Fact::Color,
-            Fact::DepthKey,
             Fact::LosesWhole,
             Fact::DisplacesInTurn,
             slots,
@@ -125,8 +137,9 @@ fn merging(slots: Fact, row: Row) -> Row {
             Fact::OneSample,
             Fact::Critical,
             Fact::CullsNothing,
-            Fact::FragmentAtomics,
         ],
+        conditions: vec![color(ADD_COLOR), depth_key()],
+        needs: vec![Capability::FragmentAtomics],
         calls: vec!["counters", "storage"],
         ..row
     }

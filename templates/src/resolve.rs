@@ -1,6 +1,7 @@
 //! Axis `resolve`: what is made of the kept fragments.
 
 use crate::Registry;
+use crate::conditions::color;
 use crate::vocabulary::{Fact, Parameter, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -8,7 +9,8 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             template: Some(template!("resolve/over")),
             calls: vec!["samples"],
-            requires: vec![Fact::Sorted, Fact::Color],
+            requires: vec![Fact::Sorted],
+            conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
             parameters: vec![Parameter::number(
                 "opaque",
                 "OPAQUE_THOUSANDTHS",
@@ -20,7 +22,8 @@ pub(crate) fn rows() -> Vec<Row> {
         },
         Row {
             template: Some(template!("resolve/stream")),
-            requires: vec![Fact::Streams, Fact::Color],
+            requires: vec![Fact::Streams],
+            conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
             offers: vec![Fact::ValuesPairs],
             ..Row::new(
                 "resolve",
@@ -35,3 +38,6 @@ pub(crate) fn rows() -> Vec<Row> {
         },
     ]
 }
+
+/// Effects on colours have a closure in their place.
+const ADD_COLOR_OR_CLOSURE: &str = "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`";

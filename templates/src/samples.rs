@@ -1,6 +1,6 @@
 //! Axis `samples`: how many samples a pixel has, and what is kept of a fragment that covers some of them.
 
-use crate::vocabulary::{Carried, Coverage, Edit, Fact, Parameter, Row, Samples, Takes};
+use crate::vocabulary::{Capability, Carried, Coverage, Edit, Fact, Parameter, Row, Samples, Takes};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -22,7 +22,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 range: (2, 8),
                 summary: "samples of a pixel; every device has 4, some 2 and 8, the CPU device all".into(),
             }],
-            requires: vec![Fact::Coverage],
+            needs: vec![Capability::Coverage],
             edits: vec![Edit::Samples(Samples {
                 count: "SAMPLES".into(),
                 mask: "pow2(SAMPLES) - 1".into(),

@@ -1,6 +1,6 @@
 //! Axis `sort`: how the kept fragments are put in the order of depth before they are resolved.
 
-use crate::vocabulary::{Classes, Edit, Fact, Parameter, Role, Row};
+use crate::vocabulary::{Edit, Fact, Parameter, Role, Row, Split};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -61,10 +61,16 @@ pub(crate) fn rows() -> Vec<Row> {
             calls: vec!["counters"],
             parameters: vec![layers()],
             offers: vec![Fact::Sorted],
-            edits: vec![Edit::Classes(Classes {
+            edits: vec![Edit::Split(Split {
                 anchor: "resolve".to_owned(),
-                constant: "LAYERS".to_owned(),
-                least: 8,
+                // Arrays of 8, of twice that, and so on below the parameter's own length, and of that at last.
+                copies: "log2_ceil(ceil_div(LAYERS, 8)) + 1".into(),
+                constants: vec![
+                    ("LAYERS".to_owned(), "min(8 * pow2(copy), LAYERS)".into()),
+                    // Each serves the pixels of more fragments than the array before holds, the last all others.
+                    ("CLASS_ABOVE".to_owned(), "(copy > 0) * 4 * pow2(copy)".into()),
+                    ("CLASS_MOST".to_owned(), "max(8 * pow2(copy), (copy + 1 == copies) * 4294967295)".into()),
+                ],
                 // Every pass reads every pixel: what is lost there is counted by the last alone.
                 before_last: vec![Role::of("counters", "none")],
             })],

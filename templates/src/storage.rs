@@ -11,7 +11,9 @@ mod repeated;
 mod stream;
 mod worst_first;
 
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Permits, Resource, Row, Step};
+
+pub(crate) use ranges::DEPTH_RANGE;
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -50,24 +52,32 @@ fn sorted_array() -> Row {
         calls: vec!["overflow"],
         offers: [OF_THE_K_BEST.as_slice(), &[Fact::SurvivesRaces, Fact::KeepsArrival]].concat(),
         // Entries are in the order of their keys.
-        implies: vec![(Fact::DepthKey, Fact::Sorted), (Fact::DepthKey, Fact::OrderedSlots)],
-        requires: vec![Fact::FragmentAtomics],
+        implies: vec![("depth_key".into(), Fact::Sorted), ("depth_key".into(), Fact::OrderedSlots)],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
             Hazard::new(
                 "lost-update",
                 "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted",
+                Permits::LOST,
             )
             .unless(Fact::Critical),
-            Hazard::new("duplicate", "an entry moved by one fragment while another moves it too stands in two slots")
+            Hazard::new(
+                "duplicate",
+                "an entry moved by one fragment while another moves it too stands in two slots",
+                Permits::DUPLICATE,
+            )
+            .unless(Fact::Critical),
+            Hazard::new("torn", "key and payload of a slot come from two fragments", Permits::TORN)
                 .unless(Fact::Critical),
-            Hazard::new("torn", "key and payload of a slot come from two fragments").unless(Fact::Critical),
             Hazard::new(
                 "stale",
                 "a key is seen before what stands beside it, and moves on with what the slot held before",
+                Permits::STALE,
             )
             .unless(Fact::Critical),
-            Hazard::new("unsorted", "the entries of a pixel are not in the order of their keys").unless(Fact::Critical),
+            Hazard::new("unsorted", "the entries of a pixel are not in the order of their keys", Permits::UNSORTED)
+                .unless(Fact::Critical),
         ],
         ..Row::new(
             "storage",
@@ -95,8 +105,8 @@ fn fixed_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
-        implies: vec![(Fact::Limited, Fact::BestSuffice)],
-        requires: vec![Fact::FragmentAtomics],
+        implies: vec![("limited".into(), Fact::BestSuffice)],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",

@@ -1,6 +1,6 @@
 //! Axis `sync`: how writers of the same pixel are kept apart.
 
-use crate::vocabulary::{Access, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
+use crate::vocabulary::{Access, Capability, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![none(), slot_counter(), spin_lock(), interlock(), interlock_ordered(), fixed_function()]
@@ -53,7 +53,7 @@ fn spin_lock() -> Row {
         uses: vec![Use::new("locks", Access::Atomic)],
         calls: vec!["storage", "overflow", "counters"],
         offers: vec![Fact::Critical, Fact::LeftToShaders],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         parameters: vec![Parameter::number(
             "limit",
             "SPIN_LIMIT",
@@ -71,7 +71,7 @@ fn interlock_ordered() -> Row {
     let any = interlock();
     Row {
         offers: vec![Fact::Critical, Fact::OrderedCritical, Fact::LeftToShaders],
-        requires: [any.requires.as_slice(), &[Fact::OrderedInterlock]].concat(),
+        needs: [any.needs.as_slice(), &[Capability::OrderedInterlock]].concat(),
         key: "interlock_ordered".to_owned(),
         summary: "by fragment shader interlock, in the order of submission".into(),
         ..any
@@ -81,7 +81,12 @@ fn interlock_ordered() -> Row {
 fn interlock() -> Row {
     Row {
         offers: vec![Fact::Critical, Fact::LeftToShaders],
-        requires: vec![Fact::Interlock, Fact::Coherent, Fact::FragmentAtomics, Fact::OwnEntryPoints],
+        needs: vec![
+            Capability::Interlock,
+            Capability::Coherent,
+            Capability::FragmentAtomics,
+            Capability::OwnEntryPoints,
+        ],
         edits: vec![Edit::FormOfSkeleton("store".to_owned(), "ordered".to_owned())],
         soundness: Soundness::Interlock,
         ..Row::new(

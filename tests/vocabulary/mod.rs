@@ -11,7 +11,7 @@ fn planned(key: &str) -> Plan {
     let registry = rows::registry();
     let draft = Draft::from_technique(key, &Origin::new(key, 1, 1));
     let variant = check(&draft, &registry).unwrap_or_else(|faults| panic!("{faults}"));
-    let everything = fragbuf_templates::vocabulary::Fact::ALL;
+    let everything = fragbuf_templates::vocabulary::Capability::ALL;
     let selection = variant.select(everything).unwrap_or_else(|refusal| panic!("{refusal}"));
     plan(&variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"))
 }
@@ -74,7 +74,7 @@ fn an_edit_of_an_unknown_pass_is_refused() {
     let registry = Registry::builtin().with(row);
     let draft = Draft::from_technique("ab_ll", &Origin::new("ab_ll", 1, 1));
     let variant = check(&draft, &registry).unwrap();
-    let selection = variant.select(fragbuf_templates::vocabulary::Fact::ALL).unwrap();
+    let selection = variant.select(fragbuf_templates::vocabulary::Capability::ALL).unwrap();
     let faults = plan(&variant, &selection, &registry).unwrap_err();
     assert!(faults.to_string().contains("`no_such_pass`"), "{faults}");
 }
@@ -82,7 +82,7 @@ fn an_edit_of_an_unknown_pass_is_refused() {
 /// Rules refuse it first; a row of one's own that states no facts meets the plan.
 #[test]
 fn a_second_depth_test_is_refused() {
-    use fragbuf_templates::vocabulary::{Fact, Row};
+    use fragbuf_templates::vocabulary::{Capability, Row};
     let builtin = Registry::builtin();
     let early = builtin.row("opaque", "early").unwrap().clone();
     for (key, set, pass) in [
@@ -90,13 +90,14 @@ fn a_second_depth_test_is_refused() {
         ("kb_sr", ("sort", "insertion"), "store"),
         ("kplus_array", ("cull", "occupancy_early"), "store"),
     ] {
-        let registry = builtin.clone().with(Row { requires: vec![Fact::EarlyDepth], ..early.clone() });
+        let registry =
+            builtin.clone().with(Row { requires: Vec::new(), needs: vec![Capability::EarlyDepth], ..early.clone() });
         let origin = Origin::new(key, 1, 1);
         let mut draft = Draft::from_technique(key, &origin);
         draft.set("opaque", "early", &origin).unwrap();
         draft.set(set.0, set.1, &origin).unwrap();
         let variant = check(&draft, &registry).unwrap();
-        let selection = variant.select(Fact::ALL).unwrap();
+        let selection = variant.select(Capability::ALL).unwrap();
         let faults = plan(&variant, &selection, &registry).unwrap_err().to_string();
         assert!(faults.contains(&format!("`{pass}`, which has a test of its own")), "{key}: {faults}");
     }

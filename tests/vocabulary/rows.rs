@@ -2,8 +2,8 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Compare, DepthState, Edit, Element, Fact, Host, HostCall, HostFunction, KeepDefault, Pass,
-    Repeat, Resource, Row, Step, Technique, TextureFormat, Until,
+    Access, Axis, Blend, Capability, Compare, DepthState, Edit, Element, Fact, Host, HostCall, HostFunction,
+    KeepDefault, Pass, Repeat, Resource, Row, Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
@@ -104,7 +104,7 @@ fn dual() -> Row {
             Step::Pass(composite),
         ],
         offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
-        requires: vec![Fact::MinMaxBlend],
+        needs: vec![Capability::MinMaxBlend],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
     }

@@ -4,7 +4,7 @@
 //! orders of arrival) with fragments between, before, behind and equal to what is there; too little room; a pass that did
 //! not see a fragment. Which of the new fragments comes first is the search's affair.
 
-use fragbuf_templates::vocabulary::{Fact, Kind};
+use fragbuf_templates::vocabulary::Kind;
 
 use crate::fragments::{Candidates, Fragment};
 use crate::room::{Asking, Room, rooms};
@@ -185,6 +185,6 @@ impl Subject {
 
     /// Whether the storage keeps whatever it is handed.
     pub(crate) fn keeps_all(&self) -> bool {
-        self.plan.selection.offers().contains(&Fact::KeepsAll)
+        self.plan.selection.kept().is_some_and(|kept| kept.most.is_none())
     }
 }

@@ -9,7 +9,7 @@
 //! The programs are those that a target gets, run by `fragbuf-interpreter` from one shared access to the next. What counts
 //! as right is what the variant states: the k best, ties, order, losses counted exactly, room for what is stored, the bound
 //! of an early cull never too low, nobody waiting for ever, no data race. What is not right, but no worse than the hazards
-//! of the rows allow ([`Effect`](fragbuf_templates::vocabulary::Effect)), fails as stated. Memory behaves as one of two
+//! of the rows allow ([`Permits`](fragbuf_templates::vocabulary::Permits)), fails as stated. Memory behaves as one of two
 //! models says ([`Model`]). [`check_shader`] does the same for any shader, without a description. [`ReadOut`] reads what a
 //! pixel holds from the words that any device left. Nothing here knows a technique by name.
 //!

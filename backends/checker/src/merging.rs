@@ -5,26 +5,18 @@
 //! other word, which entries have a colour of their own, and how much light all of them together let through.
 
 use fragbuf_model::Format;
-use fragbuf_templates::vocabulary::Effect;
+use fragbuf_templates::vocabulary::{Blended, Merges, PromisedKeys};
 
-use crate::promise::effects;
 use crate::subject::Subject;
 
 /// Which entries are made of several fragments, and where their colours lie.
 #[derive(Clone, Debug)]
 pub(crate) struct Merging {
-    which: Which,
-    /// Words of an entry that hold the colour.
+    keys: PromisedKeys,
+    blended: Blended,
+    /// Words of an entry that hold what is blended.
     color: Vec<usize>,
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Which {
-    /// The farthest alone; the keys are the promised ones.
-    Farthest,
-    /// Any, and any but the nearest may be gone.
-    Neighbours,
 }
 
 type Entry = Vec<u32>;
@@ -32,36 +24,40 @@ type Entry = Vec<u32>;
 impl Merging {
     /// How a subject merges; `None`: it does not.
     pub(crate) fn new(subject: &Subject) -> Option<Self> {
-        let effects = effects(subject);
-        let kinds = [(Effect::MergedFarthest, Which::Farthest), (Effect::MergedNeighbours, Which::Neighbours)];
-        let (_, which) = kinds.into_iter().find(|(effect, _)| effects.contains(effect))?;
+        let Merges { attribute, keys, blended } = subject.plan.selection.merges()?;
         let beside = (1..).zip(&subject.plan.layout.beside);
-        let words: Vec<_> = beside.filter(|(_, word)| word.member.name == "color").collect();
+        let words: Vec<_> = beside.filter(|(_, word)| word.member.name == *attribute).collect();
         let format = words.first()?.1.member.format;
-        Some(Merging { which, color: words.iter().map(|(at, _)| *at).collect(), format })
+        Some(Merging { keys: *keys, blended: *blended, color: words.iter().map(|(at, _)| *at).collect(), format })
     }
 
     /// Whether `kept` is a merging of `left`, of which `wanted` would stay without.
     pub(crate) fn agrees(&self, kept: &[Entry], left: &[Entry], wanted: &[Entry]) -> bool {
-        let is_right = match self.which {
-            Which::Farthest => self.is_farthest_merged(kept, left, wanted),
-            Which::Neighbours => is_contained(&self.masked(kept), &self.masked(left)) && nearest(kept) == nearest(left),
+        let has_promised_keys = match self.keys {
+            PromisedKeys::All => keys(kept) == keys(wanted),
+            PromisedKeys::Best => nearest(kept) == nearest(left),
         };
-        is_right && kept.len() == wanted.len() && self.lets_through_as_much(kept, left)
+        has_promised_keys
+            && is_contained(&self.masked(kept), &self.masked(left))
+            && self.is_blended_where_it_may(kept, left, wanted)
+            && kept.len() == wanted.len()
+            && self.lets_through_as_much(kept, left)
     }
 
-    /// The promised keys, and whole fragments but for the colour of one with the last of the keys, if any fragment is gone.
-    fn is_farthest_merged(&self, kept: &[Entry], left: &[Entry], wanted: &[Entry]) -> bool {
-        let has_promised_keys = keys(kept) == keys(wanted) && is_contained(&self.masked(kept), &self.masked(left));
-        if left.len() == wanted.len() {
-            return has_promised_keys && is_contained(kept, left);
+    /// Whether all entries but those that may be blended are whole fragments.
+    fn is_blended_where_it_may(&self, kept: &[Entry], left: &[Entry], wanted: &[Entry]) -> bool {
+        if self.blended == Blended::Any {
+            return true;
         }
-        let last = wanted.iter().map(|entry| entry[0]).max();
-        let is_merged = |at: usize| {
+        if left.len() == wanted.len() {
+            return is_contained(kept, left);
+        }
+        let worst = wanted.iter().map(|entry| entry[0]).max();
+        let is_blended = |at: usize| {
             let others = [&kept[..at], &kept[at + 1..]].concat();
-            Some(kept[at][0]) == last && is_contained(&others, left)
+            Some(kept[at][0]) == worst && is_contained(&others, left)
         };
-        has_promised_keys && (0..kept.len()).any(is_merged)
+        (0..kept.len()).any(is_blended)
     }
 
     /// Whether the product of the transmittances is what it was, within the rounding of every merging.

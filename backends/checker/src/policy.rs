@@ -6,7 +6,7 @@
 use std::ops::RangeInclusive;
 
 use fragbuf_templates::COUNTERS;
-use fragbuf_templates::vocabulary::Effect;
+use fragbuf_templates::vocabulary::{Alike, Permits, Torn};
 
 use crate::frame::STALE;
 use crate::promise::Promise;
@@ -15,8 +15,8 @@ use crate::promise::Promise;
 #[derive(Clone, Debug)]
 pub(crate) struct Policy {
     pub(crate) promise: Promise,
-    /// What the rows state that may go wrong.
-    pub(crate) effects: Vec<Effect>,
+    /// What the rows state that may go wrong, hazard by hazard.
+    pub(crate) hazards: Vec<Permits>,
     /// How many fragments may find no room.
     pub(crate) short: RangeInclusive<u32>,
     /// Whether tries are bounded so low that fragments may be given up.
@@ -52,7 +52,6 @@ struct Counts {
     lost: u32,
     given_up: u32,
     no_room: u32,
-    unsettled: u32,
     occluded: u32,
 }
 
@@ -66,19 +65,30 @@ impl Counts {
 impl Policy {
     /// What is to be said of a pixel that holds `kept`, in the order in which it is read out.
     pub(crate) fn finding(&self, kept: &[Vec<u32>], counters: &[u32]) -> Finding {
-        let counts = self.counts(counters);
-        if let Some(text) = self.miscarried(counts) {
+        let (counts, permits) = (self.counts(counters), self.permits(counters));
+        if let Some(text) = self.miscarried(counts, &permits) {
             return Finding::Wrong(text);
         }
         let Some(text) = self.fault(kept, counts) else { return Finding::Right };
         // That fragments merge is part of the promise, and excuses nothing that is not.
-        let is_excused = !self.effects.is_empty() && self.promise.merging.is_none();
-        let is_stated = is_excused && self.is_stated(kept, counts);
+        let is_excused = permits.is_something() && self.promise.merging.is_none();
+        let is_stated = is_excused && self.is_stated(kept, counts, &permits);
         if is_stated { Finding::Stated(text) } else { Finding::Wrong(text) }
     }
 
+    /// What may go wrong where the counters say this.
+    fn permits(&self, counters: &[u32]) -> Permits {
+        let is_counted = |name: &str| {
+            let mut known = COUNTERS.iter().zip(counters);
+            known.any(|((known, ..), count)| *known == name && *count > 0)
+        };
+        let hazards = self.hazards.iter();
+        let there = hazards.filter(|hazard| hazard.where_counted.as_ref().is_none_or(|name| is_counted(name)));
+        there.fold(Permits::NOTHING, Permits::and)
+    }
+
     /// What is wrong whatever the rows state: fragments were given up, or found no room, or were hidden, that should not.
-    fn miscarried(&self, counts: Counts) -> Option<String> {
+    fn miscarried(&self, counts: Counts, permits: &Permits) -> Option<String> {
         let counts_all = counts.generated > 0;
         if counts_all && counts.occluded != self.hidden || counts.occluded > self.hidden {
             return Some(format!(
@@ -86,7 +96,7 @@ impl Policy {
                 counts.occluded, self.hidden
             ));
         }
-        if counts.given_up > 0 && !self.may_give_up && !self.effects.contains(&Effect::GivenUp) {
+        if counts.given_up > 0 && !self.may_give_up && !permits.gives_up {
             return Some(format!("{} fragments gave up waiting for the lock", counts.given_up));
         }
         // Who gives up has not asked for room.
@@ -195,89 +205,85 @@ impl Policy {
         })
     }
 
-    /// Whether what is wrong is no more than the stated hazards allow.
-    fn is_stated(&self, kept: &[Vec<u32>], counts: Counts) -> bool {
-        let may = |effect| self.effects.contains(&effect);
-        if may(Effect::Unsettled) && counts.unsettled > 0 {
-            let has_room = self.promise.most().is_none_or(|most| kept.len() <= most);
-            return has_room && kept.iter().all(|entry| self.has_known_words(entry));
-        }
-        let is_ordered = may(Effect::Unsorted) || self.promise.is_in_order(kept);
-        let is_all = may(Effect::Lost) || self.choices(counts.gone()).any(|left| self.is_complete(kept, left));
-        let is_known = kept.iter().all(|entry| self.is_someones(entry)) && self.is_often_enough(kept);
-        is_ordered && is_all && is_known && self.is_counted(kept.len() as u32, counts)
+    /// Whether what is wrong is no more than the stated hazards permit.
+    fn is_stated(&self, kept: &[Vec<u32>], counts: Counts, permits: &Permits) -> bool {
+        let is_ordered = permits.unsorted || self.promise.is_in_order(kept);
+        let is_all = permits.lost || self.choices(counts.gone()).any(|left| self.is_complete(kept, left, permits));
+        let is_known = kept.iter().all(|entry| self.is_someones(entry, permits));
+        is_ordered
+            && is_all
+            && is_known
+            && self.is_often_enough(kept, permits)
+            && self.is_counted(kept.len() as u32, counts, permits)
     }
 
     /// Whether everything that is wanted of `left` is there, and, unless things may be doubled, nothing else.
-    fn is_complete(&self, kept: &[Vec<u32>], left: Vec<Vec<u32>>) -> bool {
-        let may = |effect| self.effects.contains(&effect);
-        let loosely = may(Effect::Torn) || may(Effect::TornEquals) || may(Effect::EqualKeys);
+    fn is_complete(&self, kept: &[Vec<u32>], left: Vec<Vec<u32>>, permits: &Permits) -> bool {
+        let loosely = permits.torn > Torn::No || permits.one_of == Alike::Keys;
         let deciding = if loosely { 1 } else { self.promise.deciding };
-        let wanted = self.best_of(left);
+        let wanted = self.best_of(left, permits);
         let (kept, wanted) = (prefixes(kept, deciding), prefixes(&wanted, deciding));
-        match may(Effect::Duplicate) {
+        match permits.duplicate {
             true => wanted.iter().all(|entry| times(&wanted, entry) <= times(&kept, entry)),
             false => kept == wanted,
         }
     }
 
     /// What stays of these fragments, of those that are alike as many as are stated to.
-    fn best_of(&self, left: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
-        let may = |effect| self.effects.contains(&effect);
-        match (may(Effect::EqualKeys), may(Effect::EqualFragments)) {
-            (true, _) => self.promise.best_of_distinct(left, 1),
-            (false, true) => self.promise.best_of_distinct(left, self.promise.deciding),
-            (false, false) => self.promise.best_of(left),
+    fn best_of(&self, left: Vec<Vec<u32>>, permits: &Permits) -> Vec<Vec<u32>> {
+        match permits.one_of {
+            Alike::Keys => self.promise.best_of_distinct(left, 1),
+            Alike::Fragments => self.promise.best_of_distinct(left, self.promise.deciding),
+            Alike::None => self.promise.best_of(left),
         }
     }
 
     /// Whether an entry is a fragment, as torn as it may be.
-    fn is_someones(&self, entry: &[u32]) -> bool {
-        let may = |effect| self.effects.contains(&effect);
+    fn is_someones(&self, entry: &[u32], permits: &Permits) -> bool {
+        let may_lend = |other: &Vec<u32>| match permits.torn {
+            Torn::No => false,
+            Torn::EqualKeys => other[0] == entry[0],
+            Torn::Any => true,
+        };
         let has_word = |at: usize, word: u32| {
-            let torn = |other: &Vec<u32>| may(Effect::Torn) || may(Effect::TornEquals) && other[0] == entry[0];
-            let is_stale = may(Effect::Stale) && at > 0 && word == STALE;
-            is_stale || self.fragments.iter().any(|other| other[at] == word && torn(other))
+            let is_stale = permits.stale && at > 0 && word == STALE;
+            is_stale || self.fragments.iter().any(|other| other[at] == word && may_lend(other))
         };
         self.fragments.iter().any(|other| other == entry)
             || entry.iter().enumerate().all(|(at, word)| has_word(at, *word))
     }
 
-    /// Whether every word of an entry is that word of some fragment.
-    fn has_known_words(&self, entry: &[u32]) -> bool {
-        let is_known = |at: usize, word: &u32| self.fragments.iter().any(|fragment| fragment[at] == *word);
-        entry.iter().enumerate().all(|(at, word)| is_known(at, word))
-    }
-
     /// Whether nothing stands there more often than it may, and no more than there is room for.
-    fn is_often_enough(&self, kept: &[Vec<u32>]) -> bool {
-        let may = |effect| self.effects.contains(&effect);
+    fn is_often_enough(&self, kept: &[Vec<u32>], permits: &Permits) -> bool {
+        if self.promise.most().is_some_and(|most| kept.len() > most) {
+            return false;
+        }
+        if permits.duplicate {
+            return true;
+        }
         // Torn entries are nobody's, and words of theirs may stand elsewhere too.
         let whole: Vec<Vec<u32>> = kept.iter().filter(|entry| self.fragments.contains(entry)).cloned().collect();
-        let whole = if may(Effect::Torn) { &whole[..] } else { kept };
-        let words = if may(Effect::TornEquals) { 1 } else { usize::MAX };
+        let whole = if permits.torn == Torn::Any { &whole[..] } else { kept };
+        let words = if permits.torn == Torn::EqualKeys { 1 } else { usize::MAX };
         let (held, sent) = (prefixes(whole, words), prefixes(&self.fragments, words));
-        let is_one = may(Effect::EqualKeys) || may(Effect::EqualFragments);
-        let least = |entry: &Vec<u32>| if is_one { 1 } else { times(&sent, entry) };
+        let most = |entry: &Vec<u32>| if permits.one_of > Alike::None { 1 } else { times(&sent, entry) };
         let keys = prefixes(kept, 1);
-        self.promise.most().is_none_or(|most| kept.len() <= most)
-            && (may(Effect::Duplicate) || held.iter().all(|entry| times(&held, entry) <= least(entry)))
-            && (!may(Effect::EqualKeys) || keys.iter().all(|key| times(&keys, key) == 1))
+        held.iter().all(|entry| times(&held, entry) <= most(entry))
+            && (permits.one_of != Alike::Keys || keys.iter().all(|key| times(&keys, key) == 1))
     }
 
     /// Whether the counters say what they can: nobody counts what a race has lost, and an entry that stands there twice may
     /// be displaced twice.
-    fn is_counted(&self, kept: u32, counts: Counts) -> bool {
-        let may = |effect| self.effects.contains(&effect);
+    fn is_counted(&self, kept: u32, counts: Counts, permits: &Permits) -> bool {
         let total = self.fragments.len() as u32;
         let counted = counts.lost + counts.culled + counts.emitted;
-        if may(Effect::Uncounted) {
-            return kept + counts.lost <= total;
+        if permits.uncounted {
+            return permits.duplicate || kept + counts.lost <= total;
         }
-        if may(Effect::CountedTwice) {
-            return may(Effect::Lost) || self.culls || kept + counted >= total;
+        if permits.counted_twice {
+            return permits.lost || self.culls || kept + counted >= total;
         }
-        match (may(Effect::Lost), may(Effect::Duplicate)) {
+        match (permits.lost, permits.duplicate) {
             (false, false) => self.miscounted(kept, counts).is_none(),
             (is_lossy, is_doubling) => {
                 counted <= total
@@ -289,7 +295,7 @@ impl Policy {
 
     /// The least bound that turns away none of the fragments that stay.
     pub(crate) fn least_bound(&self) -> u32 {
-        let best = self.best_of(self.fragments.clone());
+        let best = self.best_of(self.fragments.clone(), &self.permits(&[]));
         best.last().map_or(0, |entry| entry[0])
     }
 
@@ -305,7 +311,6 @@ impl Policy {
                 "emitted" => counts.emitted = *count,
                 "spin_exhausted" => counts.given_up = *count,
                 "pool_exhausted" => counts.no_room = *count,
-                "unsettled" => counts.unsettled = *count,
                 "occluded" => counts.occluded = *count,
                 _ => {}
             }

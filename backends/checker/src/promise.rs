@@ -1,9 +1,9 @@
-//! What a variant promises to keep, as its rows' facts and hazards say it.
+//! What a variant promises to keep, as its rows' reference model says it.
 //!
 //! In: a subject. Out: which fragments stay of any that come, and in which order they are read. Nothing is taken from the
-//! template: what it computes is stated here anew.
+//! template: what it computes is worked out here from what the row states.
 
-use fragbuf_templates::vocabulary::{Effect, Fact, Order};
+use fragbuf_templates::vocabulary::{Expression, Fact, Formula, Kept, Order, Side};
 
 use crate::merging::Merging;
 use crate::subject::Subject;
@@ -11,7 +11,7 @@ use crate::subject::Subject;
 /// What stays of the fragments of a pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Promise {
-    keeps: Keeps,
+    keeps: Option<Keeps>,
     /// Words of an entry that decide which is better, from the first on.
     pub(crate) deciding: usize,
     is_sorted: bool,
@@ -21,43 +21,24 @@ pub(crate) struct Promise {
     pub(crate) merging: Option<Merging>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Keeps {
-    All,
-    Best(usize),
-    /// The farthest: the nearest leave, in a stream.
-    Last(usize),
-    PerRange(Ranges),
-    Unknown,
-}
-
-/// `count` equal ranges of depth, in millionths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Ranges {
-    count: u64,
-    near: u64,
-    far: u64,
+/// What a row keeps, with the numbers of a subject.
+#[derive(Clone, Debug)]
+struct Keeps {
+    side: Side,
+    /// How many of a group; `None`: all.
+    most: Option<usize>,
+    /// The number of a group, over a fragment's key, k and constants of rows.
+    group: Option<Expression>,
+    k: Option<u32>,
+    constants: Vec<(String, u32)>,
 }
 
 impl Promise {
     /// What a subject promises where it keeps `k` entries.
     pub(crate) fn new(subject: &Subject, k: Option<u32>) -> Self {
-        let offers = subject.plan.selection.offers();
-        let k = k.map_or(usize::MAX, |k| k as usize);
-        let keeps = if offers.contains(&Fact::KeepsAll) {
-            Keeps::All
-        } else if offers.contains(&Fact::KeepsBest) {
-            Keeps::Best(k)
-        } else if offers.contains(&Fact::Streams) {
-            Keeps::Last(k)
-        } else if effects(subject).contains(&Effect::OnePerRange) {
-            ranges(subject, k).map_or(Keeps::Unknown, Keeps::PerRange)
-        } else {
-            Keeps::Unknown
-        };
         let merging = Merging::new(subject);
         Promise {
-            keeps,
+            keeps: subject.plan.selection.kept().and_then(|kept| Keeps::new(&kept, k, subject)),
             // Colours of several fragments are no one's: keys alone are in an order.
             deciding: if merging.is_some() { 1 } else { deciding_words(subject) },
             merging,
@@ -68,15 +49,15 @@ impl Promise {
 
     /// Whether it is not known what stays.
     pub(crate) fn is_unknown(&self) -> bool {
-        self.keeps == Keeps::Unknown
+        self.keeps.is_none()
     }
 
     /// The most entries that a pixel holds, where there is a limit.
     pub(crate) fn most(&self) -> Option<usize> {
-        match self.keeps {
-            Keeps::Best(k) | Keeps::Last(k) => Some(k),
-            Keeps::PerRange(ranges) => Some(ranges.count as usize),
-            Keeps::All | Keeps::Unknown => None,
+        let keeps = self.keeps.as_ref()?;
+        match keeps.group {
+            Some(_) => keeps.k.map(|k| k as usize),
+            None => keeps.most,
         }
     }
 
@@ -85,12 +66,9 @@ impl Promise {
         self.is_by_arrival && self.is_sorted
     }
 
-    /// Whether what leaves is composited.
+    /// How many stay where the better leave, and are handed on.
     pub(crate) fn streams(&self) -> Option<usize> {
-        match self.keeps {
-            Keeps::Last(k) => Some(k),
-            _ => None,
-        }
+        self.keeps.as_ref().filter(|keeps| keeps.side == Side::Worst)?.most
     }
 
     /// What stays of these fragments, in the order in which they came; best first.
@@ -99,13 +77,10 @@ impl Promise {
             true => fragments.sort_by_key(|fragment| fragment[0]),
             false => fragments.sort(),
         }
-        match self.keeps {
-            Keeps::Best(k) => fragments.truncate(k),
-            Keeps::Last(k) => drop(fragments.drain(..fragments.len().saturating_sub(k))),
-            Keeps::PerRange(ranges) => fragments.dedup_by_key(|fragment| ranges.of(fragment[0])),
-            Keeps::All | Keeps::Unknown => {}
+        match &self.keeps {
+            Some(keeps) => keeps.of(fragments),
+            None => fragments,
         }
-        fragments
     }
 
     /// What stays where of fragments whose first words are equal one does.
@@ -124,19 +99,50 @@ impl Promise {
     }
 }
 
-impl Ranges {
-    /// How many of the borders between ranges a depth has reached.
-    fn of(self, key: u32) -> u64 {
-        // Depths are cut down to whole millionths; what lies before the first range is in it, and behind the last in that.
-        let depth = (f32::from_bits(key) * 1.0e6) as u64;
-        let into = depth.saturating_sub(self.near);
-        (1..self.count).filter(|border| into * self.count >= border * (self.far - self.near)).count() as u64
+impl Keeps {
+    /// `None`: a formula of the row has no value here.
+    fn new(kept: &Kept, k: Option<u32>, subject: &Subject) -> Option<Self> {
+        let group = kept.group.as_ref().map(Formula::read).transpose().ok()?;
+        let constants = subject.plan.constants.clone();
+        let mut keeps = Keeps { side: kept.side, most: None, group, k: Some(k.unwrap_or(1)), constants };
+        keeps.most = match &kept.most {
+            Some(most) => Some(most.evaluate(&|symbol| keeps.value(symbol, 0)).ok()? as usize),
+            None => None,
+        };
+        keeps.group_of(0)?;
+        Some(Keeps { k, ..keeps })
     }
-}
 
-/// Effects of the hazards that a subject's rows state.
-pub(crate) fn effects(subject: &Subject) -> Vec<Effect> {
-    subject.plan.hazards.iter().filter_map(|hazard| Effect::of(&hazard.name)).collect()
+    /// What stays of fragments that stand in their order, best first.
+    fn of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+        let Some(most) = self.most else { return fragments };
+        let groups: Vec<Option<u64>> = fragments.iter().map(|fragment| self.group_of(fragment[0])).collect();
+        let is_in = |at: usize| {
+            let before = match self.side {
+                Side::Best => &groups[..at],
+                Side::Worst => &groups[at + 1..],
+            };
+            before.iter().filter(|group| **group == groups[at]).count() < most
+        };
+        let mut at = 0..;
+        fragments.retain(|_| at.next().is_some_and(is_in));
+        fragments
+    }
+
+    fn group_of(&self, key: u32) -> Option<u64> {
+        let Some(group) = &self.group else { return Some(0) };
+        group.evaluate(&|symbol| self.value(symbol, key)).ok()
+    }
+
+    fn value(&self, symbol: &str, key: u32) -> Option<u64> {
+        match symbol {
+            "k" => self.k.map(u64::from),
+            "key" => Some(u64::from(key)),
+            // Depths are cut down to whole millionths.
+            "depth_millionths" => Some((f32::from_bits(key) * 1.0e6) as u64),
+            _ => self.constants.iter().find(|(name, _)| name == symbol).map(|(_, value)| u64::from(*value)),
+        }
+    }
 }
 
 /// The words that decide which fragment is better, from the first on.
@@ -153,21 +159,10 @@ fn order(subject: &Subject) -> Option<Order> {
     subject.plan.selection.rows.iter().find_map(|selected| selected.row.order)
 }
 
-fn ranges(subject: &Subject, k: usize) -> Option<Ranges> {
-    let constant = |name: &str| subject.plan.constants.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
-    let (near, far) = (u64::from(constant("NEAR_MILLIONTHS")?), u64::from(constant("FAR_MILLIONTHS")?));
-    Some(Ranges { count: k as u64, near, far: far.max(near + 1) })
-}
-
 /// Whether the row that the plan starts from, and not a sort behind it, promises the order of depth.
 fn is_sorted(subject: &Subject) -> bool {
-    let has_depth_key = subject.plan.variant.criterion.is_none();
-    let storages = subject.plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
-    storages.map(|selected| &selected.row).any(|row| {
-        let implied = row
-            .implies
-            .iter()
-            .any(|(given, offered)| *offered == Fact::Sorted && (*given != Fact::DepthKey || has_depth_key));
-        row.offers.contains(&Fact::Sorted) || implied
-    })
+    let plan = &subject.plan;
+    let given = plan.variant.given(&plan.selection);
+    let mut storages = plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
+    storages.any(|selected| selected.row.offers_to(&given, Fact::Sorted))
 }

@@ -11,7 +11,7 @@ use fragbuf_frame::Run;
 use fragbuf_interpreter::{Marker, Options, Program, Texture, Unsupported};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Kind, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Fact, Kind, Permits, Soundness};
 
 use crate::question::{question, row};
 use crate::read_out::ReadOut;
@@ -106,7 +106,7 @@ impl Subject {
         tries: Tries,
     ) -> Result<Option<Self>, Diagnostics> {
         let mut offers = target.offers.to_vec();
-        offers.push(Fact::OwnEntryPoints);
+        offers.push(Capability::OwnEntryPoints);
         let mut selection = variant.select(&offers).map_err(|refusal| {
             let hint = "choose another target, or add an `else` to the axis";
             let text = format!("{} cannot express it: {refusal}", target.name);
@@ -162,11 +162,16 @@ impl Subject {
             bound: read_out.bound.clone().filter(|_| wants_bound),
             read_out,
             stream,
-            has_fences: target.offers.contains(&Fact::Fences),
-            has_ordered_interlock: plan.requires.contains(&Fact::OrderedInterlock),
+            has_fences: target.offers.contains(&Capability::Fences),
+            has_ordered_interlock: plan.requires.contains(&Capability::OrderedInterlock),
             uniform: 1.0,
             plan,
         }))
+    }
+
+    /// What the rows state that may go wrong, hazard by hazard.
+    pub(crate) fn permits(&self) -> impl Iterator<Item = &Permits> {
+        self.plan.hazards.iter().map(|hazard| &hazard.permits)
     }
 
     /// Whether fragments may be lost, doubled or torn by design.

@@ -20,7 +20,7 @@ use crate::fragments::{Fragment, at_pixel, farthest};
 use crate::frame::{Frame, Memory, WIDTH, run_alone};
 use crate::model::Model;
 use crate::policy::{Finding, Policy};
-use crate::promise::{Promise, effects};
+use crate::promise::Promise;
 use crate::state::{Ground, Home, Mishap, State};
 use crate::stream::{Left, Stream};
 use crate::subject::{Runnable, Subject};
@@ -87,7 +87,7 @@ impl<'s> Trial<'s> {
         let fragments = case.prior.iter().chain(&case.new[..real]).map(|fragment| fragment.words.clone()).collect();
         let policy = Policy {
             promise: Promise::new(subject, case.k),
-            effects: effects(subject).into_iter().filter(|effect| !search.one_by_one || !effect.is_a_races()).collect(),
+            hazards: subject.permits().filter(|permits| !search.one_by_one || !permits.needs_race).cloned().collect(),
             short: case.room.short.clone(),
             may_give_up: search.may_give_up,
             culls: subject.turns_away(),

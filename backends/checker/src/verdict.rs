@@ -5,13 +5,13 @@
 use fragbuf_backends::Target;
 use fragbuf_model::{Diagnostics, Selection, Variant};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Fact, Kind};
+use fragbuf_templates::vocabulary::{Fact, Kind};
 
 use crate::case::{Case, cases};
 use crate::fragments::Candidates;
 use crate::frame::Frame;
 use crate::model::Model;
-use crate::promise::{Promise, effects};
+use crate::promise::Promise;
 use crate::report::{Schedule, schedule};
 use crate::room::plenty;
 use crate::subject::{Subject, Tries};
@@ -179,7 +179,7 @@ fn try_all(
         may_give_up: tries == Tries::Least,
         one_by_one: false,
     };
-    let races = effects(subject).into_iter().any(Effect::is_a_races);
+    let races = subject.permits().any(|permits| permits.needs_race);
     let searches = [Some(search), races.then(|| search.without_races())];
     let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();
     if drawn == 0 {

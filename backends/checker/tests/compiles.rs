@@ -6,7 +6,7 @@ use fragbuf_backends::{TARGETS, check};
 use fragbuf_codegen::{Form, Linking, link, plan};
 use fragbuf_interpreter::{Options, Program};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::subjects::variant;
 
@@ -22,7 +22,7 @@ fn every_pass_of_every_row_is_run() {
             };
             for target in TARGETS {
                 let mut offers = target.offers.to_vec();
-                offers.push(Fact::OwnEntryPoints);
+                offers.push(Capability::OwnEntryPoints);
                 let Ok(selection) = variant.select(&offers) else { continue };
                 let plan = plan(&variant, &selection, &registry).unwrap();
                 let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };

@@ -2,7 +2,7 @@
 
 use fragbuf_checker::{Limits, Model, Report};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Row};
+use fragbuf_templates::vocabulary::{Kept, Permits, Row};
 
 use crate::subjects::{limits, report};
 
@@ -62,20 +62,42 @@ fn a_row_that_states_fewer_hazards_than_it_has_fails() {
         let hazards = Registry::builtin().row("storage", racy.2).unwrap().hazards.clone();
         assert!(hazards.len() > 1);
         for hazard in hazards {
-            assert!(Effect::of(&hazard.name).is_some(), "{} says no effect", hazard.name);
+            assert!(hazard.permits.is_something(), "{} permits nothing", hazard.name);
             let registry = with(racy.2, |row| row.hazards.retain(|other| other.name != hazard.name));
             assert!(fails(racy, &registry), "{} without {}", racy.0, hazard.name);
         }
     }
 }
 
-/// The statement of a hazard excuses that hazard alone.
+/// What a hazard permits is excused, whatever its name is; a name alone excuses nothing.
 #[test]
-fn a_hazard_of_another_name_excuses_nothing() {
-    let registry = with("sorted_array", |row| {
+fn a_hazard_that_permits_nothing_excuses_nothing() {
+    let renamed = with("sorted_array", |row| {
         row.hazards.iter_mut().for_each(|hazard| hazard.name = format!("my-{}", hazard.name).into());
     });
-    assert!(fails(&STATED[0], &registry));
+    assert!(!fails(&STATED[0], &renamed));
+    let named = with("sorted_array", |row| {
+        row.hazards.iter_mut().for_each(|hazard| hazard.permits = Permits::NOTHING);
+    });
+    assert!(fails(&STATED[0], &named));
+}
+
+/// What stays is what the row says in its own words: the checker has no list of promises.
+#[test]
+fn a_row_keeps_what_it_says() {
+    let holds = |kept: Kept| {
+        let registry = with("depth_ranges", |row| row.keeps = Some(kept));
+        let set = [("sync", "spin_lock")];
+        let report = report("depth_partition", &set, "spirv", &limits(2, Model::Sequential), &registry).unwrap();
+        assert!(report.is_judged);
+        report.failure.is_none()
+    };
+    assert!(holds(Kept::best_of_each("min(k - 1, depth_millionths * k / 1000000)")));
+    assert!(!holds(Kept::best_of_each("min(k, depth_millionths * (k + 1) / 1000000)")));
+    assert!(!holds(Kept::best_of_each("key")));
+    for kept in [Kept::best(), Kept::worst()] {
+        assert!(!holds(kept.clone()), "{kept:?}");
+    }
 }
 
 /// What is no hazard of the row's fails, stated hazards or not.
@@ -127,7 +149,7 @@ fn replace(row: &mut Row, before: &str, after: &str) {
 #[test]
 fn who_merges_must_say_so_and_do_it() {
     for (overflow, key) in MERGING {
-        let registry = with_overflow(overflow, |row| row.hazards.clear());
+        let registry = with_overflow(overflow, |row| row.merges = None);
         let unsaid = blended(overflow, key, &registry);
         assert!(unsaid.failure.is_some() && !unsaid.is_stated, "{overflow}");
         // What is displaced is forgotten: no word but a colour tells.

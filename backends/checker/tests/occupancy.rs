@@ -9,7 +9,7 @@ use fragbuf_codegen::{Form, Linking, link, plan};
 use fragbuf_interpreter::{Exit, Machine, Options, Program, Sequential};
 use fragbuf_model::Origin;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Row, Template};
+use fragbuf_templates::vocabulary::{Capability, Row, Template};
 
 use crate::mutants::mutants;
 use crate::mutation::{Check, Outcome, judge};
@@ -32,7 +32,7 @@ impl Cull {
         let set = [("cull", "occupancy"), ("cull.words", &*words.to_string())];
         let variant = variant("kplus_array", &set, registry).ok()?;
         let target = target("wgsl").unwrap();
-        let selection = variant.select(&[target.offers, &[Fact::OwnEntryPoints]].concat()).unwrap();
+        let selection = variant.select(&[target.offers, &[Capability::OwnEntryPoints]].concat()).unwrap();
         let plan = plan(&variant, &selection, registry).unwrap();
         let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let passes = link(&plan, &linking, registry).ok()?.passes;

@@ -3,7 +3,7 @@
 
 use fragbuf_checker::{Limits, Model, Report};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Row, Step, Template, Until};
+use fragbuf_templates::vocabulary::{Row, Step, Template, Until};
 
 use crate::subjects::{limits, report};
 
@@ -20,7 +20,7 @@ pub(crate) fn with_rounds(row: Row, rounds: u32) -> Row {
             repeat.at_most = rounds.to_string().into();
         }
     }
-    row.hazards.retain(|hazard| Effect::of(&hazard.name) != Some(Effect::Unsettled));
+    row.hazards.retain(|hazard| hazard.permits.where_counted.is_none());
     let last = format!("frame.iteration == {}u", rounds - 1);
     with_text(row, |text| text.replace("frame.iteration == frame.k", &last))
 }
@@ -68,7 +68,7 @@ fn the_nearest_distinct_depths_are_kept_in_the_end() {
 fn too_few_rounds_are_counted_and_stated() {
     assert!(holds(&checked(row(), Model::Sequential, &[1, 2], 2)));
     let mut unstated = row();
-    unstated.hazards.retain(|hazard| Effect::of(&hazard.name) != Some(Effect::Unsettled));
+    unstated.hazards.retain(|hazard| hazard.permits.where_counted.is_none());
     assert!(!holds(&checked(unstated, Model::Sequential, &[1], 2)));
     let uncounted = without("        count_loss(UNSETTLED);\n", "");
     assert!(!holds(&checked(uncounted, Model::Sequential, &[1], 2)));

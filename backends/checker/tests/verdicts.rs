@@ -4,7 +4,8 @@ use fragbuf_backends::tier;
 use fragbuf_checker::{Error, Limits, Model, Report};
 use fragbuf_model::Selection;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Fact};
+use fragbuf_templates::Shorthand;
+use fragbuf_templates::vocabulary::{Capability, Fact};
 
 use crate::subjects::{limits, report, target, variant};
 
@@ -175,7 +176,7 @@ fn every_technique_has_a_verdict_or_nothing_to_try() {
 fn submission_decides_ties_only_where_it_decides_who_enters() {
     let mut registry = Registry::builtin();
     let mut row = registry.row("sync", "interlock_ordered").unwrap().clone();
-    row.requires.retain(|fact| *fact != Fact::OrderedInterlock);
+    row.needs.retain(|capability| *capability != Capability::OrderedInterlock);
     registry = registry.with(row);
     let checked = |registry: &Registry, ties: &str| {
         let set = [("sync", "interlock_ordered"), ("ties", ties)];
@@ -215,8 +216,8 @@ fn tiers_follow_from_the_model() {
     let holds = |key: &str, set: &[(&str, &str)], target: &str, model: Model| {
         let report = report(key, set, target, &limits(2, model), &registry).unwrap();
         // What a row loses by design, and says so, is no matter of its tier; what it loses uncounted by a race is.
-        let loses = |effect| matches!(effect, Effect::Lost | Effect::Unsettled);
-        let races = report.hazards.iter().any(|(name, _)| Effect::of(name).is_some_and(loses));
+        let loses = |name: &str| matches!(Shorthand::of(name), Some(Shorthand::Permits(permits)) if permits.lost);
+        let races = report.hazards.iter().any(|(name, _)| loses(name));
         report.failure.is_none() || (report.is_stated && !races)
     };
     let mut cases: Vec<(&str, &[(&str, &str)])> = vec![("kb", LOCKED)];
@@ -224,7 +225,7 @@ fn tiers_follow_from_the_model() {
     cases.extend(interleaved(&registry).map(|key| (key, set(key))));
     for (key, set) in cases {
         let soundness = variant(key, set, &registry).unwrap();
-        let select = |name: &str| soundness.select(&[target(name).offers, &[Fact::OwnEntryPoints]].concat()).ok();
+        let select = |name: &str| soundness.select(&[target(name).offers, &[Capability::OwnEntryPoints]].concat()).ok();
         // Metal has neither fences nor coherent words, native WGSL no fences: what is late there is late without help.
         let helpless = ["msl", "wgsl-native"].into_iter().find(|name| select(name).is_some()).unwrap();
         let bare = holds(key, set, helpless, Model::Late);
@@ -246,7 +247,7 @@ fn tiers_follow_from_the_model() {
     }
     let interlock = variant("kplus_array", INTERLOCK, &registry).unwrap();
     let mut offers = target("spirv").offers.to_vec();
-    offers.push(Fact::OwnEntryPoints);
+    offers.push(Capability::OwnEntryPoints);
     let selection = interlock.select(&offers).unwrap();
     assert_eq!(tier(selection.soundness(), target("spirv")), "T2");
     assert!(holds("kplus_array", INTERLOCK, "spirv", Model::Late));

@@ -8,7 +8,7 @@ use fragbuf_codegen::{Form, Linking, Plan, Profile, Stage, link, plan};
 use fragbuf_interpreter::{Marker, Options, Program};
 use fragbuf_model::Variant;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::Error;
 
@@ -31,18 +31,18 @@ pub(crate) enum PassCode {
 
 /// What this device can express. Fragments of a pixel run in the order of submission, so an interlock is kept without
 /// effort; where they are interleaved, the scheduler keeps it.
-const OFFERS: &[Fact] = &[
-    Fact::FragmentAtomics,
-    Fact::Fences,
-    Fact::Coherent,
-    Fact::Interlock,
-    Fact::U64Atomics,
-    Fact::EarlyDepth,
-    Fact::MinMaxBlend,
-    Fact::SampleMask,
-    Fact::Coverage,
-    Fact::OwnEntryPoints,
-    Fact::PrimitiveIndex,
+const OFFERS: &[Capability] = &[
+    Capability::FragmentAtomics,
+    Capability::Fences,
+    Capability::Coherent,
+    Capability::Interlock,
+    Capability::U64Atomics,
+    Capability::EarlyDepth,
+    Capability::MinMaxBlend,
+    Capability::SampleMask,
+    Capability::Coverage,
+    Capability::OwnEntryPoints,
+    Capability::PrimitiveIndex,
 ];
 
 /// What templates have no word of WGSL for.

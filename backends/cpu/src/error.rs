@@ -44,7 +44,7 @@ impl fmt::Display for Error {
                 "the CPU device cannot express `{}: {}`: it has no {}; choose another `{}`",
                 refusal.axis,
                 refusal.value,
-                refusal.fact.meaning(),
+                refusal.capability.meaning(),
                 refusal.axis
             ),
             Error::Diagnostics(diagnostics) => diagnostics.fmt(f),

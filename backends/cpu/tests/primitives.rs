@@ -1,7 +1,9 @@
 //! The number of a fragment's triangle: its place in the scene's list, whatever is clipped, dropped or left out before it.
 
 use fragbuf_cpu::Order;
-use fragbuf_templates::vocabulary::{Access, Compare, Element, Fact, Objects, Pass, Resource, Step, TextureFormat};
+use fragbuf_templates::vocabulary::{
+    Access, Capability, Compare, Element, Objects, Pass, Resource, Step, TextureFormat,
+};
 
 use crate::peeling::depth;
 use crate::stage::{Triangle, code, device, draw_objects, quad, storage, texture};
@@ -39,7 +41,7 @@ fn row(objects: Objects, boxes: Option<Pass>, y: usize) -> Vec<u32> {
         ],
         boxes.into_iter().chain([numbered]).map(Step::Pass).collect(),
     );
-    rows.requires = vec![Fact::PrimitiveIndex];
+    rows.needs = vec![Capability::PrimitiveIndex];
     let code = code(rows, &[("numbered", NUMBERED), ("boxes", BOXES)], None).unwrap_or_else(|error| panic!("{error}"));
     let mut device = device(&code, Order::Submission);
     draw_objects(&mut device, &scene(), &[0..6, 6..12, 12..15, 15..21]);

@@ -5,7 +5,7 @@
 
 use fragbuf_backends::{Generation, target};
 use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
-use fragbuf_templates::vocabulary::{Access, Fact};
+use fragbuf_templates::vocabulary::{Access, Capability};
 
 use crate::fixed_function::sample_count;
 use crate::refusals::check;
@@ -102,10 +102,10 @@ impl Shaders {
                 features |= wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
             }
         }
-        for fact in &self.plan.requires {
-            features |= match fact {
-                Fact::U64Atomics => wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS,
-                Fact::EarlyDepth => wgpu::Features::SHADER_EARLY_DEPTH_TEST,
+        for capability in &self.plan.requires {
+            features |= match capability {
+                Capability::U64Atomics => wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS,
+                Capability::EarlyDepth => wgpu::Features::SHADER_EARLY_DEPTH_TEST,
                 _ => wgpu::Features::empty(),
             };
         }
@@ -119,7 +119,7 @@ impl Shaders {
 
     /// Whether a device with or without interlock runs these shaders. wgpu has no feature for it.
     pub fn check_interlock(&self, device: Interlock) -> Result<(), Error> {
-        if device == Interlock::Absent && self.plan.requires.contains(&Fact::Interlock) {
+        if device == Interlock::Absent && self.plan.requires.contains(&Capability::Interlock) {
             return Err(Error::Unsupported {
                 what: "fragment shader interlock, on a device made without it,".to_owned(),
                 hint: "make the device by `headless::open_device` where the driver has \

@@ -130,7 +130,8 @@ fn any_criterion_over_any_storage_of_the_k_best() {
         let row = registry.row("storage", storage).unwrap();
         let keeps = row.offers.contains(&Fact::KeepsBest) || row.offers.contains(&Fact::KeepsAll);
         // Slots of two words have no room for a criterion, and a depth test knows nothing but depth.
-        keeps && !row.requires.contains(&Fact::OneWordBesideKey) && !row.requires.contains(&Fact::DepthKey)
+        let is_narrow = |symbol| row.conditions.iter().any(|condition| condition.formula.mentions(symbol));
+        keeps && !is_narrow("entry_words") && !is_narrow("depth_key")
     };
     for row in registry.techniques().iter().filter(|row| row.keep != KeepDefault::All && keeps_best(&row.key)) {
         assert_eq!(tried.get(&row.key), Some(&criteria().len()), "{}", row.key);

@@ -9,7 +9,7 @@ use fragbuf_checker::{FrameMemory, ReadOut};
 use fragbuf_codegen::{Plan, Profile};
 use fragbuf_runtime::Renderer;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Fact, Row};
+use fragbuf_templates::vocabulary::{Alike, Fact, Row};
 
 use crate::oracle::{Words, pixels};
 use crate::quads::SIZE;
@@ -83,14 +83,14 @@ struct Promise {
 impl Promise {
     fn of(plan: &Plan, k: Option<u32>) -> Self {
         let storage = &plan.selection.row("storage").unwrap().row;
-        let effects: Vec<Effect> = plan.hazards.iter().filter_map(|hazard| Effect::of(&hazard.name)).collect();
-        let has = |effect: Effect| effects.contains(&effect);
+        let alike = plan.hazards.iter().map(|hazard| hazard.permits.one_of).max().unwrap_or_default();
+        let has_groups = storage.keeps.as_ref().is_some_and(|kept| kept.group.is_some());
         let limit = k.filter(|_| !storage.offers.contains(&Fact::KeepsAll));
         Promise {
             most: limit.map_or(usize::MAX, |k| k as usize),
             is_sorted: walks_in_order(storage),
-            has_distinct_keys: has(Effect::EqualKeys) || has(Effect::OnePerRange),
-            has_distinct_entries: has(Effect::EqualFragments),
+            has_distinct_keys: alike == Alike::Keys || has_groups,
+            has_distinct_entries: alike == Alike::Fragments,
         }
     }
 
@@ -112,7 +112,7 @@ impl Promise {
 
 /// A row whose fragments are in the order of depth where depth is the key keeps them in the order of their keys.
 fn walks_in_order(storage: &Row) -> bool {
-    storage.offers.contains(&Fact::Sorted) || storage.implies.contains(&(Fact::DepthKey, Fact::Sorted))
+    storage.offers.contains(&Fact::Sorted) || storage.implies.iter().any(|(_, implied)| *implied == Fact::Sorted)
 }
 
 /// The plan's programs: those of the last plan on this thread are kept, because most tests draw many frames of one.

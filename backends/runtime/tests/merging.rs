@@ -10,7 +10,7 @@ use fragbuf_cpu::Order;
 use fragbuf_model::{Draft, Origin, Variant, check};
 use fragbuf_runtime::headless::Offscreen;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Effect, Fact, Row};
+use fragbuf_templates::vocabulary::{Capability, Fact, Row};
 
 use crate::cpu_device;
 use crate::oracle::{self, pixels};
@@ -121,7 +121,7 @@ fn storage(variant: &Variant) -> &Row {
 
 /// Whether a fragment competes with those of its range of depth alone.
 fn has_ranges(variant: &Variant) -> bool {
-    storage(variant).hazards.iter().any(|hazard| Effect::of(&hazard.name) == Some(Effect::OnePerRange))
+    storage(variant).keeps.as_ref().is_some_and(|kept| kept.group.is_some())
 }
 
 fn offers(variant: &Variant, fact: Fact) -> bool {
@@ -285,7 +285,7 @@ fn where_nothing_is_lost_the_picture_is_that_of_drop() {
 fn plans_say_that_the_order_of_arrival_shows() {
     let stage = stage::device();
     let planned = |variant: &Variant| {
-        let offers = [target("spirv").unwrap().offers, &[Fact::OwnEntryPoints]].concat();
+        let offers = [target("spirv").unwrap().offers, &[Capability::OwnEntryPoints]].concat();
         plan(variant, &variant.select(&offers).unwrap(), &Registry::builtin()).unwrap()
     };
     let first_and_last = |variant: &Variant| {

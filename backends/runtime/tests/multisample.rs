@@ -168,10 +168,9 @@ fn multisampled(samples: u32) -> Vec<(String, Variant, Variant)> {
 
 /// Those whose stated hazards keep every fragment apart where they come one after the other.
 fn is_exact_in_order(variant: &Variant) -> bool {
-    use fragbuf_templates::vocabulary::Effect;
     let rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
     let mut hazards = rows.flat_map(|selected| &selected.row.hazards);
-    hazards.all(|hazard| Effect::of(&hazard.name).is_some_and(Effect::is_a_races))
+    hazards.all(|hazard| hazard.permits.needs_race)
 }
 
 #[test]

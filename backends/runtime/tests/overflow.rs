@@ -5,7 +5,7 @@ use fragbuf_backends::target;
 use fragbuf_model::{Draft, Origin, Variant, check};
 use fragbuf_runtime::{Room, Settings, Sizing};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::{Capability, Fact};
 
 use crate::order::Numbers;
 use crate::quads::Quad;
@@ -49,7 +49,7 @@ fn with_a_tail() -> Vec<(String, Variant)> {
             draft.set(name, value, &origin).ok()?;
         }
         let variant = check(&draft, &registry).ok()?;
-        let native = [target("wgsl-native")?.offers, &[Fact::OwnEntryPoints]].concat();
+        let native = [target("wgsl-native")?.offers, &[Capability::OwnEntryPoints]].concat();
         let offers = variant.select(&native).ok()?.offers();
         let keeps_best = offers.contains(&Fact::KeepsBest) || offers.contains(&Fact::SelectsBest);
         keeps_best.then(|| (technique.key.clone(), variant))

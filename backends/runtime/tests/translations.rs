@@ -8,7 +8,7 @@ use fragbuf_codegen::{EntryPoint, Form, Linking, Stage, link, plan};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Checks, Code, Module, Renderer, Settings, Shaders};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
 use crate::stage::{device, renderer, see, settings, shaders, technique};
@@ -35,7 +35,7 @@ pub fn glsl_shaders(variant: &Variant) -> Shaders {
 /// A program that never was a file.
 fn linked(variant: &Variant, name: &str) -> Shaders {
     let (target, registry) = (target(name).unwrap(), Registry::builtin());
-    let selection = variant.select(&[target.offers, &[Fact::OwnEntryPoints]].concat()).unwrap();
+    let selection = variant.select(&[target.offers, &[Capability::OwnEntryPoints]].concat()).unwrap();
     let plan = plan(variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"));
     let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
     let program = link(&plan, &linking, &registry).unwrap_or_else(|faults| panic!("{faults}"));

@@ -25,7 +25,7 @@ impl Display for Plan {
         }
         writeln!(f, "  geometry   {} passes", self.geometry_passes)?;
         writeln!(f, "  soundness  {}", word(&self.soundness))?;
-        let requires: Vec<&str> = self.requires.iter().map(|fact| fact.meaning()).collect();
+        let requires: Vec<&str> = self.requires.iter().map(|capability| capability.meaning()).collect();
         writeln!(f, "  requires   {}", if requires.is_empty() { "nothing".to_owned() } else { requires.join("; ") })?;
         for hazard in &self.hazards {
             writeln!(f, "  hazard     {}: {}", hazard.name, hazard.what)?;

@@ -1,8 +1,8 @@
 //! What rows of other axes change in a storage's steps.
 
-use fragbuf_templates::vocabulary::{Access, Classes, DepthState, Edit, Kind, Pass, Repeat, Resource, Step, Use};
+use fragbuf_templates::vocabulary::{Access, DepthState, Edit, Formula, Kind, Pass, Resource, Split, Step, Use};
 
-/// Applies one edit. `Err`: it names an anchor that the steps do not have, or a constant that there is not.
+/// Applies one edit. `Err`: it names an anchor that the steps do not have, or a formula has no value.
 pub(super) fn apply(
     edit: &Edit,
     steps: &mut Vec<Step>,
@@ -12,18 +12,12 @@ pub(super) fn apply(
     match edit {
         Edit::Before(anchor, new) => insert(steps, anchor, new, 0),
         Edit::After(anchor, new) => insert(steps, anchor, new, 1),
-        Edit::Around(from, to, repeat) => around(steps, from, to, repeat),
         Edit::SetState(anchor, state) => change(steps, anchor, &|pass| pass.state = state.clone()),
         Edit::TestDepth(test) => test_depth(steps, test),
         Edit::SetSkeleton(anchor, skeleton) => change(steps, anchor, &|pass| pass.skeleton.clone_from(skeleton)),
         Edit::FormOfSkeleton(anchor, form) => {
             change(steps, anchor, &|pass| pass.skeleton = format!("{}_{form}", pass.skeleton))
         }
-        Edit::SetRole(anchor, role) => change(steps, anchor, &|pass| {
-            pass.roles.retain(|old| old.contract != role.contract);
-            pass.roles.push(role.clone());
-        }),
-        Edit::AddUse(anchor, usage) => change(steps, anchor, &|pass| pass.uses.push(usage.clone())),
         Edit::AddResource(resource) => {
             resources.push(resource.clone());
             Ok(())
@@ -36,35 +30,46 @@ pub(super) fn apply(
             });
             Ok(())
         }
-        Edit::Classes(classes) => {
-            let constant = constants.iter().find(|(name, _)| *name == classes.constant);
-            let (_, most) = constant.ok_or_else(|| format!("an edit names the constant `{}`", classes.constant))?;
-            split(steps, classes, *most)
-        }
+        Edit::Split(one) => split(steps, one, constants),
     }
 }
 
-/// One pass for each class, in place of the one.
-fn split(steps: &mut Vec<Step>, classes: &Classes, most: u32) -> Result<(), String> {
-    let Some(index) = position(steps, &classes.anchor) else {
-        return in_some_loop(steps, &classes.anchor, &mut |body| split(body, classes, most));
+/// Several passes in place of the one.
+fn split(steps: &mut Vec<Step>, split_pass: &Split, constants: &[(String, u32)]) -> Result<(), String> {
+    let anchor = &split_pass.anchor;
+    let Some(index) = position(steps, anchor) else {
+        return in_some_loop(steps, anchor, &mut |body| split(body, split_pass, constants));
     };
-    let Step::Pass(pass) = steps.remove(index) else { return Err(unknown(&classes.anchor)) };
-    let smaller = std::iter::successors(Some(classes.least), |size| size.checked_mul(2));
-    let sizes: Vec<u32> = smaller.take_while(|size| *size < most).chain([most]).collect();
-    for (number, size) in sizes.iter().enumerate() {
-        let is_last = number + 1 == sizes.len();
-        let mut one = Pass { anchor: format!("{}_{size}", pass.anchor), ..pass.clone() };
-        one.constants.push((classes.constant.clone(), *size));
-        one.constants.push(("CLASS_ABOVE".to_owned(), number.checked_sub(1).map_or(0, |before| sizes[before])));
-        one.constants.push(("CLASS_MOST".to_owned(), if is_last { u32::MAX } else { *size }));
-        if !is_last {
-            one.roles.retain(|role| classes.before_last.iter().all(|other| other.contract != role.contract));
-            one.roles.extend(classes.before_last.iter().cloned());
+    let Step::Pass(pass) = steps.remove(index) else { return Err(unknown(anchor)) };
+    let constant = |symbol: &str| constants.iter().find(|(name, _)| name == symbol).map(|(_, value)| u64::from(*value));
+    let copies = value(&split_pass.copies, &constant)?;
+    for copy in 0..copies {
+        let symbol = |symbol: &str| match symbol {
+            "copy" => Some(u64::from(copy)),
+            "copies" => Some(u64::from(copies)),
+            _ => constant(symbol),
+        };
+        let mut one = pass.clone();
+        for (number, (name, formula)) in split_pass.constants.iter().enumerate() {
+            let constant = value(formula, &symbol)?;
+            if number == 0 {
+                one.anchor = format!("{}_{constant}", pass.anchor);
+            }
+            one.constants.push((name.clone(), constant));
         }
-        steps.insert(index + number, Step::Pass(one));
+        if copy + 1 < copies {
+            one.roles.retain(|role| split_pass.before_last.iter().all(|other| other.contract != role.contract));
+            one.roles.extend(split_pass.before_last.iter().cloned());
+        }
+        steps.insert(index + copy as usize, Step::Pass(one));
     }
     Ok(())
+}
+
+/// The value of an edit's formula: a generated constant has 32 bits.
+fn value(formula: &Formula, symbol: &dyn Fn(&str) -> Option<u64>) -> Result<u32, String> {
+    let value = formula.evaluate(symbol).map_err(|error| format!("an edit's formula has no value: {error}"))?;
+    u32::try_from(value).map_err(|_| format!("an edit's formula `{formula}` exceeds 32 bits"))
 }
 
 fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> Result<(), String> {
@@ -73,17 +78,6 @@ fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> R
         return Ok(());
     }
     in_some_loop(steps, anchor, &mut |body| insert(body, anchor, new, offset))
-}
-
-fn around(steps: &mut Vec<Step>, from: &str, to: &str, repeat: &Repeat) -> Result<(), String> {
-    if let (Some(first), Some(last)) = (position(steps, from), position(steps, to))
-        && first <= last
-    {
-        let body = steps.drain(first..=last).collect();
-        steps.insert(first, Step::Repeat(Repeat { body, ..repeat.clone() }));
-        return Ok(());
-    }
-    in_some_loop(steps, from, &mut |body| around(body, from, to, repeat))
 }
 
 fn change(steps: &mut [Step], anchor: &str, how: &dyn Fn(&mut Pass)) -> Result<(), String> {

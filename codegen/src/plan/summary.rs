@@ -1,9 +1,9 @@
 //! What a plan comes to, for whoever compares plans: bytes, passes, and what a picture depends on.
 //!
-//! In: a plan. Out: formulas in the papers' notation, and words. Everything follows from facts, hazards and steps; nothing here
-//! knows a technique.
+//! In: a plan. Out: formulas in the papers' notation, and words. Everything follows from facts, the rows' reference model and
+//! steps; nothing here names a technique.
 
-use fragbuf_templates::vocabulary::{Effect, Fact, Kind, Order, Pass, Polynomial, Soundness};
+use fragbuf_templates::vocabulary::{Fact, Kind, Order, Pass, Polynomial, Side, Soundness};
 
 use super::{Plan, Planned};
 use crate::frame::Lowered;
@@ -26,11 +26,11 @@ impl Plan {
     pub fn arrival(&self) -> Arrival {
         let offers = self.selection.offers();
         let has = |fact| offers.contains(&fact);
-        let effects: Vec<Effect> = self.hazards.iter().filter_map(|hazard| Effect::of(&hazard.name)).collect();
         let order = self.selection.rows.iter().find_map(|selected| selected.row.order);
         let decides = matches!(order, None | Some(Order::Payload | Order::Attribute));
-        let is_promised = has(Fact::KeepsAll) || has(Fact::KeepsBest) || effects.contains(&Effect::OnePerRange);
-        let is_kept = effects.iter().all(|effect| matches!(effect, Effect::OnePerRange | Effect::Uncounted));
+        // What leaves a pixel meanwhile is shown in the order in which it leaves.
+        let is_promised = self.selection.kept().is_some_and(|kept| kept.side == Side::Best);
+        let is_kept = !self.hazards.iter().any(|hazard| hazard.permits.shows()) && self.selection.merges().is_none();
         if is_promised && is_kept && decides && self.soundness != Soundness::Racy {
             Arrival::Any
         } else if has(Fact::FixedFunction) || has(Fact::OrderedCritical) {

@@ -1,5 +1,5 @@
 //! The rules: a draft in, a proven variant or every mistake out. No rule names a technique, a storage or any other row:
-//! what fits together follows from what rows require and offer.
+//! what fits together follows from what rows require and offer, and from conditions that they state.
 
 mod choices;
 mod facts;
@@ -8,8 +8,9 @@ mod nearest;
 mod payload;
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, KeepDefault};
+use fragbuf_templates::vocabulary::KeepDefault;
 
+pub(crate) use self::payload::given;
 use crate::variant::Description;
 use crate::{Diagnostic, Diagnostics, Draft, KeepCount, Variant, codes};
 
@@ -27,15 +28,10 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         least::check(draft, &choices, k, &mut diagnostics);
     }
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    let mut offered = payload::facts(&attributes, criterion, &choices);
     // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
     if diagnostics.is_empty() {
-        offered.extend(criterion.is_none().then_some(Fact::DepthKey));
-        offered.extend(keep.is_some().then_some(Fact::Limited));
-        offered.extend((keep == Some(1)).then_some(Fact::LimitedToOne));
-        offered.extend(matches!(keep, Some(2 | 4 | 8)).then_some(Fact::SampleCount));
-        offered.push(if keep.is_some() { Fact::KeepsBest } else { Fact::KeepsAll });
-        facts::check(draft, &choices, &offered, registry, &mut diagnostics);
+        let given = given(&attributes, criterion, keep);
+        facts::check(draft, &choices, given, registry, &mut diagnostics);
     }
     let variant = Variant::proven(Description {
         name: draft.name.clone(),

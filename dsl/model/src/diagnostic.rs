@@ -180,7 +180,7 @@ codes! {
     CAPACITY "capacity" "The number of kept fragments is outside what can be generated.";
     MISSING_DEPTH "missing-depth" "A fragment needs `depth: f32`: the kept fragments are put in its order.";
     MISSING_STORAGE "missing-storage" "Neither the description nor a preset says where fragments are stored.";
-    UNMET "unmet" "A choice requires something that no other choice offers.";
+    UNMET "unmet" "A choice requires something that neither the other choices nor the description give.";
     KEEP_MISMATCH "keep-mismatch" "The storage keeps k, the description says all, or the other way round.";
     TARGET "target" "The target cannot express the variant.";
     // Ours.

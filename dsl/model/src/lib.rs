@@ -23,4 +23,4 @@ pub use names::mangled;
 pub use origin::{Origin, Spanned};
 pub use own::{OwnRow, RowPlaces, written};
 pub use uniform_block::UniformBlock;
-pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant, is_target_fact};
+pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant};

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Fact, Row, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Fact, Given, Kept, Merges, Row, Soundness};
 
+use crate::check::given;
 use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
 
 /// A checked fragment buffer.
@@ -69,9 +70,15 @@ impl Variant {
         Variant(description)
     }
 
-    /// The rows for a target that offers `target`: the first alternative on each axis that it can express. `Err`: the
-    /// facts that are missing and the row that needs them, for the last alternative.
-    pub fn select(&self, target: &[Fact]) -> Result<Selection, Refusal> {
+    /// What the description gives to conditions of the rows of a selection.
+    pub fn given(&self, selection: &Selection) -> Given {
+        let rows = selection.rows.iter().map(|selected| &*selected.row);
+        with_carried(given(&self.attributes, self.criterion.as_ref(), self.keep), rows)
+    }
+
+    /// The rows for a target with the capabilities `target`: the first alternative on each axis that it can express. `Err`:
+    /// the last alternative of an axis, and what it needs.
+    pub fn select(&self, target: &[Capability]) -> Result<Selection, Refusal> {
         let mut rows = Vec::with_capacity(self.choices.len());
         for chosen in &self.choices {
             let mut refusal = None;
@@ -82,8 +89,9 @@ impl Variant {
                         refusal = None;
                         break;
                     }
-                    Some(fact) => {
-                        refusal = Some(Refusal { axis: chosen.axis.clone(), value: selected.row.key.clone(), fact });
+                    Some(capability) => {
+                        let (axis, value) = (chosen.axis.clone(), selected.row.key.clone());
+                        refusal = Some(Refusal { axis, value, capability });
                     }
                 }
             }
@@ -111,39 +119,23 @@ pub struct Refusal {
     /// The row.
     pub value: String,
     /// What it needs.
-    pub fact: Fact,
+    pub capability: Capability,
 }
 
 impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.fact.meaning())
+        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.capability.meaning())
     }
 }
 
-/// The facts that only a target can offer.
-const TARGET_FACTS: &[Fact] = &[
-    Fact::FragmentAtomics,
-    Fact::Fences,
-    Fact::Coherent,
-    Fact::Interlock,
-    Fact::OrderedInterlock,
-    Fact::U64Atomics,
-    Fact::EarlyDepth,
-    Fact::MinMaxBlend,
-    Fact::SampleMask,
-    Fact::Coverage,
-    Fact::Linkable,
-    Fact::OwnEntryPoints,
-    Fact::PrimitiveIndex,
-];
-
-/// Whether `fact` is a target's to offer.
-pub fn is_target_fact(fact: Fact) -> bool {
-    TARGET_FACTS.contains(&fact)
+/// The same with the words that these rows carry.
+pub(crate) fn with_carried<'a>(given: Given, rows: impl Iterator<Item = &'a Row>) -> Given {
+    let carried: usize = rows.map(|row| row.carries.len()).sum();
+    Given { payload_words: given.payload_words + carried as u32, ..given }
 }
 
-fn missing_on_target(row: &Row, target: &[Fact]) -> Option<Fact> {
-    row.requires.iter().copied().find(|fact| is_target_fact(*fact) && !target.contains(fact))
+fn missing_on_target(row: &Row, target: &[Capability]) -> Option<Capability> {
+    row.needs.iter().copied().find(|capability| !target.contains(capability))
 }
 
 impl Selection {
@@ -170,6 +162,16 @@ impl Selection {
     /// The files of the user's own among the rows' templates, by their names in messages.
     pub fn own_files(&self) -> impl Iterator<Item = &str> {
         self.rows.iter().filter_map(|selected| selected.row.template.as_ref()?.own.as_deref())
+    }
+
+    /// Which fragments stay, as the row says that stores them; `None`: none says so.
+    pub fn kept(&self) -> Option<Kept> {
+        self.rows.iter().find_map(|selected| selected.row.kept())
+    }
+
+    /// How entries become one, where a row merges them.
+    pub fn merges(&self) -> Option<&Merges> {
+        self.rows.iter().find_map(|selected| selected.row.merges.as_ref())
     }
 
     /// Everything that the rows offer.

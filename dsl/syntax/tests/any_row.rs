@@ -3,7 +3,9 @@
 #![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
 
 use fragbuf_syntax::row;
-use fragbuf_templates::vocabulary::{Access, Element, Fact, Host, Init, Loads, Soundness, Step};
+use fragbuf_templates::vocabulary::{
+    Access, Blended, Capability, Element, Fact, Host, Init, Kept, Loads, Permits, Soundness, Step,
+};
 
 const GOOD: &str = "// What it is.\n\
     //: storage -- all of it\n\
@@ -14,11 +16,15 @@ const GOOD: &str = "// What it is.\n\
     //: pass store as again: heads atomic rechecked, rest coherent\n\
     //: host allocate: reads heads[pixels]; sets fragments\n\
     //: offers keeps-best, bound-any-instant\n\
-    //: requires critical\n\
-    //: implies sorted when depth-key\n\
+    //: requires critical, fragment-atomics\n\
+    //: when keep <= 64 && color -- write `keep 64;`\n\
+    //: implies sorted when depth_key\n\
     //: suits sync spin_lock, cull early\n\
     //: parameter limit LIMIT = 2 * capacity, from 1 to 99 -- tries\n\
+    //: keeps best 1 of each min(k - 1, key / LIMIT)\n\
     //: hazard torn unless critical -- two in one\n\
+    //: hazard mixed permits stale, lost-update -- more of it\n\
+    //: hazard merged-farthest -- the last is a mixture\n\
     //: soundness lock\n\
     \n\
     fn storage_insert(pixel: u32, entry: Packed) {}\n";
@@ -44,12 +50,20 @@ fn a_row_says_what_its_lines_say() {
     assert_eq!(row.offers, [Fact::KeepsBest, Fact::BoundAnyInstant]);
     assert_eq!(
         (row.requires.as_slice(), row.implies.as_slice()),
-        (&[Fact::Critical][..], &[(Fact::DepthKey, Fact::Sorted)][..])
+        (&[Fact::Critical][..], &[("depth_key".into(), Fact::Sorted)][..])
     );
+    let [condition] = row.conditions.as_slice() else { unreachable!("one condition: {:?}", row.conditions) };
+    assert_eq!((&*condition.formula.0, &*condition.hint), ("keep <= 64 && color", "write `keep 64;`"));
+    assert_eq!(row.needs, [Capability::FragmentAtomics]);
     assert_eq!(row.defaults, [("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())]);
     let limit = &row.parameters[0];
     assert_eq!((&*limit.name, &*limit.constant, limit.range), ("limit", "LIMIT", (1, 99)));
     assert_eq!((row.hazards[0].unless, row.soundness), (Some(Fact::Critical), Soundness::Lock));
+    let both = Permits::STALE.and(&Permits::LOST);
+    let permits: Vec<_> = row.hazards.iter().map(|hazard| hazard.permits.clone()).collect();
+    assert_eq!(permits, [Permits::TORN, both, Permits::NOTHING]);
+    assert_eq!(row.kept(), Some(Kept::best_of_each("min(k - 1, key / LIMIT)")));
+    assert_eq!(row.merges.as_ref().map(|merges| merges.blended), Some(Blended::Worst));
     let template = row.template.expect("the text");
     assert_eq!((&*template.path, template.own.as_deref()), ("mine.wgsl", Some("there/mine.wgsl")));
     assert!(!template.text.contains("//:") && template.text.lines().count() == GOOD.lines().count());

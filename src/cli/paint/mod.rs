@@ -8,6 +8,7 @@ mod cpu;
 mod gpu;
 mod opaque;
 
+use fragbuf::vocabulary::Fact;
 use fragbuf::{Plan, Registry, Variant};
 use fragbuf_frame::{Counters, LoopEnd, Looped, OUT_OF_ORDER, PARTLY_COVERED, PassTime};
 use fragbuf_scene::Scene;
@@ -21,9 +22,6 @@ use super::view::{Stage, View};
 
 /// The payload that does not round what a scene's colours are. The papers' rounds each layer to 255ths.
 const UNROUNDED: (&str, &str) = ("fragment.color", "rgba16");
-
-/// The choice that counts every event.
-const EVERYTHING: (&str, &str) = ("counters", "all");
 
 /// A description as it was asked for.
 pub(crate) struct Wish<'a> {
@@ -68,9 +66,9 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
     let mut input = Input::read(wish.description, &registry)?;
     let opaque = wish.opaque.map(|stage| Opaque::new(stage, &registry)).transpose()?;
     let rounded = stage.exact && !in_255ths(&stage.scene);
-    let unless_said = [(wish.count_all, EVERYTHING), (rounded, UNROUNDED)];
-    let mut unless_said: Vec<(&str, &str)> =
-        unless_said.into_iter().filter(|(wanted, _)| *wanted).map(|(_, set)| set).collect();
+    let mut unless_said: Vec<(&str, &str)> = Vec::new();
+    unless_said.extend(everything(&registry).filter(|_| wish.count_all));
+    unless_said.extend(rounded.then_some(UNROUNDED));
     unless_said.extend(opaque.as_ref().and_then(|_| turned_away(&registry)));
     // A storage whose slots hold no more than the papers' payload rounds as the papers do.
     if rounded && input.variant_or(wish.set, &unless_said, &registry).is_err() {
@@ -98,6 +96,11 @@ pub(crate) fn paint(wish: &Wish<'_>, view: &View, stage: &Stage, progress: &Prog
             }
         }
     }
+}
+
+/// The choice that counts every event.
+fn everything(registry: &Registry) -> Option<(&str, &str)> {
+    registry.offering(Fact::CountsEvents).next().map(|row| (row.axis.as_str(), row.key.as_str()))
 }
 
 /// Whether 8 bits a channel hold every colour of the scene, but for the rounding of its text.
@@ -154,8 +157,7 @@ impl Painted {
 
     /// Whether every event was counted, and not losses alone.
     pub(crate) fn counts_everything(&self) -> bool {
-        let (axis, key) = EVERYTHING;
-        self.plan.selection.rows.iter().any(|selected| selected.row.axis == axis && selected.row.key == key)
+        self.plan.selection.offers().contains(&Fact::CountsEvents)
     }
 
     fn warn(&self, description: &str) {

@@ -2,7 +2,7 @@
 //!
 //! In: a staged scene, a device. Out: its picture, and its depths for the description that is drawn after it.
 
-use fragbuf::vocabulary::{Init, KeepDefault, Step, Technique};
+use fragbuf::vocabulary::{Fact, Init, Technique};
 use fragbuf::{Plan, Registry, Variant};
 
 use super::{UNROUNDED, in_255ths};
@@ -22,7 +22,7 @@ pub(super) struct Opaque<'a> {
 
 impl<'a> Opaque<'a> {
     pub(super) fn new(stage: &'a Stage, registry: &Registry) -> Result<Self, Failure> {
-        let none = || Failure::Input("there is no technique that keeps the nearest by a depth test".to_owned());
+        let none = || Failure::Input("there is no technique that leaves the depth of the nearest fragment".to_owned());
         let mut input = Input::read(nearest(registry).ok_or_else(none)?, registry)?;
         let rounded = stage.exact && !in_255ths(&stage.scene);
         let unless_said = if rounded { &[UNROUNDED][..] } else { &[] };
@@ -38,16 +38,13 @@ pub(super) fn turned_away(registry: &Registry) -> Option<(&str, &str)> {
     Some((AXIS, &row.key))
 }
 
-/// The technique that keeps one fragment, by a depth test that writes.
+/// The technique that leaves the depth of the nearest fragment behind.
 fn nearest(registry: &Registry) -> Option<&str> {
-    let writes =
-        |step: &Step| matches!(step, Step::Pass(pass) if pass.state.depth.as_ref().is_some_and(|test| test.write));
-    let is_tested = |technique: &&Technique| {
-        let storage = technique.choices.iter().find(|(axis, _)| *axis == "storage");
-        let row = storage.and_then(|(axis, key)| registry.row(axis, key));
-        technique.keep == KeepDefault::Best(1) && row.is_some_and(|row| row.steps.iter().any(writes))
+    let leaves_depth = |technique: &&Technique| {
+        let mut rows = technique.choices.iter().filter_map(|(axis, key)| registry.row(axis, key));
+        rows.any(|row| row.offers.contains(&Fact::LeavesDepth))
     };
-    registry.techniques().iter().find(is_tested).map(|technique| technique.key.as_str())
+    registry.techniques().iter().find(leaves_depth).map(|technique| technique.key.as_str())
 }
 
 /// The texture that a plan leaves its depths in: the one that a pass tests and writes.

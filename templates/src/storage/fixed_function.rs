@@ -1,8 +1,9 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
+use crate::conditions::{depth_key, word_per_target};
 use crate::vocabulary::{
-    Access, Blend, Compare, Coverage, DepthState, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Samples,
-    StencilOperation, StencilState, Step, Text, TextureFormat, Until,
+    Access, Blend, Capability, Compare, Condition, Coverage, DepthState, Element, Fact, Hazard, Pass, Permits, Repeat,
+    Resource, Row, Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
 /// The nearest fragment, by the depth test.
@@ -35,21 +36,24 @@ pub(super) fn depth_tested() -> Row {
                     .target("output", Blend::Over),
             ),
         ],
-        requires: vec![
-            Fact::DepthKey,
-            Fact::LimitedToOne,
-            Fact::WordPerTarget,
-            Fact::OneSample,
-            Fact::LeftToTests,
-            Fact::OwnEntryPoints,
+        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        conditions: vec![
+            depth_key(),
+            Condition::new("keep == 1", "a limit of one: `keep 1`", "write `keep 1;`"),
+            word_per_target(),
         ],
+        needs: vec![Capability::OwnEntryPoints],
         hazards: vec![
-            Hazard::new("equal-keys", "of fragments with equal depths one is kept, the first to be submitted"),
-            Hazard::new("far-plane", "a fragment at depth 1.0 exactly is not kept"),
-            Hazard::new("uncounted", "what the depth test turns away is not counted"),
+            Hazard::new(
+                "equal-keys",
+                "of fragments with equal depths one is kept, the first to be submitted",
+                Permits::ONE_OF_EQUAL_KEYS,
+            ),
+            Hazard::new("far-plane", "a fragment at depth 1.0 exactly is not kept", Permits::NOTHING),
+            Hazard::new("uncounted", "what the depth test turns away is not counted", Permits::UNCOUNTED),
         ],
         // One fragment is in order.
-        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::Sorted],
+        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::LeavesDepth, Fact::Sorted],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL, UNSORTED],
         ..Row::new(
             "storage",
@@ -112,26 +116,34 @@ pub(super) fn stencil_routed() -> Row {
         ],
         calls: vec!["counters"],
         offers: vec![Fact::FixedFunction],
-        requires: vec![
-            Fact::DepthKey,
-            Fact::SampleCount,
-            Fact::WordPerTarget,
-            Fact::OneSample,
-            Fact::LeftToTests,
-            Fact::SampleMask,
-            Fact::OwnEntryPoints,
+        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        conditions: vec![
+            depth_key(),
+            Condition::new(
+                "keep == 2 || keep == 4 || keep == 8",
+                "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`",
+                "write `keep 4;`",
+            ),
+            word_per_target(),
         ],
+        needs: vec![Capability::SampleMask, Capability::OwnEntryPoints],
         defaults: vec![LEFT_TO_TESTS, ARRIVAL],
         hazards: vec![
-            Hazard::new("first-k", "the first k fragments are kept, in the order of submission, whatever their depth"),
+            Hazard::new(
+                "first-k",
+                "the first k fragments are kept, in the order of submission, whatever their depth",
+                Permits::NOTHING,
+            ),
             Hazard::new(
                 "borders",
                 "where a triangle covers some samples of a pixel, fragments of that pixel may be lost or stored twice; \
                  how many cover one in part is counted, so no more pixels than that are wrong",
+                Permits::NOTHING,
             ),
             Hazard::new(
                 "many-late",
                 "beyond 255 - capacity fragments of a pixel that came too late, no more of them are counted",
+                Permits::NOTHING,
             ),
         ],
         ..Row::new(

@@ -1,7 +1,7 @@
 //! Storages of lists: nodes of one pool, linked per pixel.
 
 use super::resolve;
-use crate::vocabulary::{Access, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
     let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
@@ -13,7 +13,7 @@ pub(super) fn linked_list() -> Row {
             "the fragment of this node",
         ]),
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        implies: vec![(Fact::Limited, Fact::BestSuffice)],
+        implies: vec![("limited".into(), Fact::BestSuffice)],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..list(
             store,
@@ -39,7 +39,7 @@ pub(super) fn ordered_list() -> Row {
         ]),
         offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::SparesRoom, Fact::LosesWhole],
         // The list is in the order of its keys.
-        implies: vec![(Fact::DepthKey, Fact::Sorted)],
+        implies: vec![("depth_key".into(), Fact::Sorted)],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],
         parameters: vec![Parameter::number(
             "retries",
@@ -78,7 +78,7 @@ fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
     Row {
         steps: vec![Step::Pass(touched.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
         calls: vec!["overflow", "counters"],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         ..row
     }
 }

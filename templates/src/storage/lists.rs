@@ -1,7 +1,8 @@
 //! Storages of several lists or pages per pixel, through one pool.
 
 use super::resolve;
-use crate::vocabulary::{Access, Element, Fact, Hazard, Parameter, Pass, Resource, Row, Step};
+use crate::conditions::depth_key;
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Permits, Resource, Row, Step};
 
 /// Lists whose links lead from page to page.
 pub(super) fn paged_list() -> Row {
@@ -29,7 +30,7 @@ pub(super) fn paged_list() -> Row {
         ],
         calls: vec!["addressing", "overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         parameters: vec![
             Parameter::number(
@@ -51,6 +52,7 @@ pub(super) fn paged_list() -> Row {
             "leaked-page",
             "of pages that several fragments of a pixel take at once one is used: the others are missing from the \
                    pool, and fragments may find it empty that there was room for; both are counted",
+            Permits::NOTHING,
         )],
         ..Row::new(
             "storage",
@@ -91,7 +93,8 @@ pub(super) fn bucket_lists() -> Row {
         ],
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics, Fact::DepthKey],
+        conditions: vec![depth_key()],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "insertion".into())],
         ..Row::new(
             "storage",

@@ -1,7 +1,9 @@
 //! Storages of atomic minima: no lock, each slot keeps the lesser.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use crate::vocabulary::{
+    Access, Capability, Condition, Element, Fact, Hazard, Pass, Permits, Repeat, Resource, Row, Step, Until,
+};
 
 pub(super) fn cascade() -> Row {
     let mut resources = array_resources("the k least keys in ascending order, equal ones each; EMPTY past the last");
@@ -47,15 +49,18 @@ pub(super) fn distinct_cascade() -> Row {
             Step::Pass(Pass::geometry("settle", "settle").uses("keys", Access::Read).uses("entries", Access::Atomic)),
             resolve(&["keys", "entries"]),
         ],
-        requires: vec![Fact::FragmentAtomics, Fact::OneSample],
+        requires: vec![Fact::OneSample],
+        needs: vec![Capability::FragmentAtomics],
         hazards: vec![
             Hazard::new(
                 "equal-keys",
                 "of fragments with equal keys one is kept, the last to write; the others are counted",
+                Permits::ONE_OF_EQUAL_KEYS,
             ),
             Hazard::new(
                 "torn-equal-keys",
                 "what stands beside a key comes from several fragments of that key, where it is several words",
+                Permits::TORN_EQUAL_KEYS,
             ),
         ],
         ..by_minima(Row::new(
@@ -90,7 +95,12 @@ pub(super) fn wide_cascade() -> Row {
         ],
         calls: vec!["overflow"],
         offers: [row.offers.as_slice(), &[Fact::LosesWhole]].concat(),
-        requires: vec![Fact::FragmentAtomics, Fact::U64Atomics, Fact::OneWordBesideKey],
+        conditions: vec![Condition::new(
+            "entry_words <= 2",
+            "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone",
+            "leave depth and one attribute of one word in the fragment, or with a criterion depth alone",
+        )],
+        needs: vec![Capability::FragmentAtomics, Capability::U64Atomics],
         ..row
     }
 }
@@ -100,8 +110,8 @@ fn by_minima(row: Row) -> Row {
     Row {
         calls: vec!["counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant],
-        implies: vec![(Fact::DepthKey, Fact::Sorted)],
-        requires: vec![Fact::FragmentAtomics],
+        implies: vec![("depth_key".into(), Fact::Sorted)],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "slot_counter".into()),
             ("cull".into(), "early".into()),

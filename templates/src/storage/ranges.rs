@@ -1,7 +1,12 @@
 //! A storage of depth ranges: one fragment in each.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Fact, Hazard, Parameter, Pass, Row, Step};
+use crate::conditions::{depth_key, limited};
+use crate::vocabulary::{Access, Capability, Fact, Hazard, Kept, Parameter, Pass, Permits, Row, Step};
+
+/// The range of a depth, one of k equal ones; what lies outside of all belongs to the first or the last.
+pub(crate) const DEPTH_RANGE: &str = "min(k - 1, (max(depth_millionths, NEAR_MILLIONTHS) - NEAR_MILLIONTHS) * k / \
+     (max(FAR_MILLIONTHS, NEAR_MILLIONTHS + 1) - NEAR_MILLIONTHS))";
 
 /// The nearest fragment of each of k ranges of depth.
 pub(super) fn depth_ranges() -> Row {
@@ -18,15 +23,19 @@ pub(super) fn depth_ranges() -> Row {
         calls: vec!["overflow"],
         offers: vec![Fact::DisplacesInTurn, Fact::Indexed, Fact::Sorted, Fact::LosesWhole],
         // Of two triangles that share an edge it keeps one: several samples would show cracks.
-        requires: vec![Fact::FragmentAtomics, Fact::Critical, Fact::DepthKey, Fact::Limited, Fact::OneSample],
+        requires: vec![Fact::Critical, Fact::OneSample],
+        conditions: vec![depth_key(), limited()],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("sort".into(), "none".into())],
         parameters: vec![
             depth("near", "NEAR_MILLIONTHS", "0", "depth at which the first range begins, in millionths"),
             depth("far", "FAR_MILLIONTHS", "1000000", "depth at which the last range ends, in millionths"),
         ],
+        keeps: Some(Kept::best_of_each(DEPTH_RANGE)),
         hazards: vec![Hazard::new(
             "one-per-range",
             "of the fragments in one range of depth the nearest is kept; the others are counted",
+            Permits::NOTHING,
         )],
         ..Row::new("storage", "depth_ranges", "the nearest fragment in each of k equal ranges of depth", "B06 §4.2")
     }

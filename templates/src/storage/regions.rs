@@ -1,7 +1,7 @@
 //! Storages that count first, and give every pixel a region of exactly the size it needs.
 
 use super::{OF_THE_K_BEST, reset_pass, resolve};
-use crate::vocabulary::{Access, Element, Fact, Host, Parameter, Pass, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Host, Parameter, Pass, Resource, Row, Step};
 
 pub(super) fn exact_regions() -> Row {
     let mut resources = counted_resources("fragments of the pixel; the store pass counts them down again");
@@ -21,7 +21,7 @@ pub(super) fn exact_regions() -> Row {
         steps,
         calls: vec!["overflow", "counters"],
         offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Counted, Fact::Indexed, Fact::LosesWhole],
-        requires: vec![Fact::FragmentAtomics],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",
@@ -62,7 +62,8 @@ pub(super) fn bounded_regions() -> Row {
         steps,
         calls: vec!["overflow", "counters"],
         offers: [OF_THE_K_BEST.as_slice(), &[Fact::Counted]].concat(),
-        requires: vec![Fact::FragmentAtomics, Fact::Critical],
+        requires: vec![Fact::Critical],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter::number(
             "array",

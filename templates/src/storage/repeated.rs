@@ -1,7 +1,7 @@
 //! A storage that is written again until nothing changes: races are repaired, not prevented.
 
 use super::{array_resources, reset, resolve};
-use crate::vocabulary::{Access, Element, Fact, Hazard, Pass, Repeat, Resource, Row, Step, Until};
+use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Pass, Permits, Repeat, Resource, Row, Step, Until};
 
 pub(super) fn repeated_array() -> Row {
     let mut resources = array_resources("keys in no order, each once; EMPTY: no fragment");
@@ -25,7 +25,8 @@ pub(super) fn repeated_array() -> Row {
         calls: vec!["counters"],
         offers: vec![Fact::KeepsBest, Fact::SurvivesRaces],
         // Of two triangles that share an edge it keeps one: several samples would show cracks.
-        requires: vec![Fact::FragmentAtomics, Fact::Race, Fact::OneSample],
+        requires: vec![Fact::Race, Fact::OneSample],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into())],
         hazards: hazards(),
         ..Row::new(
@@ -39,16 +40,26 @@ pub(super) fn repeated_array() -> Row {
 
 fn hazards() -> Vec<Hazard> {
     vec![
-        Hazard::new("equal-keys", "of fragments with equal keys one is kept, the last to write"),
+        Hazard::new(
+            "equal-keys",
+            "of fragments with equal keys one is kept, the last to write",
+            Permits::ONE_OF_EQUAL_KEYS,
+        ),
         Hazard::new(
             "torn-equal-keys",
             "what stands beside a key comes from several fragments of that key, where it is several words",
+            Permits::TORN_EQUAL_KEYS,
         ),
         Hazard::new(
             "unsettled",
             "where the last of the k + 1 rounds still changes a slot, entries are lost, double or torn; the fragments that \
              changed one are counted",
+            Permits::UNSETTLED,
         ),
-        Hazard::new("uncounted", "losses are counted in the first round alone, as if its fragments had not raced"),
+        Hazard::new(
+            "uncounted",
+            "losses are counted in the first round alone, as if its fragments had not raced",
+            Permits::UNCOUNTED,
+        ),
     ]
 }

@@ -1,7 +1,8 @@
 //! A storage that fragments pass through: what leaves it is composited in order.
 
 use super::{array_resources, reset};
-use crate::vocabulary::{Access, Blend, Element, Fact, Hazard, Pass, Resource, Row, Step};
+use crate::conditions::{depth_key, limited};
+use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Kept, Pass, Permits, Resource, Row, Step};
 
 /// The k nearest of those to come; the nearest of all leaves for every one that comes.
 pub(super) fn stream_array() -> Row {
@@ -40,23 +41,24 @@ pub(super) fn stream_array() -> Row {
         calls: vec!["resolve", "counters"],
         offers: vec![Fact::Streams, Fact::Indexed, Fact::Sorted],
         requires: vec![
-            Fact::FragmentAtomics,
             Fact::Critical,
-            Fact::DepthKey,
-            Fact::Limited,
             Fact::ValuesPairs,
             // What leaves is composited for the whole pixel.
             Fact::OneSample,
         ],
+        conditions: vec![depth_key(), limited()],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),
             ("sort".into(), "none".into()),
             ("resolve".into(), "stream".into()),
         ],
+        keeps: Some(Kept::worst()),
         hazards: vec![Hazard::new(
             "out-of-order",
             "a fragment that comes more than k places late is composited behind those it lies before, and \
                    counted; equal depths are composited in the order of arrival",
+            Permits::NOTHING,
         )],
         ..Row::new(
             "storage",

@@ -1,7 +1,7 @@
 //! Storages that keep the worst entry at slot 0 and replace it inside a critical section.
 
 use super::{OF_THE_K_BEST, array_resources, reset, resolve};
-use crate::vocabulary::{Access, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use crate::vocabulary::{Access, Capability, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn max_array() -> Row {
     Row {
@@ -37,7 +37,8 @@ pub(super) fn revised_array() -> Row {
         ],
         calls: vec!["overflow"],
         offers: OF_THE_K_BEST.to_vec(),
-        requires: vec![Fact::FragmentAtomics, Fact::Critical],
+        requires: vec![Fact::Critical],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter::number(
             "wait",
@@ -75,7 +76,8 @@ fn worst_first(row: Row) -> Row {
         ],
         calls: vec!["overflow"],
         offers: OF_THE_K_BEST.to_vec(),
-        requires: vec![Fact::FragmentAtomics, Fact::Critical],
+        requires: vec![Fact::Critical],
+        needs: vec![Capability::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row
     }

@@ -1,6 +1,6 @@
 //! What the rows of other axes change in a storage's steps. In: what rows say. Out: nothing; plans apply it.
 
-use super::{Classes, DepthState, Repeat, Resource, Role, Samples, State, Step, Use};
+use super::{DepthState, Formula, Resource, Role, Samples, State, Step};
 
 /// A change that the row of another axis makes to a technique's steps. Edits apply in the order of the axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,8 +9,6 @@ pub enum Edit {
     Before(String, Vec<Step>),
     /// New steps after an anchor.
     After(String, Vec<Step>),
-    /// The steps from the first anchor to the second become the body of a loop.
-    Around(String, String, Repeat),
     /// The fixed-function state of an anchor.
     SetState(String, State),
     /// Every geometry pass tests the depth of its fragments so, whatever its anchor. Refused where one tests already.
@@ -19,14 +17,24 @@ pub enum Edit {
     SetSkeleton(String, String),
     /// Another form of the skeleton that an anchor has: (`store`, `ordered`) makes `x_ordered` of `x`.
     FormOfSkeleton(String, String),
-    /// A contract of an anchor, bound to an instance.
-    SetRole(String, Role),
-    /// A pass touches one resource more.
-    AddUse(String, Use),
     /// The technique keeps one resource more.
     AddResource(Resource),
-    /// A pass is repeated for classes of pixels.
-    Classes(Classes),
+    /// One pass becomes several.
+    Split(Split),
     /// Every pass over the scene has these samples.
     Samples(Samples),
+}
+
+/// One pass becomes several, one after the other, each with constants of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Split {
+    /// The pass.
+    pub anchor: String,
+    /// How many there are, over the constants of the chosen rows.
+    pub copies: Formula,
+    /// Generated constants of each, over `copy` (from 0), `copies` and the constants of the chosen rows. The value of the first
+    /// tells the anchors apart: `resolve_8`, `resolve_16`, ….
+    pub constants: Vec<(String, Formula)>,
+    /// Who fulfils contracts otherwise in every one but the last.
+    pub before_last: Vec<Role>,
 }

@@ -1,92 +1,46 @@
-//! What rows offer each other. Legality is `requires ⊆ offers`, over the chosen rows, the payload and the target.
+//! What rows offer each other. Legality is `requires ⊆ offers` over the chosen rows, and conditions that hold.
 
-macro_rules! facts {
-    ($($variant:ident $meaning:literal;)*) => {
-        /// One thing that a row, a payload or a target can offer, and another require.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Fact { $(#[doc = $meaning] $variant,)* }
+use super::words::words;
 
-        impl Fact {
-            /// Every fact.
-            pub const ALL: &[Fact] = &[$(Fact::$variant),*];
-
-            /// The word of manifests and of rows in files: the name in lower case, joined by `-`.
-            pub fn word(self) -> String {
-                let mut word = String::new();
-                for letter in format!("{self:?}").chars() {
-                    if letter.is_ascii_uppercase() && !word.is_empty() {
-                        word.push('-');
-                    }
-                    word.push(letter.to_ascii_lowercase());
-                }
-                word
-            }
-
-            /// What the fact means, as the object of "requires".
-            pub fn meaning(self) -> &'static str {
-                match self { $(Fact::$variant => $meaning,)* }
-            }
-        }
-    };
-}
-
-facts! {
-    // Between a storage and a sync.
-    Critical "that writers of one pixel take turns";
-    OrderedCritical "that writers of one pixel take turns in the order of submission";
-    Race "that writers of one pixel race, and no one keeps them apart";
-    OwnAtomics "a storage that keeps writers apart by its own atomic operations";
-    SurvivesRaces "a storage whose behaviour stays defined when writers race";
-    FixedFunction "a storage that leaves writers to depth test, stencil or blending";
-    LeftToShaders "that shaders keep writers of one pixel apart, so that their depth test is free";
-    CullInShader "a cull that leaves the depth test free";
-    LeftToTests "that writers of one pixel are left to depth test, stencil or blending";
-    // What a storage can be asked.
-    KeepsAll "a storage that keeps every fragment";
-    KeepsBest "a storage that keeps the k best";
-    SparesRoom "a storage that gives no room to a fragment behind k better ones";
-    SelectsBest "that the k best are chosen among all";
-    BestSuffice "a storage that may be handed the k best fragments alone";
-    BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
-    DisplacesInTurn "a storage in which, inside the critical section, a better fragment displaces a kept one";
-    CanReplace "that the worst kept fragment can be replaced inside the critical section, once there are k";
-    OrderedSlots "slots in the order of depth, each of which can be replaced inside the critical section";
-    Counted "the number of fragments of each pixel, known before they are stored";
-    LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
-    KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
-    Indexed "kept fragments with an index";
-    Passes "a build step for every kept fragment";
-    Streams "a storage that hands fragments on in order, two neighbours at a time";
-    // What comes to it.
-    CullsNothing "that no fragment is turned away before the storage sees it";
-    // What the kept fragments are, once gathered.
-    Sorted "fragments in the order of depth";
-    OneResolve "one resolve pass that serves every pixel";
-    OneSample "one sample per pixel";
-    StableSort "a sort that leaves fragments of equal depth as the storage gives them";
-    // What they are worth.
-    ValuesPairs "a value for two neighbouring fragments";
-    // What a description offers.
-    Limited "a limit on what is kept: `keep 8`";
-    LimitedToOne "a limit of one: `keep 1`";
-    SampleCount "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`";
-    DepthKey "that depth decides which fragment is worst: no criterion";
-    Color "an attribute `color` of format rgba8, rgba16 or vec4";
-    OneWordBesideDepth "at most one word beside depth in the payload";
-    WordPerTarget "at most eight words in the payload: there are eight targets";
-    OneWordBesideKey "at most one word beside the key: the payload is depth and one word, or with a criterion depth alone";
-    // What a target offers.
-    FragmentAtomics "atomic operations in fragment shaders";
-    Fences "memory fences in fragment shaders";
-    Coherent "coherent plain words in buffers";
-    Interlock "fragment shader interlock";
-    OrderedInterlock "fragment shader interlock in the order of submission";
-    U64Atomics "64-bit atomic operations that return a value";
-    EarlyDepth "a forced early depth test";
-    MinMaxBlend "blending by minimum and maximum";
-    SampleMask "a fixed sample mask and several samples per pixel";
-    Coverage "which samples of its pixel a fragment covers, several samples per pixel";
-    Linkable "functions that a caller's own shader can call";
-    OwnEntryPoints "entry points of its own: `--form program`";
-    PrimitiveIndex "the number of a fragment's triangle";
+words! {
+    /// One thing that a row can offer, and another require.
+    Fact {
+        // Between a storage and a sync.
+        Critical "that writers of one pixel take turns";
+        OrderedCritical "that writers of one pixel take turns in the order of submission";
+        Race "that writers of one pixel race, and no one keeps them apart";
+        OwnAtomics "a storage that keeps writers apart by its own atomic operations";
+        SurvivesRaces "a storage whose behaviour stays defined when writers race";
+        FixedFunction "a storage that leaves writers to depth test, stencil or blending";
+        LeftToShaders "that shaders keep writers of one pixel apart, so that their depth test is free";
+        CullInShader "a cull that leaves the depth test free";
+        LeftToTests "that writers of one pixel are left to depth test, stencil or blending";
+        // What a storage can be asked.
+        KeepsAll "a storage that keeps every fragment";
+        KeepsBest "a storage that keeps the k best";
+        SparesRoom "a storage that gives no room to a fragment behind k better ones";
+        SelectsBest "that the k best are chosen among all";
+        BestSuffice "a storage that may be handed the k best fragments alone";
+        BoundAnyInstant "a bound that no fragment of the final k best ever fails, at any instant";
+        DisplacesInTurn "a storage in which, inside the critical section, a better fragment displaces a kept one";
+        CanReplace "that the worst kept fragment can be replaced inside the critical section, once there are k";
+        OrderedSlots "slots in the order of depth, each of which can be replaced inside the critical section";
+        Counted "the number of fragments of each pixel, known before they are stored";
+        LosesWhole "that a fragment which finds no place is lost whole, key and payload together";
+        KeepsArrival "kept fragments that stay in the order of arrival where their keys are equal";
+        Indexed "kept fragments with an index";
+        Streams "a storage that hands fragments on in order, two neighbours at a time";
+        // What comes to it.
+        CullsNothing "that no fragment is turned away before the storage sees it";
+        // What the kept fragments are, once gathered.
+        Sorted "fragments in the order of depth";
+        OneResolve "one resolve pass that serves every pixel";
+        OneSample "one sample per pixel";
+        StableSort "a sort that leaves fragments of equal depth as the storage gives them";
+        // What a caller may be told, or take over.
+        CountsEvents "that every event of a frame is counted, and not losses alone";
+        LeavesDepth "the depth of the nearest fragment, left in a depth buffer";
+        // What they are worth.
+        ValuesPairs "a value for two neighbouring fragments";
+    }
 }

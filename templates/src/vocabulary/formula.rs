@@ -1,8 +1,10 @@
-//! Sizes as formulas: the same text in a row, in a plan's dump and in the manifest.
+//! Sizes and conditions as formulas: the same text in a row, in a plan's dump and in the manifest.
 //!
-//! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2`. `/` rounds down.
+//! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2 log2_ceil`; then the comparisons
+//! `== != < <= > >=`, then `&&`, then `||`, which bind ever more weakly. `/` rounds down. What holds is 1 and what does not
+//! is 0; any other number than 0 counts as holding. All values are unsigned.
 //! Symbols are those of [`SYMBOLS`](super::SYMBOLS), and parameters of the chosen rows by their constants, such as
-//! `PAGE_ENTRIES`. All values are unsigned.
+//! `PAGE_ENTRIES`; conditions are over those that a description gives ([`Given`](super::Given)).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -66,12 +68,15 @@ pub enum Expression {
     Number(u64),
     /// A named value.
     Symbol(String),
-    /// `+ - * /` or a function of two arguments (`pow2` of one), by its spelling.
+    /// An operator, or a function of one or two arguments, by its spelling.
     Apply(&'static str, Vec<Expression>),
 }
 
 /// The functions and their number of arguments.
-const FUNCTIONS: [(&str, usize); 4] = [("min", 2), ("max", 2), ("ceil_div", 2), ("pow2", 1)];
+const FUNCTIONS: [(&str, usize); 5] = [("min", 2), ("max", 2), ("ceil_div", 2), ("pow2", 1), ("log2_ceil", 1)];
+
+/// The operators from the weakest to the strongest. Of two with the same beginning the longer comes first.
+const OPERATORS: [&[&str]; 5] = [&["||"], &["&&"], &["==", "!=", "<=", ">=", "<", ">"], &["+", "-"], &["*", "/"]];
 
 impl Formula {
     /// Whether the value depends on this symbol.
@@ -82,7 +87,7 @@ impl Formula {
     /// Reads the text.
     pub fn read(&self) -> Result<Expression, FormulaError> {
         let mut reader = Reader { text: &self.0, at: 0 };
-        let expression = reader.sum()?;
+        let expression = reader.operation(0)?;
         reader.skip_spaces();
         if reader.at < self.0.len() { Err(reader.malformed()) } else { Ok(expression) }
     }
@@ -140,6 +145,15 @@ pub fn apply(operator: &str, values: &[u64]) -> Option<u64> {
         ("min", [a, b]) => Some(*a.min(b)),
         ("max", [a, b]) => Some(*a.max(b)),
         ("ceil_div", [a, b]) => (*b > 0).then(|| a.div_ceil(*b)),
+        ("==", [a, b]) => Some(u64::from(a == b)),
+        ("!=", [a, b]) => Some(u64::from(a != b)),
+        ("<", [a, b]) => Some(u64::from(a < b)),
+        ("<=", [a, b]) => Some(u64::from(a <= b)),
+        (">", [a, b]) => Some(u64::from(a > b)),
+        (">=", [a, b]) => Some(u64::from(a >= b)),
+        ("&&", [a, b]) => Some(u64::from(*a != 0 && *b != 0)),
+        ("||", [a, b]) => Some(u64::from(*a != 0 || *b != 0)),
+        ("log2_ceil", [a]) => a.checked_next_power_of_two().map(|power| u64::from(power.trailing_zeros())),
         ("pow2", [a]) => u32::try_from(*a).ok().and_then(|a| 1u64.checked_shl(a)),
         _ => None,
     }
@@ -155,6 +169,9 @@ fn opaque(operator: &str, parts: &[Polynomial]) -> Polynomial {
     match (operator, texts.as_slice()) {
         ("/", [_, one]) if one == "1" => parts[0].clone(),
         ("/", [a, b]) => Polynomial::symbol(&format!("({a}/{b})")),
+        (sign, [a, b]) if !sign.starts_with(|c: char| c.is_ascii_alphabetic()) => {
+            Polynomial::symbol(&format!("({a} {sign} {b})"))
+        }
         _ => Polynomial::symbol(&format!("{operator}({})", texts.join(", "))),
     }
 }
@@ -165,30 +182,20 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn sum(&mut self) -> Result<Expression, FormulaError> {
-        self.chain(&[("+", '+'), ("-", '-')], Self::product)
-    }
-
-    fn product(&mut self) -> Result<Expression, FormulaError> {
-        self.chain(&[("*", '*'), ("/", '/')], Self::atom)
-    }
-
-    fn chain(
-        &mut self,
-        operators: &[(&'static str, char)],
-        operand: fn(&mut Self) -> Result<Expression, FormulaError>,
-    ) -> Result<Expression, FormulaError> {
-        let mut left = operand(self)?;
-        while let Some((name, _)) = operators.iter().find(|(_, sign)| self.take(*sign)) {
-            left = Expression::Apply(name, vec![left, operand(self)?]);
+    /// Operands of the operators of this strength, joined from the left.
+    fn operation(&mut self, strength: usize) -> Result<Expression, FormulaError> {
+        let Some(operators) = OPERATORS.get(strength) else { return self.atom() };
+        let mut left = self.operation(strength + 1)?;
+        while let Some(operator) = operators.iter().find(|operator| self.take(operator)) {
+            left = Expression::Apply(operator, vec![left, self.operation(strength + 1)?]);
         }
         Ok(left)
     }
 
     fn atom(&mut self) -> Result<Expression, FormulaError> {
-        if self.take('(') {
-            let inner = self.sum()?;
-            return if self.take(')') { Ok(inner) } else { Err(self.malformed()) };
+        if self.take("(") {
+            let inner = self.operation(0)?;
+            return if self.take(")") { Ok(inner) } else { Err(self.malformed()) };
         }
         let word = self.word();
         if word.is_empty() {
@@ -198,17 +205,17 @@ impl Reader<'_> {
             return word.parse().map(Expression::Number).map_err(|_| self.malformed());
         }
         match FUNCTIONS.iter().find(|(name, _)| *name == word) {
-            Some((name, arity)) if self.take('(') => self.arguments(name, *arity),
+            Some((name, arity)) if self.take("(") => self.arguments(name, *arity),
             _ => Ok(Expression::Symbol(word)),
         }
     }
 
     fn arguments(&mut self, name: &'static str, arity: usize) -> Result<Expression, FormulaError> {
-        let mut arguments = vec![self.sum()?];
-        while self.take(',') {
-            arguments.push(self.sum()?);
+        let mut arguments = vec![self.operation(0)?];
+        while self.take(",") {
+            arguments.push(self.operation(0)?);
         }
-        if arguments.len() != arity || !self.take(')') {
+        if arguments.len() != arity || !self.take(")") {
             return Err(self.malformed());
         }
         Ok(Expression::Apply(name, arguments))
@@ -222,10 +229,10 @@ impl Reader<'_> {
         rest[..length].to_owned()
     }
 
-    fn take(&mut self, sign: char) -> bool {
+    fn take(&mut self, sign: &str) -> bool {
         self.skip_spaces();
         let found = self.text.get(self.at..).is_some_and(|rest| rest.starts_with(sign));
-        self.at += if found { sign.len_utf8() } else { 0 };
+        self.at += if found { sign.len() } else { 0 };
         found
     }
 
@@ -257,11 +264,20 @@ mod tests {
     }
 
     #[test]
+    fn what_holds_is_one() {
+        assert_eq!(value("k == 8 && k != 3"), Ok(1));
+        assert_eq!(value("k < 8 || k <= 7 || k > 8"), Ok(0));
+        assert_eq!(value("k - 1 >= 7 && 2"), Ok(1));
+        assert_eq!(value("(k > 3) * 4 + (k < 3)"), Ok(4));
+        assert_eq!(value("log2_ceil(k) + log2_ceil(k + 1) + log2_ceil(1)"), Ok(7));
+    }
+
+    #[test]
     fn what_has_no_value_says_why() {
         assert_eq!(value("n"), Err(FormulaError::Unbound("n".into())));
         assert!(matches!(value("k / 0"), Err(FormulaError::Overflow(_))));
         assert!(matches!(value("3 - k"), Err(FormulaError::Overflow(_))));
-        for text in ["", "k +", "(k", "min(k)", "k k", "4é"] {
+        for text in ["", "k +", "(k", "min(k)", "k k", "4é", "k =", "k && ", "k = 8"] {
             assert!(matches!(value(text), Err(FormulaError::Malformed { .. })), "{text}");
         }
     }

@@ -1,6 +1,8 @@
 //! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
 
-use super::{Edit, Fact, Formula, HostFunction, Resource, Step, Text, Use};
+use super::{
+    Capability, Condition, Edit, Fact, Formula, Given, Hazard, HostFunction, Kept, Merges, Resource, Step, Text, Use,
+};
 
 /// One way to choose: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +40,14 @@ pub struct Row {
     pub calls: Vec<&'static str>,
     /// What it gives to the other rows.
     pub offers: Vec<Fact>,
-    /// (given, offered): what it offers only where the description gives something.
-    pub implies: Vec<(Fact, Fact)>,
+    /// (condition, fact): what it offers only where the description meets a condition.
+    pub implies: Vec<(Formula, Fact)>,
     /// What it needs from them.
     pub requires: Vec<Fact>,
+    /// What it needs of the description.
+    pub conditions: Vec<Condition>,
+    /// What it needs of the target and the device.
+    pub needs: Vec<Capability>,
     /// What it changes in the steps of others.
     pub edits: Vec<Edit>,
     /// Values on other axes that suit it, taken when nothing else is said.
@@ -54,6 +60,10 @@ pub struct Row {
     pub least: Vec<(Text, Formula)>,
     /// Symbols of formulas that it gives a value.
     pub defines: Vec<Definition>,
+    /// Which fragments stay, where no fact that it offers says so.
+    pub keeps: Option<Kept>,
+    /// How entries become one.
+    pub merges: Option<Merges>,
     /// What can go wrong by design.
     pub hazards: Vec<Hazard>,
     /// What its safety under concurrency rests on.
@@ -121,17 +131,6 @@ pub struct Definition {
     pub value: Formula,
 }
 
-/// What can go wrong by design, and is kept.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Hazard {
-    /// Its name; one that says an [`Effect`](super::Effect) is checked.
-    pub name: Text,
-    /// What happens.
-    pub what: Text,
-    /// The hazard exists only while this is not offered.
-    pub unless: Option<Fact>,
-}
-
 /// What the safety of a row under concurrency rests on. The weakest of the chosen rows decides the tier on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Soundness {
@@ -189,19 +188,24 @@ impl Parameter {
     }
 }
 
-impl Hazard {
-    /// One that nothing prevents.
-    pub fn new(name: impl Into<Text>, what: impl Into<Text>) -> Self {
-        Hazard { name: name.into(), what: what.into(), unless: None }
-    }
-
-    /// The same, where nothing offers `fact`.
-    pub fn unless(self, fact: Fact) -> Self {
-        Hazard { unless: Some(fact), ..self }
-    }
-}
-
 impl Row {
+    /// Whether it offers a fact to a description that gives this.
+    pub fn offers_to(&self, given: &Given, fact: Fact) -> bool {
+        self.offers.contains(&fact) || self.implies.iter().any(|(when, then)| *then == fact && given.meets(when))
+    }
+
+    /// Which fragments stay of those that it is handed; `None`: it does not say, or does not store.
+    pub fn kept(&self) -> Option<Kept> {
+        let by_fact = [(Fact::KeepsAll, Kept::all()), (Fact::KeepsBest, Kept::best())];
+        let by_fact = || by_fact.into_iter().find(|(fact, _)| self.offers.contains(fact)).map(|(_, kept)| kept);
+        self.keeps.clone().or_else(by_fact)
+    }
+
+    /// Whether it offers a fact to some description.
+    pub fn may_offer(&self, fact: Fact) -> bool {
+        self.offers.contains(&fact) || self.implies.iter().any(|(_, implied)| *implied == fact)
+    }
+
     /// A row with nothing but its names.
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
         Row {
@@ -217,12 +221,16 @@ impl Row {
             offers: Vec::new(),
             implies: Vec::new(),
             requires: Vec::new(),
+            conditions: Vec::new(),
+            needs: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),
             carries: Vec::new(),
             parameters: Vec::new(),
             least: Vec::new(),
             defines: Vec::new(),
+            keeps: None,
+            merges: None,
             hazards: Vec::new(),
             soundness: Soundness::Atomics,
             order: None,

@@ -1,7 +1,7 @@
 //! The symbols of formulas: one table, read by plans, manifests, bindings, devices, the checker and rows in users' files.
 //!
 //! Parameters of the chosen rows are symbols too, by their constants (`PAGE_ENTRIES`); a plan adds them to these. Nothing
-//! here has a value: values belong to a plan ([`When::Generation`]) or to a frame (all others).
+//! here has a value: values belong to a description, to a plan or to a frame.
 
 use super::Formula;
 
@@ -25,6 +25,8 @@ pub struct Symbol {
 /// When a symbol gets its value, the earliest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum When {
+    /// By the description alone: what the conditions of rows are over. A number in every text.
+    Description,
     /// When code is generated: a number in every text.
     Generation,
     /// When memory is allocated for a frame's size.
@@ -54,6 +56,7 @@ impl When {
     /// The word of manifests.
     pub fn word(self) -> &'static str {
         match self {
+            When::Description => "description",
             When::Generation => "generation",
             When::Allocation => "allocation",
             When::Frame => "frame",
@@ -86,7 +89,7 @@ impl Symbol {
 const WORD: u64 = u32::MAX as u64;
 
 /// The symbols that every plan has, in the order in which the shaders' `frame` has those that it needs.
-pub const SYMBOLS: [Symbol; 12] = [
+pub const SYMBOLS: [Symbol; 17] = [
     symbol("width", "columns of the frame", When::Allocation, SetBy::Caller, (1, WORD)),
     symbol("height", "rows of the frame; of a slice, its rows", When::Allocation, SetBy::Caller, (1, WORD)),
     symbol("first_row", "the row at which a slice of the picture begins", When::Round, SetBy::Device, (0, WORD)),
@@ -109,15 +112,22 @@ pub const SYMBOLS: [Symbol; 12] = [
     symbol("kept", "fragments that exact regions have memory for", When::Readback, SetBy::Host, (0, WORD)),
     symbol("iteration", "the iteration of the innermost loop, from 0", When::Round, SetBy::Device, (0, WORD)),
     symbol("capacity", "the greatest k that the code serves", When::Generation, SetBy::Description, (1, WORD)),
-    symbol("entry_words", "words of a stored fragment, the key first", When::Generation, SetBy::Description, (1, WORD)),
-    symbol(
-        "beside_words",
-        "words of a stored fragment without its key",
-        When::Generation,
-        SetBy::Description,
-        (0, WORD),
+    described(
+        "keep",
+        "the number on the `keep` line; for `keep all` more than any number that can be written there",
+        (1, WORD + 1),
     ),
+    described("limited", "1 where the description keeps no more than k fragments; 0 for `keep all`", (0, 1)),
+    described("payload_words", "32-bit words of the payload, depth included, with those that rows add", (1, WORD)),
+    described("entry_words", "32-bit words of a stored fragment: the payload, and a criterion's word", (1, WORD)),
+    described("beside_words", "those words without the key", (0, WORD)),
+    described("depth_key", "1 where depth decides which fragment is worst; 0 with a criterion", (0, 1)),
+    described("color", "1 where the payload has a `color` of format rgba8, rgba16 or vec4; else 0", (0, 1)),
 ];
+
+const fn described(name: &'static str, meaning: &'static str, range: (u64, u64)) -> Symbol {
+    symbol(name, meaning, When::Description, SetBy::Description, range)
+}
 
 const fn symbol(name: &'static str, meaning: &'static str, when: When, set_by: SetBy, range: (u64, u64)) -> Symbol {
     Symbol { name, meaning, when, set_by, default: None, range }

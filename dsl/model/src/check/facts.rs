@@ -1,28 +1,32 @@
-//! `requires ⊆ offers`, for every way to pick one alternative per axis. The hint of a refusal is computed: the single
-//! changes that make the whole description legal.
+//! Which rows go together: `requires ⊆ offers`, and conditions on the description that hold, for every way to pick one
+//! alternative per axis. The hint of a refusal is computed: the single changes that make the whole description legal.
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Row};
+use fragbuf_templates::vocabulary::{Condition, Fact, Given, Row};
 
-use crate::variant::{Chosen, is_target_fact};
-use crate::{Diagnostic, Diagnostics, Draft, codes, written};
+use crate::variant::{Chosen, with_carried};
+use crate::{Diagnostic, Diagnostics, Draft, Origin, codes, written};
 
-/// Checks every combination; `given` is what the payload and the `keep` line offer.
+/// Checks every combination; `given` is what the description gives, without the words that rows carry.
 pub(super) fn check(
     draft: &Draft,
     choices: &[Chosen],
-    given: &[Fact],
+    given: Given,
     registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) {
+    let situation = Situation { draft, choices, given, registry };
     for pick in picks(choices) {
-        let situation = Situation { draft, choices, given, registry };
+        let rules = Rules::new(&pick, given);
         for (index, row) in pick.iter().enumerate() {
-            if !keeps_what_is_said(row, &pick, given) {
+            if !rules.keeps_what_is_said(row) {
                 diagnostics.push(situation.keep_mismatch(index, &pick));
             }
-            for fact in missing(row, &pick, given) {
-                diagnostics.push(situation.unmet(index, fact, &pick));
+            for fact in rules.missing(row) {
+                diagnostics.push(situation.missing(index, fact, &pick));
+            }
+            for condition in rules.unmet(row) {
+                diagnostics.push(situation.unmet(index, condition, &pick));
             }
         }
     }
@@ -43,26 +47,46 @@ fn picks(choices: &[Chosen]) -> Vec<Pick<'_>> {
     picks
 }
 
-/// What `row` requires and neither the others of the pick nor the description offer. Targets are asked later.
-fn missing(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> Vec<Fact> {
-    let offered = |fact: &Fact| given.contains(fact) || pick.iter().any(|other| offers(other, *fact, given));
-    row.requires.iter().copied().filter(|fact| !is_target_fact(*fact) && !offered(fact)).collect()
+/// The rules over one pick.
+struct Rules<'p> {
+    pick: &'p [&'p Row],
+    given: Given,
 }
 
-fn offers(row: &Row, fact: Fact, given: &[Fact]) -> bool {
-    row.offers.contains(&fact) || row.implies.iter().any(|(if_given, then)| *then == fact && given.contains(if_given))
-}
+impl<'p> Rules<'p> {
+    fn new(pick: &'p [&'p Row], given: Given) -> Self {
+        Rules { pick, given: with_carried(given, pick.iter().copied()) }
+    }
 
-/// A storage that keeps the k best needs a k; one that keeps all must have none, unless the k best are chosen
-/// afterwards. One whose memory is measured in k needs a k too.
-fn keeps_what_is_said(row: &Row, pick: &Pick<'_>, given: &[Fact]) -> bool {
-    let keeps = |fact: Fact| row.offers.contains(&fact);
-    match (keeps(Fact::KeepsBest), keeps(Fact::KeepsAll)) {
-        (true, false) => given.contains(&Fact::KeepsBest),
-        (false, true) => {
-            given.contains(&Fact::KeepsAll) || pick.iter().any(|other| other.offers.contains(&Fact::SelectsBest))
+    /// Facts that `row` requires and no row of the pick offers.
+    fn missing(&self, row: &Row) -> Vec<Fact> {
+        let is_offered = |fact: Fact| self.pick.iter().any(|other| other.offers_to(&self.given, fact));
+        row.requires.iter().copied().filter(|fact| !is_offered(*fact)).collect()
+    }
+
+    /// Conditions of `row` that the description does not meet.
+    fn unmet<'r>(&self, row: &'r Row) -> impl Iterator<Item = &'r Condition> {
+        row.conditions.iter().filter(|condition| !self.given.meets(&condition.formula))
+    }
+
+    /// A storage that keeps the k best needs a k; one that keeps all must have none, unless the k best are chosen
+    /// afterwards. One whose memory is measured in k needs a k too.
+    fn keeps_what_is_said(&self, row: &Row) -> bool {
+        let is_limited = self.given.keep.is_some();
+        let keeps = |fact: Fact| row.offers.contains(&fact);
+        match (keeps(Fact::KeepsBest), keeps(Fact::KeepsAll)) {
+            (true, false) => is_limited,
+            (false, true) => !is_limited || self.pick.iter().any(|other| other.offers.contains(&Fact::SelectsBest)),
+            _ => is_limited || !is_measured_in_k(row),
         }
-        _ => !given.contains(&Fact::KeepsAll) || !is_measured_in_k(row),
+    }
+
+    fn is_fit(&self, row: &Row) -> bool {
+        self.missing(row).is_empty() && self.unmet(row).next().is_none()
+    }
+
+    fn is_legal(&self) -> bool {
+        self.pick.iter().all(|row| self.keeps_what_is_said(row) && self.is_fit(row))
     }
 }
 
@@ -70,29 +94,24 @@ fn is_measured_in_k(row: &Row) -> bool {
     row.resources.iter().flat_map(|resource| &resource.extents).any(|extent| extent.length.mentions("k"))
 }
 
-fn is_legal(pick: &Pick<'_>, given: &[Fact]) -> bool {
-    pick.iter().all(|row| keeps_what_is_said(row, pick, given) && missing(row, pick, given).is_empty())
-}
-
 struct Situation<'a> {
     draft: &'a Draft,
     choices: &'a [Chosen],
-    given: &'a [Fact],
+    given: Given,
     registry: &'a Registry,
 }
 
 impl Situation<'_> {
     fn keep_mismatch(&self, index: usize, pick: &Pick<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
-        let keep = self.draft.keep.as_ref().map_or(&chosen.origin, |keep| &keep.count.origin);
-        let (words, way, said, other) = if self.given.contains(&Fact::KeepsBest) {
-            ("the k best", "keep all", Fact::KeepsBest, Fact::KeepsAll)
-        } else {
-            ("every fragment", "keep 8", Fact::KeepsAll, Fact::KeepsBest)
+        let keep = self.keep_line().unwrap_or(&chosen.origin);
+        let (words, way, other) = match self.given.keep {
+            Some(_) => ("the k best", "keep all", None),
+            None => ("every fragment", "keep 8", Some(8)),
         };
         // What the other `keep` line would run into next is part of the way out.
-        let given: Vec<Fact> = self.given.iter().map(|fact| if *fact == said { other } else { *fact }).collect();
-        let also = pick.iter().find(|row| !missing(row, pick, &given).is_empty());
+        let rules = Rules::new(pick, Given { keep: other, ..self.given });
+        let also = pick.iter().find(|row| !rules.is_fit(row));
         let also = also.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
         let storage = name(pick[index]);
         let others = self.ways_out(pick).map_or(String::new(), |ways| format!(", or choose {ways}"));
@@ -105,15 +124,22 @@ impl Situation<'_> {
         .label(&chosen.origin, format!("{storage} is chosen here"))
     }
 
-    fn unmet(&self, index: usize, fact: Fact, pick: &Pick<'_>) -> Diagnostic {
+    fn keep_line(&self) -> Option<&Origin> {
+        self.draft.keep.as_ref().map(|keep| &keep.count.origin)
+    }
+
+    /// A fact that `pick[index]` requires, and that no row offers.
+    fn missing(&self, index: usize, fact: Fact, pick: &Pick<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
-        let row = pick[index];
-        let mut diagnostic = Diagnostic::new(
-            codes::UNMET,
-            &chosen.origin,
-            format!("`{}: {}` requires {}, and nothing here offers it", row.axis, written(&row.key), fact.meaning()),
-            self.hint(fact, pick),
-        );
+        let hint = match self.ways_out(pick) {
+            Some(ways) => format!("choose {ways}"),
+            None => {
+                let offering: Vec<String> = self.registry.offering(fact).map(name).collect();
+                format!("more than one change is needed; {} is offered by {}", fact.meaning(), joined(&offering))
+            }
+        };
+        let message = format!("{} requires {}, and nothing here offers it", name(pick[index]), fact.meaning());
+        let mut diagnostic = Diagnostic::new(codes::UNMET, &chosen.origin, message, hint);
         for (other, row) in self.choices.iter().zip(pick) {
             let could = self.registry.rows_of(&other.axis).any(|row| row.offers.contains(&fact));
             if could && other.origin != chosen.origin {
@@ -123,22 +149,16 @@ impl Situation<'_> {
         diagnostic
     }
 
-    fn hint(&self, fact: Fact, pick: &Pick<'_>) -> String {
-        if fact == Fact::Color {
-            return "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`".to_owned();
-        }
-        let ways = self.ways_out(pick);
-        let or_else = ways.as_ref().map_or(String::new(), |ways| format!(", or choose {ways}"));
-        match fact {
-            Fact::LimitedToOne => return format!("write `keep 1;`{or_else}"),
-            Fact::SampleCount => return format!("write `keep 4;`{or_else}"),
-            _ => {}
-        }
-        if let Some(ways) = ways {
-            return format!("choose {ways}");
-        }
-        let offering: Vec<String> = self.registry.offering(fact).map(name).collect();
-        format!("more than one change is needed; {} is offered by {}", fact.meaning(), joined(&offering))
+    /// A condition of `pick[index]` that the description does not meet.
+    fn unmet(&self, index: usize, condition: &Condition, pick: &Pick<'_>) -> Diagnostic {
+        let row = name(pick[index]);
+        let or_else = self.ways_out(pick).map_or(String::new(), |ways| format!(", or choose {ways}"));
+        Diagnostic::new(
+            codes::UNMET,
+            &self.choices[index].origin,
+            format!("{row} requires {}, and the description does not give it", condition.meaning),
+            format!("{}{or_else}", condition.hint),
+        )
     }
 
     /// The changes of one axis that make everything legal.
@@ -148,7 +168,7 @@ impl Situation<'_> {
             for row in self.registry.rows_of(&chosen.axis).filter(|row| row.key != Registry::CLOSURE) {
                 let mut other = pick.clone();
                 other[index] = row;
-                if is_legal(&other, self.given) {
+                if Rules::new(&other, self.given).is_legal() {
                     ways.push(name(row));
                 }
             }

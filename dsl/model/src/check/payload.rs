@@ -1,12 +1,8 @@
-//! What a fragment carries, and what that offers to the rows.
+//! What a fragment carries, and what of it the conditions of rows may ask.
 
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Given;
 
-use crate::variant::Chosen;
 use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
-
-/// Targets of one word that every WebGPU device has: eight, of 32 bytes a pixel together.
-const TARGETS: u32 = 8;
 
 /// The description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
@@ -32,29 +28,14 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     draft.attributes.clone()
 }
 
-/// What a payload offers, with the words that rows add. A criterion is a word of its own, where depth alone is the key
-/// already.
-pub(super) fn facts(attributes: &[Attribute], criterion: Option<&UserFunction>, choices: &[Chosen]) -> Vec<Fact> {
-    let mut facts = Vec::new();
+/// What a description gives to the conditions of rows; the words that rows carry come on top.
+pub(crate) fn given(attributes: &[Attribute], criterion: Option<&UserFunction>, keep: Option<u32>) -> Given {
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
-    if color.is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)) {
-        facts.push(Fact::Color);
+    Given {
+        keep,
+        payload_words: attributes.iter().map(|attribute| attribute.format.value.words()).sum(),
+        has_criterion: criterion.is_some(),
+        has_color: color
+            .is_some_and(|color| matches!(color.format.value, Format::Rgba8 | Format::Rgba16 | Format::Vec4)),
     }
-    let words: u32 = attributes.iter().map(|attribute| attribute.format.value.words()).sum();
-    let words = words + choices.iter().map(carried).sum::<u32>();
-    if words <= 2 {
-        facts.push(Fact::OneWordBesideDepth);
-    }
-    if words <= TARGETS {
-        facts.push(Fact::WordPerTarget);
-    }
-    if words + u32::from(criterion.is_some()) <= 2 {
-        facts.push(Fact::OneWordBesideKey);
-    }
-    facts
-}
-
-/// The most words that a fragment carries for one axis.
-fn carried(chosen: &Chosen) -> u32 {
-    chosen.alternatives.iter().map(|selected| selected.row.carries.len() as u32).max().unwrap_or(0)
 }

@@ -13,15 +13,18 @@
 //! //: host allocate: reads offsets[pixels]; sets fragments    a decision of the host between two passes: `name`, all
 //!                                                            words; `name[index]`, one; `name[first for count]`, some
 //! //: offers keeps-best, indexed                              facts
-//! //: requires fragment-atomics
-//! //: implies sorted when depth-key
+//! //: requires critical, fragment-atomics                      facts of other rows, capabilities of targets
+//! //: when keep <= 64 -- write `keep 64;` or less              a condition on the description, and how to meet it
+//! //: implies sorted when depth_key                            a fact that is offered where a condition holds
 //! //: suits sync slot_counter, cull early                     values on other axes when nobody says another
 //! //: parameter limit LIMIT = 4096, from 1 to 65536 -- tries
+//! //: keeps best 1 of each key / 1000                         which fragments stay, where no fact says so
 //! //: hazard torn unless critical -- key and payload of two fragments in one slot
 //! //: soundness atomics                                       atomics, interlock, lock or racy
 //! ```
 
 mod line;
+mod promises;
 mod reader;
 mod statements;
 

@@ -1,7 +1,8 @@
 //! The pieces that statements are made of, each read or reported.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
-use fragbuf_templates::vocabulary::{Fact, Formula, FormulaError};
+use fragbuf_templates::Shorthand;
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits};
 
 use super::line::Line;
 use crate::near;
@@ -10,6 +11,20 @@ use crate::near;
 pub(super) struct Stop;
 
 pub(super) type Read<T> = Result<T, Stop>;
+
+/// Words that were facts before conditions had formulas, and the formula of each.
+const RETIRED: [(&str, &str); 10] = [
+    ("limited", "limited"),
+    ("limited-to-one", "keep == 1"),
+    ("sample-count", "keep == 2 || keep == 4 || keep == 8"),
+    ("depth-key", "depth_key"),
+    ("color", "color"),
+    ("one-word-beside-depth", "payload_words <= 2"),
+    ("word-per-target", "payload_words <= 8"),
+    ("one-word-beside-key", "entry_words <= 2"),
+    ("keeps-best", "limited"),
+    ("keeps-all", "limited == 0"),
+];
 
 /// The mistakes so far.
 pub(super) struct Reader {
@@ -58,14 +73,68 @@ impl Reader {
         Ok(facts)
     }
 
+    /// Facts that other rows offer, and capabilities that targets do, in one list.
+    pub(super) fn requirements(&mut self, line: &mut Line<'_>) -> Read<(Vec<Fact>, Vec<Capability>)> {
+        let (mut facts, mut capabilities) = (Vec::new(), Vec::new());
+        loop {
+            let word = self.word(line, "a fact or a capability", "`critical`, `fragment-atomics`")?;
+            match Capability::ALL.iter().find(|capability| capability.word() == word.value) {
+                Some(capability) => capabilities.push(*capability),
+                None => facts.push(self.fact_of(&word, Capability::ALL)?),
+            }
+            if !line.sign(',') {
+                return Ok((facts, capabilities));
+            }
+        }
+    }
+
     pub(super) fn fact(&mut self, line: &mut Line<'_>) -> Read<Fact> {
         let word = self.word(line, "a fact", "`keeps-best`, `keeps-all`, `critical`")?;
+        self.fact_of(&word, &[])
+    }
+
+    /// A formula over what the description gives.
+    pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
+        let text = line.until(&[]);
+        if let Some((_, now)) = RETIRED.iter().find(|(word, now)| *word == text.value && word != now) {
+            let message = format!("`{}` is no condition", text.value);
+            return self.stop(codes::ROW, &text.origin, message, format!("write `{now}`"));
+        }
+        let symbols: Vec<&str> = Given::symbols().map(|symbol| symbol.name).collect();
+        self.formula_of(&text, &symbols, "`== != < <= > >= && ||`, `+ - * /`")?;
+        Ok(text.value.into())
+    }
+
+    /// The fact of a word; where there is none, the hint knows capabilities that could stand there too.
+    fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
         if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
             return Ok(*fact);
         }
-        let known: Vec<String> = Fact::ALL.iter().map(|fact| fact.word()).collect();
+        if let Some((_, formula)) = RETIRED.iter().find(|(retired, _)| *retired == word.value) {
+            let message = format!("`{}` is a condition on the description, not a fact", word.value);
+            let hint = format!("write it on a line of its own: `//: when {formula} -- how to meet it`");
+            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
+        }
+        if Capability::ALL.iter().any(|capability| capability.word() == word.value) {
+            let message = format!("`{}` is a capability, which targets offer and rows require", word.value);
+            let hint = format!("leave it out here, and write `//: requires {}` where the row needs it", word.value);
+            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
+        }
+        let facts = Fact::ALL.iter().map(|fact| fact.word());
+        let known: Vec<String> = facts.chain(capabilities.iter().map(|capability| capability.word())).collect();
         let message = format!("there is no fact `{}`", word.value);
         self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
+    }
+
+    /// What one name of a hazard permits.
+    pub(super) fn permits(&mut self, word: &Spanned<String>) -> Read<Permits> {
+        if let Some(Shorthand::Permits(permits)) = Shorthand::of(&word.value) {
+            return Ok(permits);
+        }
+        let known = Shorthand::ALL.into_iter().filter(|(_, one)| matches!(one, Shorthand::Permits(_)));
+        let known: Vec<&str> = known.map(|(name, _)| name).collect();
+        let message = format!("a hazard cannot permit `{}`", word.value);
+        self.stop(codes::ROW, &word.origin, message, near::hint(&word.value, &known))
     }
 
     /// The value of a word in a table.
@@ -80,6 +149,10 @@ impl Reader {
     /// Reports a formula that cannot be read, or that depends on what it may not.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
+        self.formula_of(formula, &symbols, "`+ - * /`")
+    }
+
+    fn formula_of(&mut self, formula: &Spanned<String>, symbols: &[&str], signs: &str) -> Read<()> {
         let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
         let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
             // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
@@ -87,7 +160,8 @@ impl Reader {
             Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
             Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
         };
-        let hint = format!("the formula may use {}, `+ - * /`, min, max, ceil_div and pow2", symbols.join(", "));
+        let hint =
+            format!("the formula may use {}, {signs}, min, max, ceil_div, pow2 and log2_ceil", symbols.join(", "));
         self.stop(codes::ROW, &formula.origin, problem, hint)
     }
 

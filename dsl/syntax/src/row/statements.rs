@@ -2,8 +2,8 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
-    Access, Definition, Element, Hazard, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Soundness,
-    Step, Takes, Use, When,
+    Access, Definition, Element, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Step, Takes, Use,
+    When,
 };
 
 use super::line::Line;
@@ -11,7 +11,7 @@ use super::reader::{Read, Reader, Stop};
 use crate::near;
 
 /// The words that begin a line.
-const WORDS: [&str; 13] = [
+const WORDS: [&str; 15] = [
     "paper",
     "buffer",
     "pass",
@@ -19,10 +19,12 @@ const WORDS: [&str; 13] = [
     "uses",
     "offers",
     "requires",
+    "when",
     "implies",
     "suits",
     "parameter",
     "defines",
+    "keeps",
     "hazard",
     "soundness",
 ];
@@ -58,12 +60,12 @@ pub(super) fn axis(line: &mut Line<'_>, faults: &mut Diagnostics) -> Option<Stri
 
 /// The row so far.
 pub(super) struct Statements {
-    own: OwnRow,
+    pub(super) own: OwnRow,
     /// The buffers that lines declare, those with mistakes in them too.
     declared: Vec<String>,
     /// The buffers that lines refer to.
     used: Vec<Spanned<String>>,
-    reader: Reader,
+    pub(super) reader: Reader,
 }
 
 impl Statements {
@@ -99,15 +101,17 @@ impl Statements {
         match word.value.as_str() {
             "paper" => row.paper = line.until(&[]).value.into(),
             "offers" => row.offers = self.reader.facts(line)?,
-            "requires" => row.requires = self.reader.facts(line)?,
+            "requires" => (row.requires, row.needs) = self.reader.requirements(line)?,
             "uses" => self.own.row.uses = self.uses(line)?,
             "buffer" => return self.buffer(line),
             "pass" => return self.pass(line),
             "host" => return self.host(line),
+            "when" => return self.when(line),
             "implies" => return self.implies(line),
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
             "defines" => return self.defines(line),
+            "keeps" => return self.keeps(line),
             "hazard" => return self.hazard(line),
             "soundness" => return self.soundness(line),
             // The first line, when the row has no axis: that has been said.
@@ -276,17 +280,6 @@ impl Statements {
         Ok(uses)
     }
 
-    /// `implies fact when fact`
-    fn implies(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let then = self.reader.fact(line)?;
-        if !line.exactly("when") {
-            return self.reader.unexpected(line, "`when`", "`implies sorted when depth-key`");
-        }
-        let given = self.reader.fact(line)?;
-        self.own.row.implies.push((given, then));
-        Ok(())
-    }
-
     /// `suits axis value, …`
     fn suits(&mut self, line: &mut Line<'_>) -> Read<()> {
         loop {
@@ -307,7 +300,7 @@ impl Statements {
         let constant = self.reader.name(line, "a generated constant", SHAPE)?;
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
-        let generation = SYMBOLS.iter().filter(|symbol| symbol.when == When::Generation);
+        let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= When::Generation);
         let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
         self.reader.formula(&default, &generation)?;
         if !line.sign(',') || !line.exactly("from") {
@@ -346,25 +339,9 @@ impl Statements {
         self.own.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
         Ok(())
     }
-
-    /// `hazard name unless fact -- what`
-    fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
-        let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
-        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), unless });
-        Ok(())
-    }
-
-    fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let word = self.reader.word(line, "what it rests on", "`soundness atomics`")?;
-        let known = Soundness::ALL.map(|soundness| (soundness.word(), soundness));
-        let known: Vec<(&str, Soundness)> = known.iter().map(|(word, soundness)| (word.as_str(), *soundness)).collect();
-        self.own.row.soundness = self.reader.one_of(&word, &known, "no soundness")?;
-        Ok(())
-    }
 }
 
 /// What stands behind ` -- `.
-fn summary(line: &Line<'_>) -> String {
+pub(super) fn summary(line: &Line<'_>) -> String {
     line.summary.unwrap_or("of the user's own").to_owned()
 }

@@ -1,0 +1,93 @@
+//! Lines of a row about descriptions and end states: conditions, which fragments stay, hazards, soundness.
+
+use fragbuf_model::Spanned;
+use fragbuf_templates::Shorthand;
+use fragbuf_templates::vocabulary::{Condition, Hazard, Kept, Permits, Side, Soundness};
+
+use super::line::Line;
+use super::reader::Read;
+use super::statements::{Statements, summary};
+
+impl Statements {
+    /// `when condition -- how to meet it`
+    pub(super) fn when(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let formula = self.reader.condition(line)?;
+        let hint = line.summary.map_or_else(|| format!("change the description so that `{formula}`"), str::to_owned);
+        let meaning = format!("`{formula}`");
+        self.own.row.conditions.push(Condition::new(formula, meaning, hint));
+        Ok(())
+    }
+
+    /// `implies fact when condition`
+    pub(super) fn implies(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let then = self.reader.fact(line)?;
+        if !line.exactly("when") {
+            return self.reader.unexpected(line, "`when`", "`implies sorted when depth_key`");
+        }
+        let when = self.reader.condition(line)?;
+        self.own.row.implies.push((when, then));
+        Ok(())
+    }
+
+    /// `keeps best 1 of each key / 1000`
+    pub(super) fn keeps(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`keeps best k`, `keeps best 1 of each key / 1000`";
+        let side = self.reader.word(line, "`best` or `worst`", SHAPE)?;
+        let side = self.reader.one_of(&side, &[("best", Side::Best), ("worst", Side::Worst)], "no side")?;
+        let text = line.until(&[]);
+        let (most, group) = match text.value.split_once(" of each ") {
+            Some((most, group)) => (most.trim(), Some(group.trim())),
+            None => (text.value.as_str(), None),
+        };
+        let at = |part: &str| Spanned::new(part.to_owned(), text.origin.clone());
+        self.reader.formula(&at(most), &["k"])?;
+        if let Some(group) = group {
+            let constants = self.own.row.parameters.iter().map(|parameter| parameter.constant.to_string());
+            let symbols: Vec<String> =
+                ["k", "key", "depth_millionths"].map(str::to_owned).into_iter().chain(constants).collect();
+            let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
+            self.reader.formula(&at(group), &symbols)?;
+        }
+        let (most, group) = (Some(most.to_owned().into()), group.map(|group| group.to_owned().into()));
+        self.own.row.keeps = Some(Kept { side, most, group });
+        Ok(())
+    }
+
+    /// `hazard name permits name, name unless fact -- what`
+    pub(super) fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
+        let mut permits = self.permits_of(&name);
+        if line.exactly("permits") {
+            permits = Permits::NOTHING;
+            loop {
+                let word = self.reader.word(line, "what it permits", "`hazard mixed permits torn, stale`")?;
+                permits = permits.and(&self.reader.permits(&word)?);
+                if !line.sign(',') {
+                    break;
+                }
+            }
+        }
+        let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
+        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), permits, unless });
+        Ok(())
+    }
+
+    /// What a hazard's name permits by itself; some names say what the row keeps or merges.
+    fn permits_of(&mut self, name: &Spanned<String>) -> Permits {
+        match Shorthand::of(&name.value) {
+            Some(Shorthand::Permits(permits)) => return permits,
+            Some(Shorthand::Keeps(kept)) => self.own.row.keeps = Some(kept),
+            Some(Shorthand::Merges(merges)) => self.own.row.merges = Some(merges),
+            None => {}
+        }
+        Permits::NOTHING
+    }
+
+    pub(super) fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
+        let word = self.reader.word(line, "what it rests on", "`soundness atomics`")?;
+        let known = Soundness::ALL.map(|soundness| (soundness.word(), soundness));
+        let known: Vec<(&str, Soundness)> = known.iter().map(|(word, soundness)| (word.as_str(), *soundness)).collect();
+        self.own.row.soundness = self.reader.one_of(&word, &known, "no soundness")?;
+        Ok(())
+    }
+}
