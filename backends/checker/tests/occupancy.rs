@@ -15,11 +15,11 @@ use crate::mutants::mutants;
 use crate::mutation::{Check, Outcome, judge};
 use crate::subjects::{limits, report, variant};
 
-/// The functions of one variant.
+/// The functions of one variant. Linking leaves out those that do nothing.
 pub(crate) struct Cull {
-    measure: Program,
-    occupy: Program,
-    narrow: Program,
+    measure: Option<Program>,
+    occupy: Option<Program>,
+    narrow: Option<Program>,
     turns_away: Program,
     words: u32,
 }
@@ -41,13 +41,13 @@ impl Cull {
             check(text, target.profile, &Origin::new("test", 1, 1)).ok()
         };
         let function = |checked: &Checked, name: &str| {
-            Program::function(checked.module(), checked.info(), name, &Options::default()).unwrap()
+            Program::function(checked.module(), checked.info(), name, &Options::default()).ok()
         };
         Some(Cull {
             measure: function(&checked("measure")?, "cull_measure"),
             occupy: function(&checked("occupy")?, "cull_occupy"),
             narrow: function(&checked("narrow")?, "cull_narrow"),
-            turns_away: function(&checked("store")?, "cull_fragment"),
+            turns_away: function(&checked("store")?, "cull_fragment")?,
             words,
         })
     }
@@ -57,13 +57,15 @@ impl Cull {
         // Two pixels, of which the other stays empty: width, height, first row, k.
         let frame = vec![2, 1, 0, k];
         let mut occupancy = vec![0; 2 * (self.words as usize + 2)];
-        for program in [&self.measure, &self.occupy] {
+        for program in [&self.measure, &self.occupy].into_iter().flatten() {
             for key in keys {
                 run(program, &[1, *key], &frame, &mut occupancy)?;
             }
         }
         for pixel in [0, 1] {
-            run(&self.narrow, &[pixel], &frame, &mut occupancy)?;
+            for program in &self.narrow {
+                run(program, &[pixel], &frame, &mut occupancy)?;
+            }
         }
         let other = occupancy.iter().step_by(2).all(|word| *word == 0);
         let away = |key: &u32| run(&self.turns_away, &[1, *key], &frame, &mut occupancy).map(|result| result == [1]);

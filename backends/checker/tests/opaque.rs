@@ -54,15 +54,34 @@ fn changed(axis: &str, key: &str, (before, after): (&str, &str)) -> Registry {
 /// Axis and key of a row, a text in it and what it becomes, the technique that shows it.
 type Wrong = (&'static str, &'static str, (&'static str, &'static str), &'static str, Set);
 
+/// Leaves a hidden fragment out without counting it.
+const HIDDEN_IS_UNCOUNTED: &str = "    if opaque_hides(position, fragment) {
+        return;
+    }
+    if !fragment_enters_counted(";
+
+/// Counts a hidden fragment as another event.
+const HIDDEN_IS_CULLED: &str = "    if opaque_hides(position, fragment) {
+        count_event(CULLED);
+        return;
+    }
+    if !fragment_enters_counted(";
+
 const WRONG: [Wrong; 8] = [
     ("opaque", "in_shader", ("depth > opaque", "depth >= opaque"), "kplus_array", IN_SHADER),
     ("opaque", "in_shader", ("depth > opaque", "depth < opaque"), "kplus_array", IN_SHADER),
     ("opaque", "in_shader", ("pixel_index(position)", "1u - pixel_index(position)"), "kplus_array", IN_SHADER),
     ("opaque", "in_shader", ("fragment.depth > ", "2.0 < "), "kplus_array", IN_SHADER),
-    ("pass", "store", ("count_event(OCCLUDED);", ""), "kplus_array", IN_SHADER),
-    ("pass", "store", ("count_event(OCCLUDED);", "count_event(CULLED);"), "kplus_array", IN_SHADER),
-    ("pass", "store_reserving", ("opaque_hides(position, fragment)", "false"), "kplus_ab_sb", IN_SHADER),
-    ("pass", "count", (" && !opaque_hides(position, fragment)", ""), "ab_sb", IN_SHADER),
+    ("pass", "store", ("    if !fragment_enters_counted(", HIDDEN_IS_UNCOUNTED), "kplus_array", IN_SHADER),
+    ("pass", "store", ("    if !fragment_enters_counted(", HIDDEN_IS_CULLED), "kplus_array", IN_SHADER),
+    (
+        "pass",
+        "store_reserving",
+        ("fragment_enters_counted(position, fragment)", "admit(fragment)"),
+        "kplus_ab_sb",
+        IN_SHADER,
+    ),
+    ("pass", "count", ("fragment_enters(position, fragment)", "admit(fragment)"), "ab_sb", IN_SHADER),
 ];
 
 #[test]
