@@ -59,9 +59,9 @@ impl<'p> Rules<'p> {
     }
 
     /// Facts that `row` requires and no row of the pick offers.
-    fn missing(&self, row: &Row) -> Vec<Fact> {
-        let is_offered = |fact: Fact| self.pick.iter().any(|other| other.offers_to(&self.given, fact));
-        row.requires.iter().copied().filter(|fact| !is_offered(*fact)).collect()
+    fn missing(&self, row: &Row) -> impl Iterator<Item = Fact> {
+        let is_offered = |fact: &Fact| self.pick.iter().any(|other| other.offers_to(&self.given, *fact));
+        row.requires.iter().copied().filter(move |fact| !is_offered(fact))
     }
 
     /// Conditions of `row` that the description does not meet.
@@ -82,7 +82,7 @@ impl<'p> Rules<'p> {
     }
 
     fn is_fit(&self, row: &Row) -> bool {
-        self.missing(row).is_empty() && self.unmet(row).next().is_none()
+        self.missing(row).next().is_none() && self.unmet(row).next().is_none()
     }
 
     fn is_legal(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Lines of a row about descriptions and end states: conditions, which fragments stay, hazards, soundness.
 
-use fragbuf_model::Spanned;
+use fragbuf_model::{Spanned, codes};
 use fragbuf_templates::Shorthand;
 use fragbuf_templates::vocabulary::{Condition, Hazard, Kept, Permits, Side, Soundness};
 
@@ -68,6 +68,10 @@ impl Statements {
             }
         }
         let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
+        if unless.is_some() && matches!(Shorthand::of(&name.value), Some(Shorthand::Keeps(_) | Shorthand::Merges(_))) {
+            let message = format!("`{}` says what the row does with fragments, whatever other rows offer", name.value);
+            return self.reader.stop(codes::ROW, &name.origin, message, "leave `unless` and its fact out");
+        }
         self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), permits, unless });
         Ok(())
     }
