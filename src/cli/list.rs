@@ -1,7 +1,7 @@
 //! `fragbuf list`: what there is, computed from the rows.
 
 use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
-use fragbuf_templates::vocabulary::Technique;
+use fragbuf_templates::vocabulary::{Row, Technique};
 use serde_json::{Map, Value, json};
 
 use super::input::Input;
@@ -15,6 +15,9 @@ pub(crate) struct List {
     /// Table 1 of the k⁺-buffer paper with ours beside it, as Markdown
     #[arg(long, conflicts_with = "json")]
     table_1: bool,
+    /// The axes and their values as Markdown: of each axis the value that stands where nothing else says one comes first
+    #[arg(long, conflicts_with_all = ["json", "table_1"])]
+    axes: bool,
 }
 
 impl List {
@@ -23,10 +26,27 @@ impl List {
         if self.table_1 {
             return output::print(&super::table_1::table(&registry)?);
         }
+        if self.axes {
+            return output::print(&axes(&registry));
+        }
         let rows: Vec<Value> =
             registry.techniques().iter().map(|technique| row(technique, &registry)).collect::<Result<_, _>>()?;
         output::print(&if self.json { output::json(&Value::from(rows)) } else { table(&rows) })
     }
+}
+
+/// Every axis that a description chooses on, with the summary of each of its values.
+fn axes(registry: &Registry) -> String {
+    let mut text = String::from("| axis | value | |\n|---|---|---|\n");
+    for axis in registry.axes().iter().filter(|axis| axis.chosen) {
+        let mut rows: Vec<&Row> = registry.rows_of(axis.key).filter(|row| row.key != Registry::CLOSURE).collect();
+        rows.sort_by_key(|row| axis.default != Some(row.key.as_str()));
+        for (number, row) in rows.iter().enumerate() {
+            let name = if number == 0 { axis.key } else { "" };
+            text.push_str(&format!("| {name} | `{}` | {} |\n", row.key, row.summary));
+        }
+    }
+    text
 }
 
 fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {

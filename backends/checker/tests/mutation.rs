@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use fragbuf_checker::{Error, Limits, Model};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Row, Template};
+use fragbuf_templates::vocabulary::{Fact, KeepDefault, Row, Technique, Template};
 
 use crate::mutants::{Mutant, mutants};
 use crate::repeated::{is_repeated, with_rounds};
@@ -126,36 +126,67 @@ const MUTATED: [(&str, &str, &[Check]); 20] = [
     ("sync", "slot_counter", LIST),
 ];
 
-#[test]
-fn every_storage_is_changed() {
+/// Checks of a storage that none is listed for: a technique of nothing but the storage and what suits it.
+const ALONE: &[Check] = &[(ALONE_KEY, &[], "wgsl", Model::Sequential), (ALONE_KEY, &[], "spirv", Model::Late)];
+const ALONE_KEY: &str = "alone";
+
+/// Every mutated row with its checks: those of the table, and every other storage whose shaders share memory. What depth
+/// test, stencil and blending decide is no access to memory that could be tried in another order.
+fn mutated() -> Vec<(&'static str, String, &'static [Check])> {
+    let listed = MUTATED.iter().map(|(axis, key, checks)| (*axis, (*key).to_owned(), *checks));
     let registry = Registry::builtin();
-    // What depth test, stencil and blending decide is no access to memory that could be tried in another order.
-    let is_shaders = |row: &&Row| !row.offers.contains(&Fact::FixedFunction);
-    for row in registry.rows_of("storage").filter(is_shaders) {
-        assert!(MUTATED.iter().any(|(axis, key, _)| *axis == row.axis && *key == row.key), "{}", row.key);
-    }
+    let is_open = |row: &&Row| {
+        let is_listed = MUTATED.iter().any(|(axis, key, _)| *axis == row.axis && *key == row.key);
+        !is_listed && !row.offers.contains(&Fact::FixedFunction)
+    };
+    let others = registry.rows_of("storage").filter(is_open).map(|row| ("storage", row.key.clone(), ALONE));
+    listed.chain(others.collect::<Vec<_>>()).collect()
+}
+
+/// The registry with the technique of a storage alone.
+fn with_alone(registry: &Registry, storage: &str) -> Registry {
+    let key: &'static str = String::leak(storage.to_owned());
+    let is_one = |row: &Row| row.conditions.iter().any(|condition| &*condition.formula.0 == "keep == 1");
+    let keeps_all = |row: &Row| row.offers.contains(&Fact::KeepsAll);
+    let row = registry.row("storage", storage);
+    let keep = match row {
+        Some(row) if keeps_all(row) => KeepDefault::All,
+        Some(row) if is_one(row) => KeepDefault::Best(1),
+        _ => KeepDefault::Best(8),
+    };
+    let choices = vec![("storage", key)];
+    registry.clone().with_technique(Technique {
+        key: ALONE_KEY.to_owned(),
+        title: "",
+        paper: "",
+        summary: "",
+        keep,
+        choices,
+    })
 }
 
 /// Without a change nothing is to be noticed.
 #[test]
 fn every_check_of_a_change_holds_without_it() {
-    let registry = Registry::builtin();
-    for (technique, set, target, model) in MUTATED.iter().flat_map(|(_, _, checks)| *checks) {
-        for limits in [limits(2, *model), deep(*model)] {
-            let report = report(technique, set, target, &limits, &registry).unwrap();
-            let fault = report.failure.filter(|_| !report.is_stated);
-            assert_eq!(fault, None, "{technique} {set:?} {target} {model:?}");
+    for (_, key, checks) in mutated() {
+        let registry = with_alone(&Registry::builtin(), &key);
+        for (technique, set, target, model) in checks {
+            for limits in [limits(2, *model), deep(*model)] {
+                let report = report(technique, set, target, &limits, &registry).unwrap();
+                let fault = report.failure.filter(|_| !report.is_stated);
+                assert_eq!(fault, None, "{key}, {technique} {set:?} {target} {model:?}");
+            }
         }
     }
 }
 
 #[test]
 fn every_small_change_is_noticed() {
-    let work: Vec<(&str, &str, &[Check], Mutant)> = MUTATED
-        .iter()
+    let work: Vec<(&str, String, &[Check], Mutant)> = mutated()
+        .into_iter()
         .flat_map(|(axis, key, checks)| {
-            let text = Registry::builtin().row(axis, key).unwrap().template.clone().unwrap().text;
-            mutants(&text).into_iter().map(move |mutant| (*axis, *key, *checks, mutant))
+            let text = Registry::builtin().row(axis, &key).unwrap().template.clone().unwrap().text;
+            mutants(&text).into_iter().map(move |mutant| (axis, key.clone(), checks, mutant))
         })
         .collect();
     let queue = Mutex::new(work.into_iter());
@@ -166,7 +197,7 @@ fn every_small_change_is_noticed() {
                 loop {
                     let next = queue.lock().unwrap().next();
                     let Some((axis, key, checks, mutant)) = next else { break };
-                    let outcome = judge(axis, key, checks, &mutant);
+                    let outcome = judge(axis, &key, checks, &mutant);
                     let name = format!("{axis}/{key}: `{}` -> `{}`", mutant.before, mutant.after);
                     results.lock().unwrap().push((outcome, name));
                 }
@@ -212,7 +243,7 @@ fn deep(model: Model) -> Limits {
 }
 
 pub(crate) fn judge(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) -> Outcome {
-    let registry = Registry::builtin();
+    let registry = with_alone(&Registry::builtin(), key);
     let old: &Row = registry.row(axis, key).unwrap();
     let path = old.template.clone().unwrap().path;
     let row = Row { template: Some(Template::new(path, mutant.text.clone())), ..old.clone() };

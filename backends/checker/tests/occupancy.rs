@@ -63,7 +63,7 @@ impl Cull {
             }
         }
         for pixel in [0, 1] {
-            for program in &self.narrow {
+            if let Some(program) = &self.narrow {
                 run(program, &[pixel], &frame, &mut occupancy)?;
             }
         }
