@@ -1,6 +1,10 @@
 //! Descriptions that several tests use, and the way from a description to its generation.
 
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
 use fragbuf::load::{Description, variant};
+use fragbuf::vocabulary::Row;
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, Variant, generate};
 
 /// Every attribute format, two constraints, a criterion, uniforms, options and a closure.
@@ -50,6 +54,43 @@ pub type Case = (&'static str, Description, Vec<(&'static str, &'static str)>);
 
 /// The cases of snapshots, by name: together they have every value of every axis in them.
 pub fn named() -> Vec<Case> {
+    static UNNAMED: LazyLock<Vec<Case>> = LazyLock::new(unnamed);
+    written().into_iter().chain(UNNAMED.iter().cloned()).collect()
+}
+
+/// A case for every row that no written case has: with the first technique that takes it, a storage by itself.
+fn unnamed() -> Vec<Case> {
+    let registry = Registry::builtin();
+    let mut seen: BTreeSet<(String, String)> = BTreeSet::new();
+    for (_, description, set) in written() {
+        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{faults}"));
+        let rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives).map(|selected| &selected.row);
+        seen.extend(rows.map(|row| (row.axis.clone(), row.key.clone())));
+    }
+    let is_chosen = |row: &&Row| registry.axis(&row.axis).is_some_and(|axis| axis.chosen);
+    let is_new = |row: &&Row| !seen.contains(&(row.axis.clone(), row.key.clone())) && row.key != Registry::CLOSURE;
+    registry.rows().iter().filter(is_chosen).filter(is_new).map(|row| case_of(row, &registry)).collect()
+}
+
+fn case_of(row: &Row, registry: &Registry) -> Case {
+    let (axis, key): (&'static str, &'static str) = (row.axis.clone().leak(), row.key.clone().leak());
+    let alone =
+        ["keep 8;", "keep 1;", ""].map(|keep| (text(&format!("buffer Tried {{ storage: {key}; {keep} }}")), vec![]));
+    let techniques = registry.techniques().iter().flat_map(|technique| {
+        let with = |more: Option<(&'static str, &'static str)>| {
+            let set = std::iter::once((axis, key)).chain(more).collect();
+            (Description::Technique(technique.key.clone()), set)
+        };
+        [with(None), with(Some(("k", "1")))]
+    });
+    let candidates: Vec<(Description, Vec<(&'static str, &'static str)>)> =
+        if axis == "storage" { alone.to_vec() } else { techniques.collect() };
+    let legal = candidates.into_iter().find(|(description, set)| checked(description, set).is_ok());
+    let (description, set) = legal.unwrap_or_else(|| panic!("no description takes `{axis}: {key}`"));
+    (key, description, set)
+}
+
+fn written() -> Vec<Case> {
     let technique = |key: &str| Description::Technique(key.to_owned());
     vec![
         ("kb", technique("kb"), vec![]),
