@@ -33,6 +33,7 @@ mod queries;
 mod readback;
 mod refusals;
 mod renderer;
+mod results;
 mod room;
 mod scope;
 mod settings;
