@@ -14,6 +14,8 @@
 pub mod describe {}
 #[doc = include_str!("guide/language.md")]
 pub mod language {}
+#[doc = include_str!("guide/axes.md")]
+pub mod axes {}
 #[doc = include_str!("guide/generate.md")]
 pub mod generate {}
 #[doc = include_str!("guide/manifest.md")]
