@@ -1,7 +1,7 @@
 //! The guide. Read it in this order; each chapter stands alone.
 //!
 //! 1. [`describe`]: payload, criterion, constraints, choices, effect; in a file, in Rust, by a program.
-//! 2. [`language`]: what closures can say.
+//! 2. [`axes`]: every choice with its values, and [`language`]: what closures can say.
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
 //! 5. [`run`]: pictures and figures from the command line.
