@@ -16,6 +16,11 @@ pub(crate) fn limited() -> Condition {
     Condition::new("limited", "a limit on what is kept: `keep 8`", "write `keep 8;`")
 }
 
+/// A pixel keeps one fragment.
+pub(crate) fn keeps_one() -> Condition {
+    Condition::new("keep == 1", "a limit of one: `keep 1`", "write `keep 1;`")
+}
+
 /// There is a colour to blend; `hint` says what to do where there is none.
 pub(crate) fn color(hint: &'static str) -> Condition {
     Condition::new("color", "an attribute `color` of format rgba8, rgba16 or vec4", hint)

@@ -1,6 +1,6 @@
 //! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
 
-use crate::conditions::{depth_key, word_per_target};
+use crate::conditions::{depth_key, keeps_one, word_per_target};
 use crate::vocabulary::{
     Access, Blend, Capability, Compare, Condition, Coverage, DepthState, Element, Fact, Hazard, Pass, Permits, Repeat,
     Resource, Row, Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
@@ -37,11 +37,7 @@ pub(super) fn depth_tested() -> Row {
             ),
         ],
         requires: vec![Fact::OneSample, Fact::LeftToTests],
-        conditions: vec![
-            depth_key(),
-            Condition::new("keep == 1", "a limit of one: `keep 1`", "write `keep 1;`"),
-            word_per_target(),
-        ],
+        conditions: vec![depth_key(), keeps_one(), word_per_target()],
         needs: vec![Capability::OwnEntryPoints],
         hazards: vec![
             Hazard::new(
