@@ -11,6 +11,7 @@ mod repeated;
 mod stream;
 mod worst_first;
 
+use crate::conditions::keeps_one;
 use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Permits, Resource, Row, Step};
 
 pub(crate) use ranges::DEPTH_RANGE;
@@ -37,7 +38,36 @@ pub(crate) fn rows() -> Vec<Row> {
         repeated::repeated_array(),
         fixed_function::depth_tested(),
         fixed_function::stencil_routed(),
+        single(),
     ]
+}
+
+fn single() -> Row {
+    let entries = Resource::new("entries", Element::Entry, "the pixel's best fragment; all ones: none");
+    Row {
+        template: Some(template!("storage/single")),
+        resources: vec![entries.by("pixel", "pixels").cleared(u32::MAX)],
+        steps: vec![
+            Step::Pass(Pass::geometry("store", "store").uses("entries", Access::Atomic)),
+            resolve(&["entries"]),
+        ],
+        calls: vec!["overflow"],
+        offers: vec![Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant, Fact::LosesWhole, Fact::Sorted],
+        requires: vec![Fact::Critical, Fact::OneSample],
+        conditions: vec![keeps_one()],
+        needs: vec![Capability::FragmentAtomics],
+        defaults: vec![
+            ("sync".into(), "spin_lock".into()),
+            ("cull".into(), "early".into()),
+            ("sort".into(), "none".into()),
+        ],
+        ..Row::new(
+            "storage",
+            "single",
+            "the best fragment of a pixel: any criterion, a payload of any size",
+            "K15 §4.3",
+        )
+    }
 }
 
 fn sorted_array() -> Row {
