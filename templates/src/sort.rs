@@ -93,6 +93,18 @@ pub(crate) fn rows() -> Vec<Row> {
                 "Knowles et al. 2014",
             )
         },
+        Row {
+            template: Some(template!("sort/odd_even")),
+            calls: vec!["counters"],
+            parameters: vec![layers()],
+            offers: vec![Fact::Sorted, Fact::OneResolve],
+            ..Row::new(
+                "sort",
+                "odd_even",
+                "all at once, by a network of fewer comparisons than `bitonic`",
+                "Batcher 1968; Knuth 1973, Algorithm M",
+            )
+        },
     ]
 }
 
