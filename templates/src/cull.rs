@@ -1,6 +1,6 @@
 //! Axis `cull`: which fragments are turned away before they reach the storage.
 
-use crate::conditions::depth_key;
+use crate::conditions::{depth_key, keeps_one};
 use crate::vocabulary::{
     Access, Capability, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step,
     TextureFormat, Use,
@@ -22,7 +22,30 @@ pub(crate) fn rows() -> Vec<Row> {
         },
         occupancy(),
         occupancy_early(),
+        z_prepass(),
     ]
+}
+
+/// By what one pass over the scene finds out before the store pass.
+fn z_prepass() -> Row {
+    let prepass = Resource::new("prepass", Element::Word, "the key of the pixel's best fragment; EMPTY: it has none");
+    let measure = Step::Pass(Pass::geometry("measure", "measure").uses("prepass", Access::Atomic));
+    Row {
+        template: Some(template!("cull/z_prepass")),
+        resources: vec![prepass.by("pixel", "pixels").cleared(u32::MAX)],
+        uses: vec![Use::new("prepass", Access::Read)],
+        offers: vec![Fact::CullInShader],
+        requires: vec![Fact::BestSuffice],
+        conditions: vec![keeps_one()],
+        needs: vec![Capability::FragmentAtomics],
+        edits: vec![Edit::Before("store".to_owned(), vec![measure])],
+        ..Row::new(
+            "cull",
+            "z_prepass",
+            "all but the best fragment, which one pass before finds; for `keep 1`",
+            "K15 §4.3",
+        )
+    }
 }
 
 /// By what two passes over the scene find out before the store pass.
