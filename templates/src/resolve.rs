@@ -33,6 +33,18 @@ pub(crate) fn rows() -> Vec<Row> {
             )
         },
         Row {
+            template: Some(template!("resolve/complexity")),
+            calls: vec!["samples"],
+            parameters: vec![Parameter::number(
+                "most",
+                "COMPLEXITY_MOST",
+                "capacity",
+                (1, 4096),
+                "fragments of a pixel from which on it is red",
+            )],
+            ..Row::new("resolve", "complexity", "how many fragments there are, as a heat map from blue to red", "")
+        },
+        Row {
             calls: vec!["samples"],
             ..Row::new("resolve", Registry::CLOSURE, "the description's own `resolve |fragments, u| { … }`", "")
         },
