@@ -287,7 +287,7 @@ fn reach(
     items: &[(usize, &Item<'_>)],
     index: &Index<'_>,
     exports: &[&str],
-    folded: &BTreeMap<usize, Folded>,
+    folded: &BTreeMap<usize, Arc<Folded>>,
 ) -> Result<BTreeSet<usize>, String> {
     let mut waiting: Vec<usize> = Vec::new();
     if exports.is_empty() {

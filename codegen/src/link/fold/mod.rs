@@ -15,6 +15,7 @@ mod lines;
 mod rules;
 mod substitute;
 mod syntax;
+mod trace;
 mod values;
 
 #[cfg(test)]
@@ -24,6 +25,7 @@ pub(super) use substitute::{Substitute, substitute};
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 use super::index::Index;
 use super::item::{Item, mentions};
@@ -50,7 +52,7 @@ pub(super) fn fold(
     index: &Index<'_>,
     reached: &BTreeSet<usize>,
     is_fixed: &dyn Fn(usize) -> bool,
-) -> BTreeMap<usize, Folded> {
+) -> BTreeMap<usize, Arc<Folded>> {
     let stays = |id: &usize| is_fixed(items[*id].0) || MARKERS.contains(&items[*id].1.name);
     let ours: Vec<usize> = reached.iter().copied().filter(|id| !stays(id)).collect();
     let constants = ours.iter().filter(|id| items[**id].1.substitute != Substitute::None);
@@ -93,7 +95,7 @@ struct Folding<'f> {
     names: Vec<&'f str>,
     /// Whether functions that have not been folded have side effects of their own, as far as that was asked.
     effects: RefCell<HashMap<usize, bool>>,
-    folded: BTreeMap<usize, Folded>,
+    folded: BTreeMap<usize, Arc<Folded>>,
 }
 
 impl Folding<'_> {
@@ -110,35 +112,23 @@ impl Folding<'_> {
 
     fn function(&mut self, id: usize) {
         let item = self.items[id].1;
-        let before = match self.folded.get(&id) {
-            Some(folded) => Lines { text: folded.text.clone(), origins: folded.lines.clone() },
-            None => Lines::written(item.text),
+        let known = Known {
+            substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
+            has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
         };
-        let Some(folded) = self.rounds(before) else { return };
+        let folded = match self.folded.get(&id) {
+            Some(folded) => {
+                let before = Lines { text: folded.text.clone(), origins: folded.lines.clone() };
+                rounds(before, &known).map(Arc::new)
+            }
+            None => trace::folded(item.text, &known, |known| rounds(Lines::written(item.text), known)),
+        };
+        let Some(folded) = folded else { return };
         if folded.substitute != Substitute::None {
             self.substitutes.insert(item.name, folded.substitute.clone());
             self.names.push(item.name);
         }
         self.folded.insert(id, folded);
-    }
-
-    /// Repeats the rules until nothing changes; `None` where nothing did.
-    fn rounds(&self, mut lines: Lines) -> Option<Folded> {
-        let known = Known {
-            substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
-            has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
-        };
-        let mut has_changed = false;
-        loop {
-            let (code, _) = tokens(&lines.text);
-            let edits = rules::edits(&lines.text, &code, &known, !has_changed);
-            // Every round leaves fewer tokens, or shorter ones, so one finds nothing to do.
-            if edits.is_empty() {
-                return has_changed.then(|| folded(&lines, &code));
-            }
-            lines = lines.apply(edits);
-            has_changed = true;
-        }
     }
 
     /// Whether calling a function does more than return a value. WGSL has no recursion.
@@ -159,6 +149,21 @@ impl Folding<'_> {
     fn writes(&self, id: usize) -> bool {
         let text = self.items[id].1.text;
         *self.effects.borrow_mut().entry(id).or_insert_with(|| has_effects(&tokens(text).0))
+    }
+}
+
+/// Repeats the rules until nothing changes; `None` where nothing did.
+fn rounds(mut lines: Lines, known: &Known<'_>) -> Option<Folded> {
+    let mut has_changed = false;
+    loop {
+        let (code, _) = tokens(&lines.text);
+        let edits = rules::edits(&lines.text, &code, known, !has_changed);
+        // Every round leaves fewer tokens, or shorter ones, so one finds nothing to do.
+        if edits.is_empty() {
+            return has_changed.then(|| folded(&lines, &code));
+        }
+        lines = lines.apply(edits);
+        has_changed = true;
     }
 }
 
