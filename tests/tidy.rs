@@ -105,6 +105,22 @@ fn no_code_compares_a_key() {
     }
 }
 
+/// Steps are what rows say; devices, printers and the checker have the lowered frame, which one cursor goes through.
+#[test]
+fn nothing_behind_a_plan_walks_steps() {
+    for folder in ["backends", "src"] {
+        for path in
+            files(folder, "rs").into_iter().filter(|path| !path.components().any(|part| part.as_os_str() == "tests"))
+        {
+            assert!(!read(&path).contains("Step::"), "{} has steps in it", path.display());
+        }
+    }
+    let has_table = |path: &PathBuf| read(path).contains("const SYMBOLS");
+    let folders = ["templates", "dsl", "codegen", "backends", "src"];
+    let tables: Vec<PathBuf> = folders.iter().flat_map(|folder| files(folder, "rs")).filter(has_table).collect();
+    assert_eq!(tables.len(), 1, "one table of symbols: {tables:?}");
+}
+
 #[test]
 fn files_are_short_and_have_heads() {
     for folder in ["src", "dsl", "codegen", "backends", "templates"] {

@@ -181,14 +181,6 @@ impl LoweredFrame {
         }
     }
 
-    /// Every pass that is run, in the order of the commands.
-    pub fn passes(&self) -> impl Iterator<Item = PassId> {
-        self.commands.iter().filter_map(|command| match command.action {
-            Action::Pass(id) => Some(id),
-            _ => None,
-        })
-    }
-
     /// The decisions of the host, in order.
     pub fn decisions(&self) -> impl Iterator<Item = &Decision> {
         self.commands.iter().filter_map(|command| match &command.action {

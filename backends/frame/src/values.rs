@@ -11,13 +11,13 @@ use crate::Error;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Values {
     table: Arc<SymbolTable>,
-    given: Vec<Given>,
+    given: Vec<Assigned>,
     /// Rows of the whole frame.
     height: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Given {
+enum Assigned {
     /// What the plan says.
     Nothing,
     Number(u64),
@@ -28,7 +28,7 @@ enum Given {
 impl Values {
     /// The values of a frame of this size, in one slice.
     pub fn new(plan: &Plan, (width, height): (u32, u32)) -> Self {
-        let given = plan.symbols.iter().map(|_| Given::Nothing).collect();
+        let given = plan.symbols.iter().map(|_| Assigned::Nothing).collect();
         let mut values = Values { table: plan.symbols.clone(), given, height };
         values.set(SymbolId::WIDTH, width.into());
         values.set(SymbolId::HEIGHT, height.into());
@@ -37,7 +37,7 @@ impl Values {
 
     /// What is fixed once code is made, whatever the frame: k is the greatest that the code serves.
     pub fn of_code(plan: &Plan) -> Self {
-        let given = plan.symbols.iter().map(|_| Given::Nothing).collect();
+        let given = plan.symbols.iter().map(|_| Assigned::Nothing).collect();
         let mut values = Values { table: plan.symbols.clone(), given, height: 0 };
         values.set(SymbolId::K, plan.capacity().into());
         values
@@ -46,14 +46,14 @@ impl Values {
     /// Gives a symbol a value.
     pub fn set(&mut self, id: SymbolId, value: u64) {
         if let Some(given) = self.given.get_mut(id.index()) {
-            *given = Given::Number(value);
+            *given = Assigned::Number(value);
         }
     }
 
     /// Gives a symbol a value for every pixel of a slice, whatever its rows.
     pub fn set_per_pixel(&mut self, id: SymbolId, value: u32) {
         if let Some(given) = self.given.get_mut(id.index()) {
-            *given = Given::PerPixel(value);
+            *given = Assigned::PerPixel(value);
         }
     }
 
@@ -99,9 +99,9 @@ impl Values {
 
     fn given(&self, id: SymbolId) -> Option<u64> {
         match self.given.get(id.index())? {
-            Given::Nothing => None,
-            Given::Number(number) => Some(*number),
-            Given::PerPixel(number) => Some(u64::from(*number) * self.pixels()),
+            Assigned::Nothing => None,
+            Assigned::Number(number) => Some(*number),
+            Assigned::PerPixel(number) => Some(u64::from(*number) * self.pixels()),
         }
     }
 
@@ -145,7 +145,7 @@ impl Values {
 
     fn size_of(&self, id: SymbolId) -> u32 {
         match self.given.get(id.index()) {
-            Some(Given::Number(number)) => u32::try_from(*number).unwrap_or(u32::MAX),
+            Some(Assigned::Number(number)) => u32::try_from(*number).unwrap_or(u32::MAX),
             _ => 0,
         }
     }

@@ -15,7 +15,7 @@ use crate::attachments::{Attachments, Clears, Written, clear_now, clear_sampled}
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
-use crate::walk::{Place, Step, segment};
+use crate::walk::{Part, Place, segment};
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
@@ -96,10 +96,10 @@ impl Frame {
         }
         // Whatever can fail does so before anything is recorded.
         let segment = segment(renderer, self.at.clone())?;
-        for step in &segment.steps {
-            match step {
-                Step::SliceEnd(slice) => tally(renderer, encoder, *slice),
-                Step::Turn { slice, turn, groups, reference } => match turn {
+        for part in &segment.parts {
+            match part {
+                Part::SliceEnd(slice) => tally(renderer, encoder, *slice),
+                Part::Turn { slice, turn, groups, reference } => match turn {
                     Turn::Clear { resource, value } if renderer.sized.memory.texture(resource.0).is_some() => {
                         self.clears.insert(*resource, *value);
                     }

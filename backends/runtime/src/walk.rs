@@ -22,7 +22,7 @@ pub(crate) struct Place {
 
 /// What is recorded at once.
 pub(crate) struct Segment {
-    pub(crate) steps: Vec<Step>,
+    pub(crate) parts: Vec<Part>,
     /// What the host must read after it; `None`: the frame is whole.
     pub(crate) question: Option<Question>,
     /// Where the frame stands then.
@@ -30,7 +30,7 @@ pub(crate) struct Segment {
 }
 
 /// One thing to record.
-pub(crate) enum Step {
+pub(crate) enum Part {
     /// A turn of a slice.
     Turn {
         slice: u32,
@@ -60,31 +60,31 @@ impl Place {
     }
 }
 
-/// The steps from `place` on, up to a question or to the end.
+/// The parts from `place` on, up to a question or to the end.
 pub(crate) fn segment(renderer: &Renderer, mut place: Place) -> Result<Segment, Error> {
     let (plan, live) = (renderer.plan(), renderer.live());
-    let mut steps = Vec::new();
+    let mut parts = Vec::new();
     while place.slice < renderer.slices() {
         let slice = place.slice;
         let (mut groups, mut reference) = ([0; 3], 0);
         match place.cursor.next(plan, &live)? {
             None => {
-                steps.push(Step::SliceEnd(slice));
+                parts.push(Part::SliceEnd(slice));
                 place.next_slice(renderer);
                 continue;
             }
-            Some(Turn::Ask(question)) => return Ok(Segment { steps, question: Some(question), end: place }),
+            Some(Turn::Ask(question)) => return Ok(Segment { parts, question: Some(question), end: place }),
             Some(turn) => {
                 if let Turn::Pass(run) = turn {
                     let pass = &plan.passes[run.pass.0];
                     groups = workgroups(renderer, pass)?;
                     reference = self::reference(pass, run.iteration, &Values::of_code(plan))?;
                 }
-                steps.push(Step::Turn { slice, turn, groups, reference });
+                parts.push(Part::Turn { slice, turn, groups, reference });
             }
         }
     }
-    Ok(Segment { steps, question: None, end: place })
+    Ok(Segment { parts, question: None, end: place })
 }
 
 fn reference(pass: &PlannedPass, iteration: u32, code: &Values) -> Result<u32, Error> {
