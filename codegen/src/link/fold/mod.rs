@@ -131,19 +131,24 @@ impl Folding<'_> {
         self.folded.insert(id, folded);
     }
 
-    /// Whether calling a function does more than return a value. WGSL has no recursion.
+    /// Whether calling a function does more than return a value. Calls that lead back are followed once: WGSL has no
+    /// recursion, but a user's text may have it until the validator refuses it.
     fn has_effects(&self, id: usize) -> bool {
-        let item = self.items[id].1;
-        let calls = |name: &str| {
-            self.index
-                .get(name)
-                .is_some_and(|other| *other != id && self.items[*other].1.is_function && self.has_effects(*other))
-        };
-        MARKERS.contains(&item.name)
-            || match self.folded.get(&id) {
-                Some(folded) => folded.has_effects || folded.mentions.iter().any(|name| calls(name)),
-                None => self.writes(id) || item.mentions.iter().any(|name| calls(name)),
+        let (mut waiting, mut seen) = (vec![id], BTreeSet::from([id]));
+        while let Some(id) = waiting.pop() {
+            let item = self.items[id].1;
+            let folded = self.folded.get(&id);
+            if MARKERS.contains(&item.name) || folded.map_or_else(|| self.writes(id), |folded| folded.has_effects) {
+                return true;
             }
+            let mentions: Vec<&str> = match folded {
+                Some(folded) => folded.mentions.iter().map(String::as_str).collect(),
+                None => item.mentions.to_vec(),
+            };
+            let called = mentions.iter().filter_map(|name| self.index.get(*name)).copied();
+            waiting.extend(called.filter(|other| self.items[*other].1.is_function && seen.insert(*other)));
+        }
+        false
     }
 
     fn writes(&self, id: usize) -> bool {

@@ -52,6 +52,14 @@ fn write_deep(a: u32) -> u32 {
 }
 
 fn memory_fence() {}
+
+fn there(a: u32) -> u32 {
+    return back(a) + 1u;
+}
+
+fn back(a: u32) -> u32 {
+    return there(a) + 1u;
+}
 ";
 
 /// The function `f` of this body and result, once it is linked; its text's first and last line are left out.
@@ -75,6 +83,7 @@ fn calls_of_empty_functions_go_with_the_comments_above() {
     folds("", "    nothing(write(x));\n", "    nothing(write(x));\n");
     folds("", "    nothing(write_deep(x));\n", "    nothing(write_deep(x));\n");
     folds("", "    memory_fence();\n    state = x;\n", "    memory_fence();\n    state = x;\n");
+    folds("", "    nothing(there(x));\n    state = x;\n", "    state = x;\n");
 }
 
 #[test]
