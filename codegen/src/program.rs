@@ -9,7 +9,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::link::{self, Source};
-use crate::{CONTRACTS, GENERATOR, Plan, emit};
+use crate::{GENERATOR, Plan, emit};
 
 /// How texts are linked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -200,8 +200,7 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let no_renames = link::Renames::default();
     let own = instances::sources(pass, plan, registry)?;
     // A shared function serves a contract where no row has one of its own.
-    let contracts: Vec<&'static str> = CONTRACTS.iter().map(|contract| contract.name).collect();
-    let fulfilled: Vec<&'static str> = own.iter().flat_map(|source| source.declared(&contracts)).collect();
+    let fulfilled: Vec<&'static str> = own.iter().flat_map(Source::fulfilled).collect();
     let shared = registry.shared().iter();
     let shared = shared.map(|text| Source::template(text, &no_renames).leaving(fulfilled.clone()));
     let mut templates: Vec<Source> = shared.chain(own).collect();

@@ -1,6 +1,7 @@
 //! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
 
 use super::fold::{Substitute, substitute};
+use super::index::Index;
 use super::token::{Token, TokenKind, tokens};
 use crate::program::Stage;
 
@@ -34,26 +35,27 @@ pub(crate) struct Item<'a> {
 /// The declarations in order. `Err`: the line of something that is none.
 pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
     let (code, comments) = tokens(text);
-    let mut items = Vec::new();
+    let (mut items, mut names) = (Vec::new(), Names::for_tokens(code.len()));
     let (mut rest, mut line, mut counted) = (code.as_slice(), 1, 0);
     while let Some(first) = rest.first() {
         let length = item_length(rest).ok_or_else(|| line_of(text, first.at))?;
         let (tokens, after) = rest.split_at(length);
-        let declared = declared_name(tokens).ok_or_else(|| line_of(text, first.at))?;
+        let keyword = tokens.iter().position(is_keyword).ok_or_else(|| line_of(text, first.at))?;
+        let declared = declared_name(&tokens[keyword + 1..]).ok_or_else(|| line_of(text, first.at))?;
         let end = tokens.last().map_or(first.at, |last| last.at + last.text.len());
         let start = with_comments(text, &comments, first.at);
         line += newlines(&text[counted..start]);
         counted = start;
-        let stage = stage(tokens);
-        let is_function = stage.is_some() || first.text == "fn" || tokens.iter().any(|token| token.text == "fn");
+        let attributes = &tokens[..keyword];
+        let is_function = tokens[keyword].text == "fn";
         items.push(Item {
             name: declared.text,
             text: &text[start..end],
             first_line: line,
             declared_line: line + newlines(&text[start..declared.at]),
-            mentions: mentions(tokens),
-            stage,
-            is_bound: tokens.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
+            mentions: names.of(tokens),
+            stage: stage(attributes),
+            is_bound: attributes.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
             is_short: !text[start..end].contains('\n'),
             is_function,
             substitute: substitute(tokens),
@@ -157,11 +159,13 @@ fn item_length(tokens: &[Token<'_>]) -> Option<usize> {
     None
 }
 
+fn is_keyword(token: &Token<'_>) -> bool {
+    matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override")
+}
+
+/// The name behind a keyword.
 fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<Token<'a>> {
-    let keyword = tokens
-        .iter()
-        .position(|token| matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override"))?;
-    let mut rest = tokens[keyword + 1..].iter();
+    let mut rest = tokens.iter();
     let mut next = rest.next()?;
     if next.text == "<" {
         while next.text != ">" {
@@ -204,19 +208,41 @@ fn is_private_array(tokens: &[Token<'_>]) -> bool {
     is_private && is_at(6, "array") && !tokens.iter().any(|token| token.text == "=")
 }
 
+/// Every name in a text, members apart, once each and in order.
 pub(super) fn mentions<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
-    let names = tokens.iter().enumerate().filter(|(index, token)| {
-        let is_member = *index > 0 && tokens[index - 1].text == ".";
-        token.kind == TokenKind::Name && !is_member
-    });
-    let mut names: Vec<&str> = names.map(|(_, token)| token.text).collect();
-    names.sort_unstable();
-    names.dedup();
-    names
+    Names::for_tokens(tokens.len()).of(tokens)
 }
 
-fn stage(tokens: &[Token<'_>]) -> Option<Stage> {
-    tokens.windows(2).take_while(|pair| pair[0].text != "fn").find_map(|pair| match (pair[0].text, pair[1].text) {
+/// Names that were met, each with the number of the declaration that mentioned it last: one table serves a whole file.
+struct Names<'a> {
+    last: Index<'a>,
+    declaration: usize,
+}
+
+impl<'a> Names<'a> {
+    /// With room for as many names as so many tokens mostly have.
+    fn for_tokens(count: usize) -> Self {
+        Names { last: Index::with_capacity_and_hasher(count / 6, Default::default()), declaration: 0 }
+    }
+
+    fn of(&mut self, tokens: &[Token<'a>]) -> Vec<&'a str> {
+        self.declaration += 1;
+        let mut names = Vec::new();
+        let mut is_member = false;
+        for token in tokens {
+            let is_name = token.kind == TokenKind::Name && !is_member;
+            if is_name && self.last.insert(token.text, self.declaration) != Some(self.declaration) {
+                names.push(token.text);
+            }
+            is_member = token.text == ".";
+        }
+        names.sort_unstable();
+        names
+    }
+}
+
+fn stage(attributes: &[Token<'_>]) -> Option<Stage> {
+    attributes.windows(2).find_map(|pair| match (pair[0].text, pair[1].text) {
         ("@", "vertex") => Some(Stage::Vertex),
         ("@", "fragment") => Some(Stage::Fragment),
         ("@", "compute") => Some(Stage::Compute),

@@ -6,7 +6,9 @@
 
 mod fold;
 mod index;
+mod interned;
 mod item;
+mod reach;
 mod rename;
 mod token;
 mod writer;
@@ -21,10 +23,11 @@ use std::sync::{Arc, LazyLock, Mutex};
 use fragbuf_model::{Origin, UserFunction};
 use fragbuf_templates::vocabulary::Template;
 
-use crate::contract::DESCRIBED;
+use crate::contract::{CONTRACTS, DESCRIBED};
 use crate::program::{EntryPoint, LineMap, LineOrigin};
-use fold::Folded;
 use index::Index;
+use interned::interned;
+use reach::Reached;
 use writer::Writer;
 
 /// A text to link.
@@ -42,7 +45,7 @@ pub(crate) struct Source {
 impl Source {
     /// Text made for this program.
     pub(crate) fn generated(name: &str, text: String) -> Self {
-        Source { name: format!("generated/{name}").into(), text: text.into(), origins: None, left: Vec::new() }
+        Source { name: format!("generated/{name}").into(), text: interned(text), origins: None, left: Vec::new() }
     }
 
     /// A template, renamed for its instance.
@@ -50,6 +53,10 @@ impl Source {
         let text = match &template.text {
             Cow::Borrowed(text) => renames.apply(text),
             Cow::Owned(text) => Cow::Owned(renames.apply(text).into_owned()),
+        };
+        let text = match text {
+            Cow::Borrowed(text) => Cow::Borrowed(text),
+            Cow::Owned(text) => interned(text),
         };
         let origins = template.own.as_deref().map(|file| own_lines(&template.text, file));
         Source { name: template.path.as_ref().into(), text, origins, left: Vec::new() }
@@ -60,12 +67,14 @@ impl Source {
         Source { left, ..self }
     }
 
-    /// Those of the names that it declares.
-    pub(crate) fn declared(&self, names: &[&'static str]) -> Vec<&'static str> {
-        // Linking reports what cannot be read.
-        let Ok(items) = self.items() else { return Vec::new() };
-        let is_declared = |name: &&&str| items.as_slice().iter().any(|item| item.name == **name);
-        names.iter().filter(is_declared).copied().collect()
+    /// The functions of contracts that it declares.
+    pub(crate) fn fulfilled(&self) -> Vec<&'static str> {
+        match self.items() {
+            Ok(Items::Kept(text)) => text.fulfilled.clone(),
+            Ok(Items::Parsed(items)) => fulfilled(&items),
+            // Linking reports what cannot be read.
+            Err(_) => Vec::new(),
+        }
     }
 
     /// A user's function. Its banner does not name the user's file: the same description gives the same text wherever it
@@ -74,7 +83,7 @@ impl Source {
         let origins = function.lines.iter().cloned().map(LineOrigin::User).collect();
         Source {
             name: "description".into(),
-            text: function.wgsl.clone().into(),
+            text: interned(function.wgsl.clone()),
             origins: Some(origins),
             left: Vec::new(),
         }
@@ -92,7 +101,7 @@ impl Source {
         if text == self.text {
             return Err(format!("{} has no line `@fragment`", self.name));
         }
-        self.text = text.into();
+        self.text = interned(text);
         Ok(self)
     }
 
@@ -170,6 +179,7 @@ impl Items<'_> {
 /// What is known of a text that lives as long as the program does.
 struct KeptText {
     items: Vec<Item<'static>>,
+    fulfilled: Vec<&'static str>,
     atomic_accessors: Vec<&'static str>,
 }
 
@@ -183,9 +193,16 @@ fn kept_items(text: &'static str) -> Result<Arc<KeptText>, usize> {
         return Ok(text.clone());
     }
     let items = item::parse(text)?;
-    let known = Arc::new(KeptText { atomic_accessors: atomic_accessors(&items), items });
+    let (fulfilled, atomic_accessors) = (fulfilled(&items), atomic_accessors(&items));
+    let known = Arc::new(KeptText { items, fulfilled, atomic_accessors });
     kept.insert(key, known.clone());
     Ok(known)
+}
+
+/// The functions of contracts among declarations.
+fn fulfilled(items: &[Item<'_>]) -> Vec<&'static str> {
+    let named = |item: &Item<'_>| CONTRACTS.iter().map(|contract| contract.name).find(|name| *name == item.name);
+    items.iter().filter(|item| item.is_function).filter_map(named).collect()
 }
 
 fn atomic_accessors<'a>(items: &[Item<'a>]) -> Vec<&'a str> {
@@ -217,19 +234,18 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
         .filter(|(source, item)| !sources[*source].left.contains(&item.name))
         .collect();
     let index = declarations(&items, sources)?;
-    let none = BTreeMap::new();
-    let before = reach(&items, &index, exports, &none)?;
+    let before = Reached::new(&items, &index, exports)?;
     let folded = fold::fold(&items, &index, &before, &|source| sources[source].origins.is_some());
-    let reached = if folded.is_empty() { before } else { reach(&items, &index, exports, &folded)? };
+    let reached = if folded.is_empty() { before } else { before.after(&folded, &index) };
     let entry_points: Vec<EntryPoint> = reached
-        .iter()
-        .filter_map(|&id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.to_owned(), stage }))
+        .ids()
+        .filter_map(|id| items[id].1.stage.map(|stage| EntryPoint { name: items[id].1.name.to_owned(), stage }))
         .collect();
     let is_entry = |name: &str| entry_points.iter().any(|entry| entry.name == name);
     let prefixed = Renames::prefix(prefix, index.keys().copied().filter(|name| !is_entry(name)));
     // A head is about the whole file: where the functions are missing that it describes, its first paragraph is enough.
     let described = (0..items.len()).filter(|&id| DESCRIBED.contains(&items[id].1.name));
-    let described: Vec<(usize, bool)> = described.map(|id| (items[id].0, reached.contains(&id))).collect();
+    let described: Vec<(usize, bool)> = described.map(|id| (items[id].0, reached.contains(id))).collect();
     let in_brief = |source: usize| {
         let mut own = described.iter().filter(|(other, _)| *other == source).peekable();
         sources[source].origins.is_none() && own.peek().is_some() && own.all(|(_, is_linked)| !is_linked)
@@ -238,7 +254,7 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
     let mut writer = Writer { text: header.to_owned(), lines: LineMap::default() };
     writer.lines.skip(header.lines().count());
     let mut current: Option<&str> = None;
-    for &id in &reached {
+    for id in reached.ids() {
         let (source, item) = items[id];
         if current != Some(&sources[source].name) {
             let whole = head(&sources[source].text);
@@ -252,9 +268,9 @@ pub(crate) fn link(header: &str, sources: &[Source], exports: &[&str], prefix: &
             None => writer.item(&sources[source], item, &prefixed),
         }
     }
-    let is_ours = |id: &&usize| items[**id].1.is_private_array && sources[items[**id].0].origins.is_none();
-    let private_arrays = reached.iter().filter(is_ours).map(|&id| format!("{prefix}{}", items[id].1.name)).collect();
-    let declared = reached.iter().map(|&id| items[id].1.name.to_owned()).collect();
+    let is_ours = |id: &usize| items[*id].1.is_private_array && sources[items[*id].0].origins.is_none();
+    let private_arrays = reached.ids().filter(is_ours).map(|id| format!("{prefix}{}", items[id].1.name)).collect();
+    let declared = reached.ids().map(|id| items[id].1.name.to_owned()).collect();
     Ok(Linked { text: writer.text, lines: writer.lines, entry_points, declared, private_arrays, heads })
 }
 
@@ -280,33 +296,6 @@ fn declared_twice(first: (usize, &Item<'_>), second: (usize, &Item<'_>), sources
         None => format!("`{}` is declared twice", first.1.name),
     };
     Fault { problem, own: place }
-}
-
-/// The items that the roots reach, in the order of the sources.
-fn reach(
-    items: &[(usize, &Item<'_>)],
-    index: &Index<'_>,
-    exports: &[&str],
-    folded: &BTreeMap<usize, Arc<Folded>>,
-) -> Result<BTreeSet<usize>, String> {
-    let mut waiting: Vec<usize> = Vec::new();
-    if exports.is_empty() {
-        waiting.extend((0..items.len()).filter(|&id| items[id].1.stage.is_some()));
-    }
-    for export in exports {
-        waiting.push(*index.get(export).ok_or_else(|| format!("nothing declares `{export}`"))?);
-    }
-    let mut reached = BTreeSet::new();
-    while let Some(id) = waiting.pop() {
-        if !reached.insert(id) {
-            continue;
-        }
-        match folded.get(&id) {
-            Some(folded) => waiting.extend(folded.mentions.iter().filter_map(|name| index.get(name.as_str()))),
-            None => waiting.extend(items[id].1.mentions.iter().filter_map(|name| index.get(name))),
-        }
-    }
-    Ok(reached)
 }
 
 #[cfg(test)]

@@ -22,26 +22,55 @@ pub(super) fn tokens(text: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut comments = Vec::new();
     let mut at = 0;
-    while at < bytes.len() {
-        let (kind, end) = match bytes[at] {
-            byte if byte.is_ascii_whitespace() => {
+    while let Some(&byte) = bytes.get(at) {
+        let (kind, end) = match class(byte) {
+            Class::Space => {
                 at += 1;
                 continue;
             }
-            b'/' if matches!(bytes.get(at + 1), Some(b'/' | b'*')) => {
+            Class::Letter => (TokenKind::Name, word_end(bytes, at, b'_')),
+            Class::Digit => (TokenKind::Number, word_end(bytes, at, b'.')),
+            Class::Sign if byte == b'/' && matches!(bytes.get(at + 1), Some(b'/' | b'*')) => {
                 let end = if bytes[at + 1] == b'/' { line_end(bytes, at) } else { block_end(bytes, at) };
                 comments.push(Token { text: &text[at..end], at, kind: TokenKind::Sign });
                 at = end;
                 continue;
             }
-            byte if byte.is_ascii_alphabetic() || byte == b'_' => (TokenKind::Name, word_end(bytes, at, b'_')),
-            byte if byte.is_ascii_digit() => (TokenKind::Number, word_end(bytes, at, b'.')),
-            _ => (TokenKind::Sign, at + text[at..].chars().next().map_or(1, char::len_utf8)),
+            Class::Sign if byte.is_ascii() => (TokenKind::Sign, at + 1),
+            Class::Sign => (TokenKind::Sign, at + text[at..].chars().next().map_or(1, char::len_utf8)),
         };
         tokens.push(Token { text: &text[at..end], at, kind });
         at = end;
     }
     (tokens, comments)
+}
+
+/// What a token's first byte says of it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Space,
+    Letter,
+    Digit,
+    Sign,
+}
+
+/// By table: a text is mostly read byte by byte.
+fn class(byte: u8) -> Class {
+    const CLASSES: [Class; 256] = {
+        let mut classes = [Class::Sign; 256];
+        let mut byte = 0u8;
+        while byte < 128 {
+            classes[byte as usize] = match byte {
+                b'a'..=b'z' | b'A'..=b'Z' | b'_' => Class::Letter,
+                b'0'..=b'9' => Class::Digit,
+                _ if byte.is_ascii_whitespace() => Class::Space,
+                _ => Class::Sign,
+            };
+            byte += 1;
+        }
+        classes
+    };
+    CLASSES[usize::from(byte)]
 }
 
 fn line_end(bytes: &[u8], at: usize) -> usize {
@@ -71,6 +100,10 @@ fn block_end(bytes: &[u8], start: usize) -> usize {
 }
 
 fn word_end(bytes: &[u8], at: usize, also: u8) -> usize {
-    let inside = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == also;
+    let inside = |byte: &u8| match class(*byte) {
+        Class::Digit => true,
+        Class::Letter => *byte != b'_' || also == b'_',
+        _ => *byte == also,
+    };
     at + bytes[at..].iter().position(|byte| !inside(byte)).unwrap_or(bytes.len() - at)
 }

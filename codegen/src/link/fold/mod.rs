@@ -23,12 +23,14 @@ mod tests;
 
 pub(super) use substitute::{Substitute, substitute};
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use super::index::Index;
 use super::item::{Item, mentions};
+use super::reach::Reached;
 use super::token::{Token, tokens};
 use crate::MARKERS;
 use edit::Lines;
@@ -50,27 +52,25 @@ pub(super) struct Folded {
 pub(super) fn fold(
     items: &[(usize, &Item<'_>)],
     index: &Index<'_>,
-    reached: &BTreeSet<usize>,
+    reached: &Reached,
     is_fixed: &dyn Fn(usize) -> bool,
 ) -> BTreeMap<usize, Arc<Folded>> {
     let stays = |id: &usize| is_fixed(items[*id].0) || MARKERS.contains(&items[*id].1.name);
-    let ours: Vec<usize> = reached.iter().copied().filter(|id| !stays(id)).collect();
+    let ours: Vec<usize> = reached.ids().filter(|id| !stays(id)).collect();
     let constants = ours.iter().filter(|id| items[**id].1.substitute != Substitute::None);
     let mut folding = Folding {
         items,
         index,
+        reached,
         substitutes: constants.map(|id| (items[*id].1.name, items[*id].1.substitute.clone())).collect(),
-        names: Vec::new(),
+        is_replaced: vec![false; items.len()],
         effects: RefCell::default(),
         folded: BTreeMap::new(),
     };
     let functions: Vec<usize> = ours.iter().copied().filter(|id| items[*id].1.is_function).collect();
-    folding.names = functions
-        .iter()
-        .map(|id| items[*id].1)
-        .filter(|item| item.substitute != Substitute::None)
-        .map(|item| item.name)
-        .collect();
+    for &id in functions.iter().filter(|id| items[**id].1.substitute != Substitute::None) {
+        folding.is_replaced[id] = true;
+    }
     let mut is_first = true;
     loop {
         let known = folding.substitutes.len();
@@ -89,25 +89,21 @@ pub(super) fn fold(
 struct Folding<'f> {
     items: &'f [(usize, &'f Item<'f>)],
     index: &'f Index<'f>,
+    reached: &'f Reached,
     /// The substitutes found so far, by name.
     substitutes: BTreeMap<&'f str, Substitute>,
-    /// The functions among them.
-    names: Vec<&'f str>,
+    /// The functions among them, by number.
+    is_replaced: Vec<bool>,
     /// Whether functions that have not been folded have side effects of their own, as far as that was asked.
     effects: RefCell<HashMap<usize, bool>>,
     folded: BTreeMap<usize, Arc<Folded>>,
 }
 
 impl Folding<'_> {
-    /// Whether a function uses a declaration that has a substitute.
+    /// Whether a function uses another that has a substitute.
     fn may_fold(&self, id: usize, is_first: bool) -> bool {
-        let item = self.items[id].1;
-        let mut names = self.names.iter().filter(|name| **name != item.name);
-        (is_first && item.compares_constants)
-            || match self.folded.get(&id) {
-                Some(folded) => names.any(|name| folded.mentions.iter().any(|other| other == *name)),
-                None => names.any(|name| item.mentions.binary_search(name).is_ok()),
-            }
+        (is_first && self.items[id].1.compares_constants)
+            || self.uses(id).iter().any(|used| *used != id && self.is_replaced[*used])
     }
 
     fn function(&mut self, id: usize) {
@@ -126,7 +122,7 @@ impl Folding<'_> {
         let Some(folded) = folded else { return };
         if folded.substitute != Substitute::None {
             self.substitutes.insert(item.name, folded.substitute.clone());
-            self.names.push(item.name);
+            self.is_replaced[id] = true;
         }
         self.folded.insert(id, folded);
     }
@@ -141,14 +137,18 @@ impl Folding<'_> {
             if MARKERS.contains(&item.name) || folded.map_or_else(|| self.writes(id), |folded| folded.has_effects) {
                 return true;
             }
-            let mentions: Vec<&str> = match folded {
-                Some(folded) => folded.mentions.iter().map(String::as_str).collect(),
-                None => item.mentions.to_vec(),
-            };
-            let called = mentions.iter().filter_map(|name| self.index.get(*name)).copied();
-            waiting.extend(called.filter(|other| self.items[*other].1.is_function && seen.insert(*other)));
+            let uses = self.uses(id);
+            waiting.extend(uses.iter().copied().filter(|used| self.items[*used].1.is_function && seen.insert(*used)));
         }
         false
+    }
+
+    /// The declarations that one uses, as its text is by now.
+    fn uses(&self, id: usize) -> Cow<'_, [usize]> {
+        match self.folded.get(&id) {
+            Some(folded) => folded.mentions.iter().filter_map(|name| self.index.get(name.as_str())).copied().collect(),
+            None => Cow::Borrowed(self.reached.uses(id)),
+        }
     }
 
     fn writes(&self, id: usize) -> bool {
