@@ -57,6 +57,7 @@ fn written(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) ->
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -32,6 +32,7 @@ pub struct Frame {
 
 /// What [`Frame::record`] came to.
 #[must_use = "a cut frame goes on with `Cut::resume`"]
+#[allow(clippy::large_enum_variant, reason = "one is made per submission, and none is kept")]
 pub enum Recorded {
     /// The frame is whole once this has been submitted. Also: how its loops have ended whose ends are found out while it runs;
     /// nothing where memory was reserved, because then nobody asks.

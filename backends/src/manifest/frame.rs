@@ -38,15 +38,9 @@ fn step(plan: &Plan, command: &Command) -> Value {
         }
         Action::LoopEnd(id) => loop_end(plan, *id),
     };
-    let exchanged: Vec<Value> = plan
-        .frame
-        .exchanges
-        .iter()
-        .zip(&command.parities)
-        .filter_map(|(pair, parity)| {
-            (uses(plan, command, pair) && *parity != Parity::default()).then(|| exchanged(plan, *pair, parity))
-        })
-        .collect();
+    let exchanges = plan.frame.exchanges.iter().zip(&command.parities);
+    let flipped = exchanges.filter(|(pair, parity)| uses(plan, command, pair) && **parity != Parity::default());
+    let exchanged: Vec<Value> = flipped.map(|(pair, parity)| exchanged(plan, *pair, parity)).collect();
     if !exchanged.is_empty() {
         step.insert("exchanged".into(), exchanged.into());
     }
