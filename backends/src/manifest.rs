@@ -105,9 +105,8 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
 
 /// The symbols of formulas: what each is, when and by whom it is set, its range, and its value where nobody sets one.
 fn symbols(plan: &Plan) -> Value {
-    let symbol = |(id, symbol): (SymbolId, &PlanSymbol)| {
+    let symbol = |(_, symbol): (SymbolId, &PlanSymbol)| {
         let (least, most) = symbol.range;
-        let most = if id == SymbolId::K { u64::from(plan.capacity()) } else { most };
         let mut value = json!({
             "name": symbol.name,
             "meaning": symbol.meaning,

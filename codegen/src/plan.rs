@@ -104,8 +104,9 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let (symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
+    let (mut symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
+    bound_k(variant, &mut symbols, &built.resources).map_err(|error| fault(error.to_string()))?;
     let offers = selection.offers();
     let mut requires: Vec<Capability> = rows().flat_map(|row| row.needs.iter().copied()).collect();
     requires.sort();
@@ -162,6 +163,19 @@ fn symbols(
         table.add(&parameter.constant, &parameter.summary, parameter.range, u64::from(*value));
     }
     Ok((table, constants))
+}
+
+/// k goes from 1 to the capacity, unless a pixel has as many samples: their number is the pipelines' and the textures' at once.
+fn bound_k(variant: &Variant, symbols: &mut SymbolTable, resources: &[Planned]) -> Result<(), FormulaError> {
+    let capacity = u64::from(bucket(variant.keep));
+    let is_sampled = |planned: &Planned| {
+        let mut extents = planned.resource.extents.iter().zip(&planned.lengths);
+        extents.any(|(extent, length)| extent.name == crate::emit::textures::SAMPLE && length.mentions(SymbolId::K))
+    };
+    let least = if resources.iter().any(is_sampled) { capacity } else { 1 };
+    let default = variant.keep.map(|_| symbols.compile(&"keep".into())).transpose()?;
+    symbols.bound(SymbolId::K, (least, capacity), default);
+    Ok(())
 }
 
 struct Built {

@@ -162,6 +162,15 @@ impl SymbolTable {
         });
     }
 
+    /// Bounds a symbol that frames set, and says its value where none does.
+    pub(crate) fn bound(&mut self, id: SymbolId, range: (u64, u64), default: Option<Quantity>) {
+        let symbol = &mut self.symbols[id.index()];
+        symbol.range = range;
+        if let Some(default) = default {
+            symbol.value = PlanValue::Default(default);
+        }
+    }
+
     /// A symbol.
     pub fn get(&self, id: SymbolId) -> &PlanSymbol {
         &self.symbols[id.index()]

@@ -321,12 +321,14 @@ fn spans(plan: &Plan, values: &Values, decision: &Decision, flipped: u32) -> Res
         let planned = &plan.resources[range.resource.0];
         let limit = values.evaluate(&planned.words, &what)?;
         if first.saturating_add(count) > limit {
-            return Err(Error::TooLarge {
-                what: format!("what the host function `{}` reads of `{}`", decision.name, planned.resource.name),
-                needed: first.saturating_add(count),
-                limit,
-                limit_name: "its words",
-                hint: "read a shorter range",
+            return Err(Error::BadValue {
+                name: format!(
+                    "what the host function `{}` reads of `{}`, words {first} to {},",
+                    decision.name,
+                    planned.resource.name,
+                    first.saturating_add(count) - 1
+                ),
+                wanted: format!("within its {limit} words"),
             });
         }
         Ok(Span { resource: plan.frame.physical(range.resource, flipped), first, count })
@@ -353,7 +355,6 @@ fn apply(
     for (id, value) in decision.sets.iter().zip(decided) {
         let symbol = plan.symbols.get(*id);
         let (least, most) = symbol.range;
-        let most = if *id == SymbolId::K { u64::from(plan.capacity()) } else { most };
         if !(least..=most).contains(&value) {
             return Err(Error::BadValue {
                 name: format!("`{}`, which the host function `{}` sets to {value},", symbol.name, decision.name),

@@ -128,11 +128,9 @@ impl Renderer {
                 wanted: "left alone: this plan keeps every fragment".to_owned(),
             });
         };
-        if k == 0 || k > self.capacity() {
-            return Err(Error::BadValue {
-                name: name(),
-                wanted: format!("from 1 to the capacity, {}", self.capacity()),
-            });
+        let (least, most) = self.plan().symbols.get(SymbolId::K).range;
+        if !(least..=most).contains(&k.into()) {
+            return Err(Error::BadValue { name: name(), wanted: format!("from {least} to the capacity, {most}") });
         }
         if k > room {
             self.resized(self.sized.values.with(SymbolId::K, k.into())).await?;

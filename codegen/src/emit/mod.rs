@@ -4,7 +4,7 @@
 mod buffers;
 mod fragment;
 mod surface;
-mod textures;
+pub(crate) mod textures;
 
 use fragbuf_templates::vocabulary::{Kind, Pass};
 

@@ -186,7 +186,12 @@ impl Reader<'_> {
     fn operation(&mut self, strength: usize) -> Result<Expression, FormulaError> {
         let Some(operators) = OPERATORS.get(strength) else { return self.atom() };
         let mut left = self.operation(strength + 1)?;
+        let (mut compares, begin) = (false, self.at);
         while let Some(operator) = operators.iter().find(|operator| self.take(operator)) {
+            // `1 < k < 9` would compare what the first comparison came to.
+            if std::mem::replace(&mut compares, operators.contains(&"==")) {
+                return Err(FormulaError::Malformed { text: self.text.to_owned(), at: begin });
+            }
             left = Expression::Apply(operator, vec![left, self.operation(strength + 1)?]);
         }
         Ok(left)
@@ -277,7 +282,7 @@ mod tests {
         assert_eq!(value("n"), Err(FormulaError::Unbound("n".into())));
         assert!(matches!(value("k / 0"), Err(FormulaError::Overflow(_))));
         assert!(matches!(value("3 - k"), Err(FormulaError::Overflow(_))));
-        for text in ["", "k +", "(k", "min(k)", "k k", "4é", "k =", "k && ", "k = 8"] {
+        for text in ["", "k +", "(k", "min(k)", "k k", "4é", "k =", "k && ", "k = 8", "1 < k < 9", "k == 1 != 0"] {
             assert!(matches!(value(text), Err(FormulaError::Malformed { .. })), "{text}");
         }
     }

@@ -225,6 +225,10 @@ impl Statements {
                 break;
             }
         }
+        if host.sets.is_empty() {
+            let message = format!("the host function `{}` sets nothing", function.value);
+            return self.reader.stop(codes::ROW, &function.origin, message, SHAPE);
+        }
         self.own.row.steps.push(Step::Host(host));
         self.own.places.steps.push(function.origin);
         Ok(())
