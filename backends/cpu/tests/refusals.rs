@@ -143,5 +143,5 @@ fn a_host_step_stays_within_its_bounds() {
     let seen = refused(rows(Host::new("allocate").reads_some("words", "1", "1 << 2").sets("n")), &[]);
     assert!(seen.contains("is no formula"), "{seen}");
     let seen = refused(rows(Host::new("allocate").reads_word("words", "4096 * 4096").sets("n")), &[]);
-    assert!(seen.contains("what the host function `allocate` reads of `words` needs 16777217"), "{seen}");
+    assert!(seen.contains("reads of `words`, words 16777216 to 16777216, must be within its"), "{seen}");
 }

@@ -94,6 +94,9 @@ fn is_measured_in_k(row: &Row) -> bool {
     row.resources.iter().flat_map(|resource| &resource.extents).any(|extent| extent.length.mentions("k"))
 }
 
+/// Limits that a hint may name, the one that suits most first.
+const LIMITS: [u32; 4] = [8, 4, 2, 1];
+
 struct Situation<'a> {
     draft: &'a Draft,
     choices: &'a [Chosen],
@@ -105,12 +108,17 @@ impl Situation<'_> {
     fn keep_mismatch(&self, index: usize, pick: &Pick<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
         let keep = self.keep_line().unwrap_or(&chosen.origin);
+        let with = |keep| Rules::new(pick, Given { keep, ..self.given });
+        let suits = |limit: &u32| pick.iter().all(|row| with(Some(*limit)).is_fit(row));
         let (words, way, other) = match self.given.keep {
-            Some(_) => ("the k best", "keep all", None),
-            None => ("every fragment", "keep 8", Some(8)),
+            Some(_) => ("the k best", "keep all".to_owned(), None),
+            None => {
+                let limit = LIMITS.into_iter().find(suits).unwrap_or(LIMITS[0]);
+                ("every fragment", format!("keep {limit}"), Some(limit))
+            }
         };
         // What the other `keep` line would run into next is part of the way out.
-        let rules = Rules::new(pick, Given { keep: other, ..self.given });
+        let rules = with(other);
         let also = pick.iter().find(|row| !rules.is_fit(row));
         let also = also.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
         let storage = name(pick[index]);
