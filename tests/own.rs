@@ -149,6 +149,8 @@ const BAD: &[Bad] = &[
     bad("//: pass resolve", "//: pass store: slots plain\n//: pass resolve", "duplicate", "store: slots", "as"),
     bad("//: offers", "//: parameter limit CAPACITY = 3, from 1 to 9\n//: offers", "row", "CAPACITY", "letters"),
     bad("//: offers", "//: parameter limit LAYERS = 3, from 1 to 9\n//: offers", "contract", "LAYERS", "OWN_LAYERS"),
+    bad("//: pass resolve", "//: host allocate: reads taken[0]\n//: pass resolve", "row", "allocate", "sets fragments"),
+    bad("//: offers", "//: when 1 < keep < 9 -- write `keep 4;`\n//: offers", "row", "1 < keep", ""),
     bad("//: offers", "//: parameter limit LIMIT = 3, from 9 to 1\n//: offers", "row", "1\n//: offers", "9"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "row", "//: paper", "the file's head"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "refused", "}\nfn first", "every brace closed"),
