@@ -90,14 +90,19 @@ fn exact(registry: &Registry) -> impl Iterator<Item = &Technique> {
 fn no_single_change_of_how_changes_the_picture() {
     let registry = Registry::builtin();
     let mut compared: BTreeMap<(&str, &str), usize> = BTreeMap::new();
-    for technique in exact(&registry) {
+    // Rows for which five are too many are compared where one is kept.
+    let cases = exact(&registry).map(|technique| (technique, "5"));
+    for (technique, k) in cases.chain(exact(&registry).map(|technique| (technique, "1"))) {
         // What keeps one, or as many as there are samples, says so.
-        let Some(plain) = changed(technique, "5", ("addressing", "linear")) else { continue };
+        let Some(plain) = changed(technique, k, ("addressing", "linear")) else { continue };
         let Some(mut plain) = device(&plain).filter(|device| device.plan().hazards.is_empty()) else { continue };
         let expected = pictures(&mut plain);
         assert!(expected[0].iter().any(|pixel| *pixel != expected[0][0]), "{}", technique.key);
         for row in AXES.iter().flat_map(|axis| registry.rows_of(axis)) {
-            let variant = changed(technique, "5", (&row.axis, &row.key));
+            if k == "1" && compared.contains_key(&(&*row.axis, &*row.key)) {
+                continue;
+            }
+            let variant = changed(technique, k, (&row.axis, &row.key));
             let Some(mut other) = variant.as_ref().and_then(device) else { continue };
             if other.plan().hazards.is_empty() {
                 assert!(pictures(&mut other) == expected, "{} with {}: {}", technique.key, row.axis, row.key);
