@@ -106,7 +106,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
     let (mut symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
-    bound_k(variant, &mut symbols, &built.resources).map_err(|error| fault(error.to_string()))?;
+    bound_k(variant, &mut symbols).map_err(|error| fault(error.to_string()))?;
     let offers = selection.offers();
     let mut requires: Vec<Capability> = rows().flat_map(|row| row.needs.iter().copied()).collect();
     requires.sort();
@@ -165,16 +165,10 @@ fn symbols(
     Ok((table, constants))
 }
 
-/// k goes from 1 to the capacity, unless a pixel has as many samples: their number is the pipelines' and the textures' at once.
-fn bound_k(variant: &Variant, symbols: &mut SymbolTable, resources: &[Planned]) -> Result<(), FormulaError> {
-    let capacity = u64::from(bucket(variant.keep));
-    let is_sampled = |planned: &Planned| {
-        let mut extents = planned.resource.extents.iter().zip(&planned.lengths);
-        extents.any(|(extent, length)| extent.name == crate::emit::textures::SAMPLE && length.mentions(SymbolId::K))
-    };
-    let least = if resources.iter().any(is_sampled) { capacity } else { 1 };
+/// k goes from 1 to the capacity, and is what the description says where a frame says nothing.
+fn bound_k(variant: &Variant, symbols: &mut SymbolTable) -> Result<(), FormulaError> {
     let default = variant.keep.map(|_| symbols.compile(&"keep".into())).transpose()?;
-    symbols.bound(SymbolId::K, (least, capacity), default);
+    symbols.bound(SymbolId::K, (1, u64::from(bucket(variant.keep))), default);
     Ok(())
 }
 

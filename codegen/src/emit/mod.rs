@@ -4,7 +4,7 @@
 mod buffers;
 mod fragment;
 mod surface;
-pub(crate) mod textures;
+mod textures;
 
 use fragbuf_templates::vocabulary::{Kind, Pass};
 

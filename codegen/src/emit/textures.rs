@@ -110,7 +110,7 @@ impl<'a> Texture<'a> {
 }
 
 /// The extent of a texture's samples.
-pub(crate) const SAMPLE: &str = "sample";
+const SAMPLE: &str = "sample";
 
 /// `X_load` of a fragment whose words are in a texture each. Without its key it is given that.
 fn entry(whole: &str, textures: &[Texture<'_>], text: &mut String) {
