@@ -165,6 +165,11 @@ impl Parity {
 }
 
 impl LoweredFrame {
+    /// Whether a loop waits for the samples of a pass.
+    pub fn waits_for_samples(&self, pass: PassId) -> bool {
+        self.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(pass))
+    }
+
     /// The exchanges that `resource` is in, by their number.
     pub fn exchange_of(&self, resource: ResourceId) -> Option<usize> {
         self.exchanges.iter().position(|pair| pair.contains(&resource))

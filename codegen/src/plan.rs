@@ -194,14 +194,7 @@ fn build(
     roles::complete(&mut steps, &mut resources, selection, registry)?;
     let declared: Vec<String> = resources.iter().map(|resource| resource.name.clone()).collect();
     let resources = textures::spread(resources, &mut steps, layout);
-    let clears =
-        resources.iter().map(|(resource, _)| resource).filter(|resource| resource.life == Life::Frame).filter_map(
-            |resource| {
-                let Init::Clear(value) = resource.init else { return None };
-                Some(Step::Clear { resource: resource.name.clone(), value })
-            },
-        );
-    let steps: Vec<Step> = clears.chain(steps).collect();
+    let steps = with_clears(resources.iter().map(|(resource, _)| resource), steps);
     let mut planned = Vec::with_capacity(resources.len());
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
         let named = |error: FormulaError| format!("`{}`: {error}", resource.name);
@@ -213,6 +206,32 @@ fn build(
     let context = Context { resources: &planned, declared: &declared, symbols, registry };
     let lowered = lower(&steps, &context)?;
     Ok(Built { resources: planned, lowered })
+}
+
+/// The steps with the clears of everything that a frame begins with: before them all, or behind the host step that decides how
+/// large the resource is.
+fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Step>) -> Vec<Step> {
+    let is_sized_by = |resource: &Resource, step: &Step| {
+        let Step::Host(host) = step else { return false };
+        // Slots per pixel are those of the fragments, unless a step sets them. For any k there is memory.
+        let sized = |symbol: &String| match symbol.as_str() {
+            "k" => false,
+            "fragments" => resource.mentions("fragments") || resource.mentions("n"),
+            other => resource.mentions(other),
+        };
+        host.sets.iter().any(sized)
+    };
+    let (mut first, mut behind): (Vec<Step>, Vec<Vec<Step>>) = (Vec::new(), vec![Vec::new(); steps.len()]);
+    for resource in resources.filter(|resource| resource.life == Life::Frame) {
+        let Init::Clear(value) = resource.init else { continue };
+        let clear = Step::Clear { resource: resource.name.clone(), value };
+        match steps.iter().rposition(|step| is_sized_by(resource, step)) {
+            Some(at) => behind[at].push(clear),
+            None => first.push(clear),
+        }
+    }
+    let rest = steps.into_iter().zip(behind).flat_map(|(step, clears)| std::iter::once(step).chain(clears));
+    first.into_iter().chain(rest).collect()
 }
 
 /// Words of a resource: the product of its extents and of an element's words.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use fragbuf::vocabulary::{Kind, Pass};
 use fragbuf::{Generation, Plan, Registry, tier};
-use fragbuf_codegen::{Action, Decision, Loop, LoopUntil, Range, ResourceId};
+use fragbuf_codegen::{Action, Loop, LoopUntil, ResourceId};
 
 /// The page of what was generated from a preset for every target.
 pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
@@ -90,7 +90,7 @@ fn steps(plan: &Plan, text: &mut String) {
             Action::Pass(id) => pass(&plan.passes[id.0]),
             Action::Clear { resource, value } => format!("clear `{}` to {value:#x}", name(*resource)),
             Action::Copy { from, to } => format!("copy `{}` to `{}`", name(*from), name(*to)),
-            Action::Host(decision) => host(plan, decision),
+            Action::Host(decision) => format!("host {}", decision.summary(plan)),
             Action::Loop(id) => looped(plan, &plan.frame.loops[id.0]),
             Action::LoopEnd(_) => {
                 indent.truncate(indent.len().saturating_sub(2));
@@ -104,21 +104,12 @@ fn steps(plan: &Plan, text: &mut String) {
     }
     if !plan.frame.exchanges.is_empty() {
         let pairs = plan.frame.exchanges.iter().map(|[a, b]| format!("`{}` and `{}`", name(*a), name(*b)));
-        let _ = writeln!(text, "\nIn every iteration {} exchange their roles.", pairs.collect::<Vec<_>>().join(", "));
+        let _ = writeln!(
+            text,
+            "\nIn the course of the frame these exchange their roles: {}.",
+            pairs.collect::<Vec<_>>().join(", ")
+        );
     }
-}
-
-fn host(plan: &Plan, decision: &Decision) -> String {
-    let read = |range: &Range| {
-        let name = &plan.resources[range.resource.0].resource.name;
-        match range.count.to_string().as_str() {
-            "1" => format!("{name}[{}]", range.first),
-            count => format!("{name}[{}, {count} words]", range.first),
-        }
-    };
-    let reads: Vec<String> = decision.reads.iter().map(read).collect();
-    let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
-    format!("host: `{}` reads {} and sets {}", decision.name, reads.join(", "), sets.join(", "))
 }
 
 fn looped(plan: &Plan, looped: &Loop) -> String {

@@ -63,3 +63,26 @@ fn a_histogram_decides_how_many_slots_there_are() {
         assert_eq!(seen.words("slots").map(|words| words.len() as u64), Some(deepest * expected.len() as u64));
     }
 }
+
+/// What is cleared stays clear where a host step decides k, whose memory is for any, and where one decides how long a pool is.
+#[test]
+fn what_a_frame_begins_with_outlives_decisions() {
+    let said = || Resource::new("said", Element::Word, "").by("word", "2").cleared(3);
+    let row = storage(
+        vec![
+            said(),
+            Resource::new("slots", Element::Word, "").by("slot", "k").by("pixel", "pixels").cleared(7),
+            Resource::new("pool", Element::Word, "").by("node", "fragments").cleared(5),
+        ],
+        vec![Step::Host(Host::new("allocate").reads_all("said").sets("k").sets("fragments"))],
+    );
+    let code = code_with(Registry::builtin(), row, &[], None).unwrap_or_else(|error| panic!("{error}"));
+    let mut seen = device(&code, Order::Submission);
+    for _ in 0..2 {
+        draw(&mut seen, &stacked(1, 1));
+        assert_eq!(seen.symbol("k"), Some(3));
+        let pixels = (crate::stage::SIZE * crate::stage::SIZE) as usize;
+        assert_eq!(seen.words("slots"), Some(vec![7; 64 * pixels]));
+        assert_eq!(seen.words("pool"), Some(vec![5; 3]));
+    }
+}

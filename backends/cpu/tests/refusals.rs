@@ -2,7 +2,7 @@
 
 use fragbuf_cpu::{Error, Mesh, Order};
 use fragbuf_templates::vocabulary::{
-    Access, Blend, Element, Host, Objects, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
+    Access, Blend, Coverage, Element, Host, Objects, Pass, Repeat, Resource, Row, Samples, Step, TextureFormat, Until,
 };
 
 use crate::stage::{code, device, picture, storage, texture};
@@ -85,11 +85,12 @@ fn nothing() {}
     let rows = |words: &'static str, objects: Objects| {
         let arguments = Resource::new("arguments", Element::Word, "").by("word", words);
         let pass = Pass::geometry("nothing", "nothing").uses("arguments", Access::Indirect);
-        storage(vec![arguments], vec![Step::Pass(Pass { objects, ..pass })])
+        let boxes = Pass { objects: Objects::Boxes, ..Pass::geometry("boxes", "nothing") };
+        storage(vec![arguments], vec![Step::Pass(boxes), Step::Pass(Pass { objects, ..pass })])
     };
     let seen = refused(rows("4", Objects::All), &[("nothing", NOTHING)]);
     assert!(seen.contains("`arguments` as arguments: it has 4 words, and needs 5"), "{seen}");
-    let seen = refused(rows("5", Objects::Visible("nothing".to_owned())), &[("nothing", NOTHING)]);
+    let seen = refused(rows("5", Objects::Visible("boxes".to_owned())), &[("nothing", NOTHING)]);
     assert!(seen.contains("arguments in a buffer for several objects"), "{seen}");
 }
 
@@ -102,6 +103,20 @@ fn loops_and_objects_ask_passes_that_there_are() {
     };
     let seen = refused(rows(Until::NoSamples("nobody".to_owned())), &[]);
     assert!(seen.contains("the samples of `nobody`, which is no pass of its body"), "{seen}");
+    let repeat =
+        |at_most: &'static str| Repeat { body: Vec::new(), until: Until::Times("1".into()), at_most: at_most.into() };
+    let seen = refused(
+        storage(vec![], vec![Step::Repeat(Repeat { until: Until::Times("iteration".into()), ..repeat("1") })]),
+        &[],
+    );
+    assert!(seen.contains("the bound of a loop rests on `iteration`"), "{seen}");
+    let blind = Pass { objects: Objects::Visible("seen".to_owned()), ..Pass::geometry("seen", "seen") };
+    let seen = refused(storage(vec![], vec![Step::Pass(blind)]), &[]);
+    assert!(seen.contains("visible in `seen`, which is no pass that asks for boxes"), "{seen}");
+    let mut sampled = Pass::geometry("several", "several");
+    sampled.state.samples = Some(Samples { count: "k".into(), mask: "1".into(), coverage: Coverage::PerSample });
+    let seen = refused(storage(vec![], vec![Step::Pass(sampled)]), &[]);
+    assert!(seen.contains("its samples rest on `k`"), "{seen}");
     let seen = refused(rows(Until::Zero("nobody".to_owned())), &[]);
     assert!(seen.contains("`nobody`, which the plan does not have"), "{seen}");
 }
@@ -144,4 +159,8 @@ fn a_host_step_stays_within_its_bounds() {
     assert!(seen.contains("is no formula"), "{seen}");
     let seen = refused(rows(Host::new("allocate").reads_word("words", "4096 * 4096").sets("n")), &[]);
     assert!(seen.contains("reads of `words`, words 16777216 to 16777216, must be within its"), "{seen}");
+    let eleven = || Resource::new("eleven", Element::Word, "").by("word", "1").cleared(0);
+    let host = Host::new("allocate").reads_word("eleven", "0").sets("k");
+    let seen = refused(storage(vec![eleven()], vec![Step::Host(host)]), &[]);
+    assert!(seen.contains("`k`, which the host function `allocate` sets to 0, must be from 1 to 64"), "{seen}");
 }

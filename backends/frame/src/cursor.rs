@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, PassId, Plan, Quantity, ResourceId, SymbolId};
+use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, PassId, Plan, Quantity, ResourceId};
 use fragbuf_templates::vocabulary::{HostCall, Objects};
 
 use crate::{Counting, Error, LoopEnd, Looped, Values};
@@ -83,14 +83,16 @@ pub struct Cursor {
     base: u32,
     /// Objects that queries have dropped, by the query's pass.
     dropped: BTreeMap<PassId, Vec<bool>>,
-    waits_for: Option<WaitsFor>,
+    /// What has been asked and not answered, and what the answer is for.
+    asked: Option<(Question, Purpose)>,
     loops: Vec<Looped>,
 }
 
 /// What an answer is for.
-#[derive(Clone, Debug, PartialEq)]
-enum WaitsFor {
-    Decision { command: usize, counts: Vec<usize> },
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Purpose {
+    /// The decision of this command.
+    Decision(usize),
     LoopEnd(LoopId),
     Objects(PassId),
 }
@@ -107,15 +109,15 @@ impl Cursor {
             finished: vec![0; plan.frame.loops.len()],
             base: flipped,
             dropped: BTreeMap::new(),
-            waits_for: None,
+            asked: None,
             loops: Vec::new(),
         }
     }
 
     /// The next turn; `None`: the frame is over. A question is asked again until it has been answered.
     pub fn next(&mut self, plan: &Plan, values: &Values) -> Result<Option<Turn>, Error> {
-        if let Some(question) = self.open_question(plan, values)? {
-            return Ok(Some(Turn::Ask(question)));
+        if let Some((question, _)) = &self.asked {
+            return Ok(Some(Turn::Ask(question.clone())));
         }
         while let Some(command) = plan.frame.commands.get(self.at) {
             let flipped = self.flipped_at(command);
@@ -152,24 +154,32 @@ impl Cursor {
     /// Answers the question that was asked last. Words that are missing count as 0. What a host step decides is set in
     /// `values`. `Err`: it decides what there is not.
     pub fn answer(&mut self, plan: &Plan, words: &[u32], values: &mut Values) -> Result<(), Error> {
-        match self.waits_for.take() {
-            None => {}
-            Some(WaitsFor::Objects(pass)) => {
+        let Some((question, purpose)) = self.asked.take() else { return Ok(()) };
+        match purpose {
+            Purpose::Objects(pass) => {
                 let dropped = self.dropped.entry(query(plan, pass)).or_default();
                 dropped.resize(dropped.len().max(words.len()), false);
                 dropped.iter_mut().zip(words).for_each(|(dropped, word)| *dropped |= *word == 0);
             }
-            Some(WaitsFor::LoopEnd(id)) => {
+            Purpose::LoopEnd(id) => {
                 let end = if words.first().copied().unwrap_or(0) == 0 { LoopEnd::Reached } else { LoopEnd::Cut };
                 self.go_on(plan, values, id, end)?;
             }
-            Some(WaitsFor::Decision { command, counts }) => {
-                if let Some(Command { action: Action::Host(decision), .. }) = plan.frame.commands.get(command) {
-                    apply(plan, decision, (words, &counts), values)?;
+            Purpose::Decision(command) => {
+                if let (Some(decision), Question::Words(spans)) = (decision(plan, command), &question) {
+                    apply(plan, decision, (words, spans), values)?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// The decision that waits for an answer.
+    pub fn decides<'p>(&self, plan: &'p Plan) -> Option<&'p Decision> {
+        match self.asked {
+            Some((_, Purpose::Decision(command))) => decision(plan, command),
+            _ => None,
+        }
     }
 
     /// The exchanges that are flipped here: once the frame is over, those that the next one begins with.
@@ -204,7 +214,7 @@ impl Cursor {
             if self.counting == Counting::Reserved {
                 return None;
             }
-            self.waits_for = Some(WaitsFor::Objects(pass));
+            self.asked = Some((Question::Objects(pass), Purpose::Objects(pass)));
         }
         let iteration = self.around.last().map_or(0, |(_, iteration)| *iteration);
         Some(Run { pass, iteration, flipped })
@@ -212,7 +222,7 @@ impl Cursor {
 
     fn enter(&mut self, plan: &Plan, values: &Values, id: LoopId) -> Result<(), Error> {
         let looped = &plan.frame.loops[id.0];
-        if self.at_most(values, &looped.at_most)? == 0 {
+        if at_most(values, &looped.at_most)? == 0 {
             self.at = looped.end + 1;
         } else {
             self.around.push((id, 0));
@@ -233,9 +243,9 @@ impl Cursor {
                 Some(Question::Words(vec![Span { resource, first: 0, count: 1 }]))
             }
         };
-        match question {
+        match &question {
             None => self.go_on(plan, values, id, LoopEnd::Cut)?,
-            Some(_) => self.waits_for = Some(WaitsFor::LoopEnd(id)),
+            Some(question) => self.asked = Some((question.clone(), Purpose::LoopEnd(id))),
         }
         Ok(question)
     }
@@ -243,7 +253,7 @@ impl Cursor {
     /// Back to the beginning of a loop's body, or behind its end.
     fn go_on(&mut self, plan: &Plan, values: &Values, id: LoopId, end: LoopEnd) -> Result<(), Error> {
         let looped = &plan.frame.loops[id.0];
-        let most = self.at_most(values, &looped.at_most)?;
+        let most = at_most(values, &looped.at_most)?;
         let Some((_, iteration)) = self.around.last_mut() else { return Ok(()) };
         *iteration += 1;
         self.finished[id.0] += 1;
@@ -261,12 +271,6 @@ impl Cursor {
         Ok(())
     }
 
-    fn at_most(&self, values: &Values, at_most: &Quantity) -> Result<u64, Error> {
-        let iteration = self.around.last().map_or(0, |(_, iteration)| *iteration);
-        let most = values.with(SymbolId::ITERATION, iteration.into()).evaluate(at_most, "the iterations of a loop")?;
-        Ok(most.min(u64::from(u32::MAX)))
-    }
-
     /// The words that the host decides by; `None`: it decides nothing, and the cursor has moved.
     fn decide(
         &mut self,
@@ -280,33 +284,21 @@ impl Cursor {
         if self.counting == Counting::Reserved {
             return Ok(None);
         }
-        let spans = spans(plan, values, decision, flipped)?;
-        let counts = spans.iter().map(|span| span.count as usize).collect();
-        self.waits_for = Some(WaitsFor::Decision { command, counts });
-        Ok(Some(Question::Words(spans)))
+        let question = Question::Words(spans(plan, values, decision, flipped)?);
+        self.asked = Some((question.clone(), Purpose::Decision(command)));
+        Ok(Some(question))
     }
+}
 
-    /// A question that was asked and not answered.
-    fn open_question(&self, plan: &Plan, values: &Values) -> Result<Option<Question>, Error> {
-        Ok(match &self.waits_for {
-            None => None,
-            Some(WaitsFor::Objects(pass)) => Some(Question::Objects(*pass)),
-            Some(WaitsFor::LoopEnd(id)) => match plan.frame.loops[id.0].until {
-                LoopUntil::Times => None,
-                LoopUntil::NoSamples(pass) => Some(Question::Samples(pass)),
-                LoopUntil::WordIsZero(resource) => {
-                    let resource = plan.frame.physical(resource, self.flipped(plan));
-                    Some(Question::Words(vec![Span { resource, first: 0, count: 1 }]))
-                }
-            },
-            Some(WaitsFor::Decision { command, .. }) => match plan.frame.commands.get(*command) {
-                Some(command @ Command { action: Action::Host(decision), .. }) => {
-                    Some(Question::Words(spans(plan, values, decision, self.flipped_at(command))?))
-                }
-                _ => None,
-            },
-        })
+fn decision(plan: &Plan, command: usize) -> Option<&Decision> {
+    match &plan.frame.commands.get(command)?.action {
+        Action::Host(decision) => Some(decision),
+        _ => None,
     }
+}
+
+fn at_most(values: &Values, at_most: &Quantity) -> Result<u64, Error> {
+    Ok(values.evaluate(at_most, "the iterations of a loop")?.min(u64::from(u32::MAX)))
 }
 
 /// The pass that stands for a query, which may be asked in several places of a frame.
@@ -340,19 +332,20 @@ fn spans(plan: &Plan, values: &Values, decision: &Decision, flipped: u32) -> Res
 fn apply(
     plan: &Plan,
     decision: &Decision,
-    (words, counts): (&[u32], &[usize]),
+    (words, spans): (&[u32], &[Span]),
     values: &mut Values,
 ) -> Result<(), Error> {
     let mut padded = words.to_vec();
-    padded.resize(counts.iter().sum(), 0);
+    padded.resize(spans.iter().map(|span| span.count as usize).sum(), 0);
     let (mut reads, mut rest) = (Vec::new(), padded.as_slice());
-    for count in counts {
-        let (read, behind) = rest.split_at(*count);
+    for span in spans {
+        let (read, behind) = rest.split_at(span.count as usize);
         reads.push(read);
         rest = behind;
     }
     let decided = (decision.function.0)(&HostCall { reads, symbol: &|name| values.named(name) });
-    for (id, value) in decision.sets.iter().zip(decided) {
+    let decided = || decision.sets.iter().zip(&decided);
+    for (id, &value) in decided() {
         let symbol = plan.symbols.get(*id);
         let (least, most) = symbol.range;
         if !(least..=most).contains(&value) {
@@ -361,8 +354,9 @@ fn apply(
                 wanted: format!("from {least} to {most}"),
             });
         }
-        values.set(*id, value);
     }
+    // All of them or none: after an error the values are those of before.
+    decided().for_each(|(id, value)| values.set(*id, *value));
     Ok(())
 }
 
@@ -377,7 +371,26 @@ fn until(plan: &Plan, until: LoopUntil) -> Option<String> {
 
 /// The iterations of a loop at most, whatever the frame: k is the greatest that the code serves.
 pub fn most_iterations(plan: &Plan) -> Result<u32, Error> {
+    bounds(plan)?.into_iter().try_fold(1, |most, bound| Ok(most.max(bound)))
+}
+
+/// Runs of passes in a frame at most: a pass runs once for every iteration of each loop around it.
+pub fn most_runs(plan: &Plan) -> Result<u64, Error> {
+    let bounds = bounds(plan)?;
+    let (mut around, mut runs) = (vec![1u64], 0u64);
+    for command in &plan.frame.commands {
+        let now = around.last().copied().unwrap_or(1);
+        match command.action {
+            Action::Loop(id) => around.push(now.saturating_mul(bounds[id.0].into())),
+            Action::LoopEnd(_) => drop(around.pop()),
+            Action::Pass(_) => runs = runs.saturating_add(now),
+            _ => {}
+        }
+    }
+    Ok(runs)
+}
+
+fn bounds(plan: &Plan) -> Result<Vec<u32>, Error> {
     let values = Values::of_code(plan);
-    let bounds = plan.frame.loops.iter().map(|looped| values.word(&looped.at_most, "the iterations of a loop"));
-    bounds.into_iter().try_fold(1, |most, bound| Ok(most.max(bound?)))
+    plan.frame.loops.iter().map(|looped| values.word(&looped.at_most, "the iterations of a loop")).collect()
 }

@@ -3,6 +3,7 @@
 //!
 //! In: a plan and the frame's size. Out: turns, numbers and words. No device is named here, and nothing is allocated.
 
+mod boxes;
 mod counters;
 mod cursor;
 mod error;
@@ -12,8 +13,9 @@ mod room;
 mod uniforms;
 mod values;
 
+pub use boxes::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTLY_COVERED, POOL_EXHAUSTED};
-pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations};
+pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations, most_runs};
 pub use error::Error;
 pub use looped::{LoopEnd, Looped};
 pub use pass_time::PassTime;

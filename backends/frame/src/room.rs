@@ -141,8 +141,11 @@ fn fragments_in(plan: &Plan, values: &Values, room: u64) -> Result<u32, Error> {
     Ok(yes)
 }
 
-/// Name and bytes of every resource. What is counted later has no memory yet.
+/// Name and bytes of every resource. What is counted later has no memory yet. Where a host step sets k there is memory for any:
+/// what was written before it decides stays where it is.
 pub fn bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a str, u64)>, Error> {
+    let for_any_k = is_decided(plan, SymbolId::K).then(|| values.with(SymbolId::K, plan.capacity().into()));
+    let values = for_any_k.as_ref().unwrap_or(values);
     let sizes = plan.resources.iter().map(|planned| {
         let name = &planned.resource.name;
         Ok((name.as_str(), values.evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4)))

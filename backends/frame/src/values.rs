@@ -162,7 +162,7 @@ impl Values {
 
     /// The shaders' uniform block of one slice and iteration: one word per field of the plan.
     pub fn frame_words(&self, plan: &Plan, slice: u32, iteration: u32) -> Result<Vec<u32>, Error> {
-        let mut values = self.with(SymbolId::ITERATION, iteration.into());
+        let mut values = self.in_iteration(iteration);
         values.set(SymbolId::FIRST_ROW, u64::from(slice) * u64::from(self.rows()));
         let word = |id: &SymbolId| {
             let value = values.get(*id).unwrap_or(0);

@@ -7,15 +7,17 @@
 //!
 //! A frame is handed on from call to call, so that a segment cannot be recorded twice or out of order.
 
+use std::ops::Range;
+
 use fragbuf_codegen::{PassId, PlannedPass, ResourceId};
 use fragbuf_frame::{COUNTERS_RESOURCE, Looped, Question, Run, Span, Turn};
-use fragbuf_templates::vocabulary::{Access, Kind, Objects, Pass};
+use fragbuf_templates::vocabulary::{Kind, Objects, Pass};
 
 use crate::attachments::{Attachments, Clears, Written, clear_now, clear_sampled};
 use crate::pattern::PATTERN;
 use crate::pipeline::Pipeline;
 use crate::scope::scoped;
-use crate::walk::{Part, Place, segment};
+use crate::walk::{self, Part, Place, segment};
 use crate::{Error, Pending, Renderer};
 
 /// A frame, somewhere between its first and its last step.
@@ -51,7 +53,7 @@ pub struct Cut {
 /// What the host reads.
 enum Read {
     Pending(Pending<Vec<u32>>),
-    /// So many words of an empty resource.
+    /// So many zeros: words of an empty resource, or of a buffer that ends before them; samples of a pass that did not run.
     Nothing(u64),
 }
 
@@ -122,7 +124,7 @@ impl Frame {
             renderer.leave_flipped(self.at.flipped);
             return Ok(Recorded::Finished(self.at.loops));
         };
-        let reads = reads(renderer, encoder, &question);
+        let reads = self.reads(renderer, encoder, &question);
         Ok(Recorded::Cut(Cut { reads, question, frame: self }))
     }
 
@@ -174,7 +176,7 @@ impl Frame {
         clear_sampled(renderer, encoder, (&prepared.pass, run.flipped), &mut self.clears);
         let state = (&mut self.clears, &mut self.written);
         let attachments = Attachments::of(renderer, (&prepared.pass, run.flipped), output, state);
-        let asks = prepared.is_awaited || prepared.pass.objects == Objects::Boxes;
+        let asks = prepared.query.is_some() || prepared.pass.objects == Objects::Boxes;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
             color_attachments: &attachments.colors(),
@@ -194,12 +196,36 @@ impl Frame {
         let values = &sized.values;
         let first_row = slice * values.rows();
         pass.set_scissor_rect(0, first_row, values.width(), values.rows().min(values.height() - first_row));
-        if prepared.is_awaited {
-            pass.begin_occlusion_query(0);
+        if let Some(query) = prepared.query {
+            pass.begin_occlusion_query(query);
         }
         self.draw(renderer, &mut pass, (&prepared.pass, *run), draw);
-        if prepared.is_awaited {
+        if prepared.query.is_some() {
             pass.end_occlusion_query();
+        }
+    }
+
+    /// Records the readback of what a question asks for.
+    fn reads(&self, renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, question: &Question) -> Vec<Read> {
+        let made = renderer.made();
+        let queries = |encoder: &mut wgpu::CommandEncoder, range: Range<u32>| match &renderer.queries {
+            Some(queries) if !range.is_empty() => Read::Pending(queries.read(&renderer.device, encoder, range)),
+            _ => Read::Nothing(1),
+        };
+        match question {
+            Question::Samples(pass) => {
+                let has_run = self.runs.contains(pass);
+                let query = made.passes.get(pass.0).and_then(|prepared| prepared.query).filter(|_| has_run);
+                vec![queries(encoder, query.map_or(0..0, |query| query..query + 1))]
+            }
+            Question::Objects(_) => match &renderer.objects {
+                None => Vec::new(),
+                Some(objects) => {
+                    let first = made.awaited();
+                    vec![queries(encoder, first..first + objects.boxes().len() as u32)]
+                }
+            },
+            Question::Words(spans) => spans.iter().map(|span| read(renderer, encoder, *span)).collect(),
         }
     }
 
@@ -227,8 +253,9 @@ impl Frame {
     /// A query for the box of every object. Of one that has been dropped it is empty.
     fn boxes(&self, renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>, query: PassId) {
         let Some(objects) = &renderer.objects else { return };
+        let first = renderer.made().awaited();
         for object in 0..objects.boxes().len() as u32 {
-            pass.begin_occlusion_query(object);
+            pass.begin_occlusion_query(first + object);
             if !self.at.cursor.is_dropped(renderer.plan(), query, object as usize) {
                 objects.draw(pass, object);
             }
@@ -255,10 +282,7 @@ struct Recording {
 
 /// The buffer that says what a pass draws or dispatches, where there is one.
 fn arguments<'a>(renderer: &'a Renderer, pass: &PlannedPass, flipped: u32) -> Option<&'a wgpu::Buffer> {
-    let usage = pass.uses.iter().find(|usage| usage.access == Access::Indirect)?;
-    let plan = renderer.plan();
-    let id = plan.frame.physical(plan.resource_id(&usage.resource)?, flipped);
-    renderer.sized.memory.filled(id.0)
+    renderer.sized.memory.filled(walk::arguments(renderer.plan(), pass, flipped)?.0)
 }
 
 impl Cut {
@@ -286,7 +310,8 @@ impl Cut {
         if let Question::Objects(_) = self.question {
             words = seen(renderer, words);
         }
-        let (before, mut values) = (renderer.live(), renderer.live());
+        let before = renderer.live();
+        let mut values = before.clone();
         let plan = renderer.plan();
         frame.at.cursor.answer(plan, &words, &mut values)?;
         if values != before {
@@ -336,23 +361,6 @@ impl Renderer {
 fn tally(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, slice: u32) {
     if let (Some(tally), Some(counters)) = (&renderer.sized.tally, renderer.buffer(COUNTERS_RESOURCE)) {
         encoder.copy_buffer_to_buffer(counters, 0, tally, u64::from(slice) * counters.size(), counters.size());
-    }
-}
-
-/// Records the readback of what a question asks for.
-fn reads(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, question: &Question) -> Vec<Read> {
-    let device = &renderer.device;
-    let queries = |encoder: &mut wgpu::CommandEncoder, count: u32| {
-        let pending = renderer.queries.as_ref().map(|queries| queries.read(device, encoder, count));
-        pending.map(Read::Pending).into_iter().collect()
-    };
-    match question {
-        Question::Samples(_) => queries(encoder, 1),
-        Question::Objects(_) => match &renderer.objects {
-            None => Vec::new(),
-            Some(objects) => queries(encoder, objects.boxes().len() as u32),
-        },
-        Question::Words(spans) => spans.iter().map(|span| read(renderer, encoder, *span)).collect(),
     }
 }
 

@@ -3,6 +3,8 @@
 //!
 //! In: boxes in the space of vertex positions. Out: a vertex buffer, laid out as the vertex stage's own inputs, and indices.
 
+use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
+
 use crate::Error;
 use crate::words::to_bytes;
 use crate::{VertexInputs, scope::scoped};
@@ -23,26 +25,13 @@ pub(crate) struct Objects {
     pub(crate) indices: wgpu::Buffer,
 }
 
-/// The faces of a box, two triangles each; bit 0, 1 and 2 of a corner's number say whether it is the greater along x, y and z.
-const FACES: [u32; 36] =
-    [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
-
-/// Corners of a box.
-const CORNERS: usize = 8;
-
 impl ObjectBox {
-    fn corner(&self, number: usize) -> [f32; 3] {
-        std::array::from_fn(|axis| if number >> axis & 1 == 1 { self.greatest[axis] } else { self.least[axis] })
-    }
-
     /// Whether the box reaches to where the near plane cuts it away, so that none of its samples may pass although the object
     /// is seen. `camera` holds columns.
     pub(crate) fn crosses_near_plane(&self, camera: &[f32; 16]) -> bool {
-        (0..CORNERS).any(|number| {
-            let [x, y, z] = self.corner(number);
+        box_corners(self.least, self.greatest).into_iter().any(|[x, y, z]| {
             let row = |row: usize| camera[row] * x + camera[4 + row] * y + camera[8 + row] * z + camera[12 + row];
-            // Not a number is no place that could be dropped, either.
-            !(row(2) >= 0.0 && row(3) > 0.0)
+            is_cut_by_near_plane(row(2), row(3))
         })
     }
 }
@@ -55,11 +44,7 @@ impl Objects {
         boxes: &[ObjectBox],
     ) -> Result<Self, Error> {
         let stride = (inputs.stride / 4) as usize;
-        let mut words = vec![0; boxes.len() * CORNERS * stride];
-        let corners = boxes.iter().flat_map(|one| (0..CORNERS).map(|number| one.corner(number)));
-        for (vertex, corner) in words.chunks_mut(stride.max(3)).zip(corners) {
-            vertex.iter_mut().zip(corner).for_each(|(word, number)| *word = number.to_bits());
-        }
+        let words: Vec<u32> = boxes.iter().flat_map(|one| box_vertices(one.least, one.greatest, stride)).collect();
         let buffer = |label: &str, words: &[u32], usage: wgpu::BufferUsages| {
             let size = 4 * words.len().max(4) as u64;
             let usage = usage | wgpu::BufferUsages::COPY_DST;
@@ -69,9 +54,9 @@ impl Objects {
         let bytes = 4 * words.len() as u64;
         let make = || {
             let vertices = buffer("fragbuf boxes", &words, wgpu::BufferUsages::VERTEX);
-            let indices = buffer("fragbuf boxes", &FACES, wgpu::BufferUsages::INDEX);
+            let indices = buffer("fragbuf boxes", &BOX_TRIANGLES, wgpu::BufferUsages::INDEX);
             queue.write_buffer(&vertices, 0, &to_bytes(&words));
-            queue.write_buffer(&indices, 0, &to_bytes(&FACES));
+            queue.write_buffer(&indices, 0, &to_bytes(&BOX_TRIANGLES));
             Objects { boxes: boxes.to_vec(), vertices, indices }
         };
         scoped(device, "the boxes of objects", bytes, make).await
@@ -85,6 +70,6 @@ impl Objects {
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, object: u32) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..FACES.len() as u32, (object * CORNERS as u32).cast_signed(), 0..1);
+        pass.draw_indexed(0..BOX_TRIANGLES.len() as u32, (object * BOX_CORNERS as u32).cast_signed(), 0..1);
     }
 }

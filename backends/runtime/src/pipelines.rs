@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use fragbuf_codegen::{LoopUntil, PassId, Plan, PlannedPass, ResourceId};
-use fragbuf_frame::{most_iterations, unsupported};
+use fragbuf_codegen::{PassId, Plan, PlannedPass, ResourceId};
+use fragbuf_frame::{most_iterations, most_runs, unsupported};
 use fragbuf_templates::vocabulary::Objects;
 
 use crate::layout::{Slot, bind_group_layout, check, slots};
@@ -22,6 +22,8 @@ pub(crate) struct Made {
     pub(crate) group: u32,
     /// The most iterations of any loop.
     pub(crate) iterations: u32,
+    /// Runs of passes in a slice at most.
+    pub(crate) most_runs: u64,
     pub(crate) passes: Vec<Prepared>,
     /// Words of 64 KiB each, for clears to something else than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
@@ -29,14 +31,16 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// Runs of passes in a slice at most.
-    pub(crate) fn most_runs(&self) -> u64 {
-        self.plan.passes.len() as u64 * u64::from(self.iterations)
+    /// Occlusion queries that a frame needs with so many objects: one for each pass whose samples a loop waits for, and
+    /// behind them one for each object, where boxes are drawn.
+    pub(crate) fn queries(&self, objects: u32) -> u32 {
+        let has_boxes = self.passes.iter().any(|prepared| prepared.pass.objects == Objects::Boxes);
+        self.awaited() + if has_boxes { objects.max(1) } else { 0 }
     }
 
-    /// Whether a loop waits for the samples of a pass, or a pass asks for objects by their boxes.
-    pub(crate) fn has_queries(&self) -> bool {
-        self.passes.iter().any(|prepared| prepared.is_awaited || prepared.pass.objects == Objects::Boxes)
+    /// Passes whose samples a loop waits for; the query of the first object has this number.
+    pub(crate) fn awaited(&self) -> u32 {
+        self.passes.iter().filter(|prepared| prepared.query.is_some()).count() as u32
     }
 }
 
@@ -45,8 +49,8 @@ pub(crate) struct Prepared {
     pub(crate) pass: PlannedPass,
     /// The exchanges of the frame that it uses resources of, by their numbers.
     pub(crate) exchanges: Vec<usize>,
-    /// Whether a loop waits for its samples.
-    pub(crate) is_awaited: bool,
+    /// The number of its query, where a loop waits for its samples.
+    pub(crate) query: Option<u32>,
     pub(crate) slots: Vec<Slot>,
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) pipeline: Pipeline,
@@ -71,6 +75,7 @@ impl Pipelines {
         let interleaved = inputs.interleaved();
         let maker = Maker { device, shaders, settings, vertices: &vertices, interleaved, rounds: iterations };
         let mut passes = Vec::new();
+        let mut queries = 0..;
         for (number, pass) in plan.passes.iter().enumerate() {
             let slots = slots(&plan, pass);
             check(device, pass, &slots)?;
@@ -78,11 +83,15 @@ impl Pipelines {
             let layout = scoped(device, &what, 0, || bind_group_layout(device, pass, &slots)).await?;
             let pipeline = maker.make(pass, &layout).await?;
             let exchanges = exchanges(&plan, pass)?;
-            let is_awaited = is_awaited(&plan, PassId(number));
-            passes.push(Prepared { pass: pass.clone(), exchanges, is_awaited, slots, layout, pipeline });
+            if pass.objects == Objects::Boxes && matches!(pipeline, Pipeline::Caller) {
+                return Err(unsupported(format!("pass `{}`: boxes of objects in module form", pass.anchor)).into());
+            }
+            let query = if plan.frame.waits_for_samples(PassId(number)) { queries.next() } else { None };
+            passes.push(Prepared { pass: pass.clone(), exchanges, query, slots, layout, pipeline });
         }
         let patterns = scoped(device, "the buffers to clear with", 0, || patterns(device, &plan)).await?;
-        Ok(Pipelines(Arc::new(Made { plan, group: shaders.group, iterations, passes, patterns, inputs })))
+        let (group, most_runs) = (shaders.group, most_runs(&plan)?);
+        Ok(Pipelines(Arc::new(Made { plan, group, iterations, most_runs, passes, patterns, inputs })))
     }
 
     /// The greatest k that they serve; 0 where every fragment is kept.
@@ -104,9 +113,4 @@ fn exchanges(plan: &Plan, pass: &PlannedPass) -> Result<Vec<usize>, Error> {
         return Err(unsupported(what).into());
     }
     Ok(used)
-}
-
-/// Whether a loop waits for the samples of a pass.
-fn is_awaited(plan: &Plan, pass: PassId) -> bool {
-    plan.frame.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(pass))
 }

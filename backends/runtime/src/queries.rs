@@ -2,6 +2,8 @@
 //!
 //! In: the number of objects. Out: a query for each, and where they are resolved to. Nothing here waits.
 
+use std::ops::Range;
+
 use crate::scope::scoped;
 use crate::{Error, Pending};
 
@@ -9,16 +11,17 @@ use crate::{Error, Pending};
 pub(crate) struct Queries {
     pub(crate) set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    count: u32,
 }
 
 /// Bytes of an answer.
 const ANSWER: u64 = 8;
 
 impl Queries {
-    /// Queries for so many objects, at least one.
-    pub(crate) async fn new(device: &wgpu::Device, objects: u32) -> Result<Self, Error> {
-        let count = objects.max(1);
+    /// So many queries; `None`: no query is needed.
+    pub(crate) async fn new(device: &wgpu::Device, count: u32) -> Result<Option<Self>, Error> {
+        if count == 0 {
+            return Ok(None);
+        }
         if count > wgpu::QUERY_SET_MAX_QUERIES {
             return Err(Error::TooLarge {
                 what: "the frame's objects".to_owned(),
@@ -40,22 +43,21 @@ impl Queries {
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
-            Queries { set, resolved, count }
+            Queries { set, resolved }
         };
-        scoped(device, "the occlusion queries", u64::from(count) * ANSWER, make).await
+        scoped(device, "the occlusion queries", u64::from(count) * ANSWER, make).await.map(Some)
     }
 
-    /// Records the readback of the first `count` queries, all of which have been asked: one word each, 0 where no sample
-    /// passed.
+    /// Records the readback of some queries, all of which have been asked: one word each, 0 where no sample passed.
     pub(crate) fn read(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        count: u32,
+        queries: Range<u32>,
     ) -> Pending<Vec<u32>> {
-        let count = count.clamp(1, self.count);
-        encoder.resolve_query_set(&self.set, 0..count, &self.resolved, 0);
-        Pending::record(device, encoder, &self.resolved, 0, u64::from(count) * ANSWER, |words| {
+        let bytes = u64::from(queries.end - queries.start) * ANSWER;
+        encoder.resolve_query_set(&self.set, queries, &self.resolved, 0);
+        Pending::record(device, encoder, &self.resolved, 0, bytes, |words| {
             words.chunks_exact(2).map(|halves| u32::from(halves[0] | halves[1] != 0)).collect()
         })
     }

@@ -1,15 +1,22 @@
 //! What the runtime does not run, refused by name before anything is made.
 
-use fragbuf_codegen::{Plan, PlannedPass};
+use fragbuf_codegen::{PassId, Plan, PlannedPass};
 use fragbuf_frame::unsupported;
-use fragbuf_templates::vocabulary::{Access, Kind};
+use fragbuf_templates::vocabulary::{Access, Kind, Objects};
 
 use crate::Error;
 use crate::texture::OUTPUT;
 
 /// Whether the runtime runs every pass of a plan.
 pub(crate) fn check(plan: &Plan) -> Result<(), Error> {
-    plan.passes.iter().try_for_each(check_pass)
+    for (number, pass) in plan.passes.iter().enumerate() {
+        check_pass(pass)?;
+        // A query of each box leaves none for all of them.
+        if pass.objects == Objects::Boxes && plan.frame.waits_for_samples(PassId(number)) {
+            return Err(unsupported(format!("pass `{}`: a loop that waits for samples of boxes", pass.anchor)).into());
+        }
+    }
+    Ok(())
 }
 
 fn check_pass(pass: &PlannedPass) -> Result<(), Error> {

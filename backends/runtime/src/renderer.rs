@@ -76,7 +76,7 @@ impl Renderer {
         let blocks = scoped(device, "the uniform buffers", 0, || Blocks::new(device, &uniforms)).await?;
         let fixed = Fixed { device, queue, made, blocks: &blocks, timed };
         let sized = Sized::new(&fixed, values, None).await?;
-        let queries = if made.has_queries() { Some(Queries::new(device, 1).await?) } else { None };
+        let queries = Queries::new(device, made.queries(0)).await?;
         let renderer = Renderer {
             device: device.clone(),
             queue: queue.clone(),
@@ -182,14 +182,14 @@ impl Renderer {
     /// The boxes of the caller's objects, for passes that draw them or those that are still seen ([`Call::objects`]): in the
     /// order of the numbers by which draws are asked for them. None: the scene is one object, and always drawn.
     pub async fn set_objects(&mut self, boxes: &[ObjectBox]) -> Result<(), Error> {
-        if self.queries.is_some() {
-            self.queries = Some(Queries::new(&self.device, boxes.len() as u32).await?);
-        }
+        let count = u32::try_from(boxes.len()).unwrap_or(u32::MAX);
+        let queries = Queries::new(&self.device, self.made().queries(count)).await?;
         let inputs = &self.made().inputs;
         self.objects = match boxes.is_empty() {
             true => None,
             false => Some(Objects::new(&self.device, &self.queue, inputs, boxes).await?),
         };
+        self.queries = queries;
         self.frame_id += 1;
         Ok(())
     }
@@ -329,13 +329,12 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes over the values that a host step has decided: k may change up to what memory there is for, anything else is
-    /// memory that is made.
+    /// Takes over the values that a host step has decided: for any k there is memory, anything else is memory that is made.
     pub(crate) async fn decide(&mut self, mut values: Values) -> Result<(), Error> {
         decided(self.plan(), &self.sized.values, &mut values);
-        let (k, room) = (values.k(), self.sized.values.k());
-        if let (Some(k), Some(room)) = (k, room) {
-            values.set(SymbolId::K, k.max(room).into());
+        let k = values.k();
+        if let Some(sized) = self.sized.values.k() {
+            values.set(SymbolId::K, sized.into());
         }
         self.reallocate(values).await?;
         self.k = k;

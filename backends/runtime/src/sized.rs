@@ -82,19 +82,18 @@ impl Sized {
         };
         // What earlier slices of a frame that was cut have counted and taken must not be lost.
         let same = old.filter(|old| old.values.slices() == values.slices());
-        let (timing, tally) = match same {
-            Some(old) => (old.timing.clone(), old.tally.clone()),
-            None => {
-                let timing = match timed {
-                    Timed::Yes => {
-                        let passes = made.plan.passes.iter().map(|pass| pass.anchor.clone()).collect();
-                        let runs = made.most_runs() * u64::from(values.slices());
-                        Some(Timing::new(device, queue, passes, runs).await?)
-                    }
-                    Timed::No => None,
-                };
-                (timing, tally(device, made, &memory, values.slices()).await?)
+        let runs = made.most_runs.saturating_mul(values.slices().into());
+        let timing = match (timed, same.and_then(|old| old.timing.as_ref())) {
+            (Timed::No, _) => None,
+            (Timed::Yes, Some(old)) if old.is_for(runs) => Some(old.clone()),
+            (Timed::Yes, _) => {
+                let passes = made.plan.passes.iter().map(|pass| pass.anchor.clone()).collect();
+                Some(Timing::new(device, queue, passes, runs).await?)
             }
+        };
+        let tally = match same {
+            Some(old) => old.tally.clone(),
+            None => tally(device, made, &memory, values.slices()).await?,
         };
         Ok(Sized { values, memory, frames, groups, dummies, timing, tally })
     }

@@ -25,6 +25,11 @@ pub(crate) struct Timing {
 /// Bytes of a timestamp.
 const TIMESTAMP: u64 = 8;
 
+/// Runs that can be timed of so many.
+fn capacity(runs: u64) -> u32 {
+    runs.clamp(1, u64::from(wgpu::QUERY_SET_MAX_QUERIES / 2)) as u32
+}
+
 impl Timing {
     /// For `runs` runs a frame at most. A frame of more is timed as far as queries go.
     pub(crate) async fn new(
@@ -33,7 +38,7 @@ impl Timing {
         passes: Vec<String>,
         runs: u64,
     ) -> Result<Self, Error> {
-        let capacity = runs.clamp(1, u64::from(wgpu::QUERY_SET_MAX_QUERIES / 2)) as u32;
+        let capacity = capacity(runs);
         let make = || {
             let queries = device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("fragbuf pass times"),
@@ -52,6 +57,11 @@ impl Timing {
         let (queries, resolved) = scoped(device, "the timestamps", bytes, make).await?;
         let nanoseconds = f64::from(queue.get_timestamp_period());
         Ok(Timing { queries, resolved, passes, capacity, last: Arc::default(), nanoseconds })
+    }
+
+    /// Whether it has the queries of so many runs a frame.
+    pub(crate) fn is_for(&self, runs: u64) -> bool {
+        self.capacity == capacity(runs)
     }
 
     /// The queries at the begin and the end of the run of this number in a frame; `None`: there are no more.

@@ -3,9 +3,9 @@
 //! In: where a frame stands. Out: the turns up to where the host must read something, or to the end. Nothing is recorded
 //! here, and what can fail has failed before anything is.
 
-use fragbuf_codegen::PlannedPass;
-use fragbuf_frame::{Cursor, Looped, Question, Turn, Values};
-use fragbuf_templates::vocabulary::Access;
+use fragbuf_codegen::{Plan, PlannedPass, ResourceId};
+use fragbuf_frame::{Cursor, Looped, Question, Turn, Values, unsupported};
+use fragbuf_templates::vocabulary::{Access, Kind};
 
 use crate::{Error, Renderer};
 
@@ -77,8 +77,12 @@ pub(crate) fn segment(renderer: &Renderer, mut place: Place) -> Result<Segment, 
             Some(turn) => {
                 if let Turn::Pass(run) = turn {
                     let pass = &plan.passes[run.pass.0];
-                    groups = workgroups(renderer, pass)?;
-                    reference = self::reference(pass, run.iteration, &Values::of_code(plan))?;
+                    let values = live.in_iteration(run.iteration);
+                    check_arguments(renderer, pass, run.flipped)?;
+                    groups = workgroups(renderer, pass, &values)?;
+                    if let Some(formula) = &pass.reference {
+                        reference = values.word(formula, "the stencil's reference of a pass")?;
+                    }
                 }
                 parts.push(Part::Turn { slice, turn, groups, reference });
             }
@@ -87,12 +91,25 @@ pub(crate) fn segment(renderer: &Renderer, mut place: Place) -> Result<Segment, 
     Ok(Segment { parts, question: None, end: place })
 }
 
-fn reference(pass: &PlannedPass, iteration: u32, code: &Values) -> Result<u32, Error> {
-    let Some(reference) = &pass.reference else { return Ok(0) };
-    Ok(code.in_iteration(iteration).word(reference, "the stencil's reference of a pass")?)
+/// Whether the buffer that says what a pass draws or dispatches, if there is one, holds that.
+fn check_arguments(renderer: &Renderer, pass: &PlannedPass, flipped: u32) -> Result<(), Error> {
+    let Some(id) = arguments(renderer.plan(), pass, flipped) else { return Ok(()) };
+    let needed = if matches!(pass.kind, Kind::Compute { .. }) { 3 } else { 4 };
+    let words = renderer.sized.memory.filled(id.0).map_or(0, |buffer| buffer.size() / 4);
+    if words < needed {
+        let name = &renderer.plan().resources[id.0].resource.name;
+        return Err(unsupported(format!("`{name}` as arguments: it has {words} words, and needs {needed}")).into());
+    }
+    Ok(())
 }
 
-fn workgroups(renderer: &Renderer, pass: &PlannedPass) -> Result<[u32; 3], Error> {
+/// The resource that says what a pass draws or dispatches, where there is one.
+pub(crate) fn arguments(plan: &Plan, pass: &PlannedPass, flipped: u32) -> Option<ResourceId> {
+    let usage = pass.uses.iter().find(|usage| usage.access == Access::Indirect)?;
+    Some(plan.frame.physical(plan.resource_id(&usage.resource)?, flipped))
+}
+
+fn workgroups(renderer: &Renderer, pass: &PlannedPass, values: &Values) -> Result<[u32; 3], Error> {
     let mut counts = [0; 3];
     if pass.uses.iter().any(|usage| usage.access == Access::Indirect) {
         return Ok(counts);
@@ -100,7 +117,7 @@ fn workgroups(renderer: &Renderer, pass: &PlannedPass) -> Result<[u32; 3], Error
     let what = format!("pass `{}`", pass.anchor);
     let limit = renderer.device.limits().max_compute_workgroups_per_dimension;
     for (count, groups) in counts.iter_mut().zip(&pass.groups) {
-        let needed = renderer.sized.values.evaluate(groups, &what)?;
+        let needed = values.evaluate(groups, &what)?;
         *count = u32::try_from(needed).ok().filter(|count| *count <= limit).ok_or_else(|| Error::TooLarge {
             what: format!("{what}, in workgroups,"),
             needed,

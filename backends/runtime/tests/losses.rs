@@ -122,8 +122,8 @@ fn a_loop_is_cut_once_a_round() {
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let times = exact.pass_times(&mut encoder).unwrap();
     stage.queue.submit([encoder.finish()]);
-    // The rounds that ran are summed.
-    assert_eq!(times.wait(&stage.device).unwrap().iter().filter(|time| time.pass == "store").count(), 1);
+    // There are queries for every round.
+    assert!(times.wait(&stage.device).unwrap().iter().all(|time| time.untimed == 0));
     let reserve = Settings { sizing: Sizing::Reserve(Room::Fragments(0)), ..settings() };
     let mut reserved = renderer(&stage, &shaders, &reserve).unwrap();
     assert_eq!(draws(&mut reserved), 5);

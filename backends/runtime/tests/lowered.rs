@@ -279,6 +279,7 @@ fn the_host_reads_a_histogram_and_sets_k() {
     let plan = plan(&tried(&registry), &Selection::first(&tried(&registry)), &registry).unwrap();
     assert_eq!(plan.frame.decisions().count(), 2, "one for k, one for the memory of what is kept");
     let mut renderer = renderer(&stage, &shaders(&registry), &settings()).unwrap();
+    block_on(&stage.device, renderer.set_k(1)).unwrap().unwrap();
     for count in [12, 3, 7] {
         let quads: Vec<Quad> = layers().into_iter().take(count).collect();
         let (pixels, _) = draw(&stage, &mut renderer, &quads);

@@ -5,10 +5,12 @@
 //! run is refused here, once for every device: two shapes exchanged, a loop that waits for what there is not.
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Element, Formula, Host, Kind, Objects, Pass, Repeat, SetBy, Step, Until, Words};
+use fragbuf_templates::vocabulary::{
+    Element, Formula, Host, Kind, Objects, Pass, Repeat, SetBy, Step, Until, When, Words,
+};
 
 use super::{Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range};
-use crate::{Planned, Quantity, ResourceId, SymbolTable};
+use crate::{Planned, Quantity, ResourceId, SymbolId, SymbolTable};
 
 /// Passes in the order of the steps, and what is done with them.
 pub(crate) struct Lowered {
@@ -99,6 +101,9 @@ impl Lowering<'_> {
             _ => &repeat.at_most,
         };
         let at_most = self.context.quantity(at_most, "the iterations of a loop")?;
+        if at_most.mentions(SymbolId::ITERATION) {
+            return Err("the bound of a loop rests on `iteration`: it must be known before any loop begins".to_owned());
+        }
         let id = LoopId(self.frame.loops.len());
         let begin = self.frame.commands.len();
         // The pass that a query names may come later in the body: it is looked up once all are known.
@@ -153,9 +158,12 @@ impl Lowering<'_> {
     fn queries(&self) -> Result<(), String> {
         for pass in &self.passes {
             let Objects::Visible(query) = &pass.objects else { continue };
-            let is_query = |other: &&PlannedPass| other.anchor == *query;
+            let is_query = |other: &&PlannedPass| other.anchor == *query && other.objects == Objects::Boxes;
             if self.passes.iter().find(is_query).is_none() {
-                return Err(format!("pass `{}` draws the objects visible in `{query}`, which is no pass", pass.anchor));
+                return Err(format!(
+                    "pass `{}` draws the objects visible in `{query}`, which is no pass that asks for boxes",
+                    pass.anchor
+                ));
             }
         }
         Ok(())
@@ -257,10 +265,23 @@ impl Context<'_> {
         let reference =
             pass.state.stencil.as_ref().map(|stencil| self.quantity(&stencil.reference, &what)).transpose()?;
         let samples = match &pass.state.samples {
-            Some(samples) => Some([self.quantity(&samples.count, &what)?, self.quantity(&samples.mask, &what)?]),
+            Some(samples) => Some([self.samples(&samples.count, &what)?, self.samples(&samples.mask, &what)?]),
             None => None,
         };
         Ok(PlannedPass { pass: pass.clone(), groups, reference, samples })
+    }
+
+    /// A formula for samples, which pipelines are made with.
+    fn samples(&self, formula: &Formula, what: &str) -> Result<Quantity, String> {
+        let quantity = self.quantity(formula, what)?;
+        let is_known = |id: &SymbolId| *id == SymbolId::ITERATION || self.symbols.get(*id).when <= When::Generation;
+        match quantity.symbols().into_iter().find(|id| !is_known(id)) {
+            None => Ok(quantity),
+            Some(id) => {
+                let name = &self.symbols.get(id).name;
+                Err(format!("{what}: its samples rest on `{name}`, which has no value when pipelines are made"))
+            }
+        }
     }
 
     fn decision(&self, host: &Host) -> Result<Decision, String> {

@@ -84,7 +84,7 @@ fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {
             Action::Pass(id) => pass_lines(f, &plan.passes[id.0], &indent)?,
             Action::Clear { resource, value } => writeln!(f, "{indent}clear {} to {value:#x}", name(*resource))?,
             Action::Copy { from, to } => writeln!(f, "{indent}copy {} to {}", name(*from), name(*to))?,
-            Action::Host(decision) => writeln!(f, "{indent}host {}", host(decision, plan))?,
+            Action::Host(decision) => writeln!(f, "{indent}host {}", decision.summary(plan))?,
             Action::Loop(id) => {
                 let Loop { until, at_most, .. } = &plan.frame.loops[id.0];
                 let until = match until {
@@ -105,19 +105,20 @@ fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {
     Ok(())
 }
 
-fn host(decision: &Decision, plan: &Plan) -> String {
-    let read = |range: &Range| {
-        let name = &plan.resources[range.resource.0].resource.name;
-        let (first, count) = (range.first.to_string(), range.count.to_string());
-        match (first.as_str(), count.as_str()) {
-            (first, "1") => format!("{name}[{first}]"),
-            ("0", count) => format!("{name}[0, {count} words]"),
-            (first, count) => format!("{name}[{first}, {count} words]"),
-        }
-    };
-    let reads: Vec<String> = decision.reads.iter().map(read).collect();
-    let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
-    format!("{}: reads {}; sets {}", decision.name, reads.join(", "), sets.join(", "))
+impl Decision {
+    /// What it reads and sets, in a line.
+    pub fn summary(&self, plan: &Plan) -> String {
+        let read = |range: &Range| {
+            let name = &plan.resources[range.resource.0].resource.name;
+            match range.count.to_string().as_str() {
+                "1" => format!("{name}[{}]", range.first),
+                count => format!("{name}[{}, {count} words]", range.first),
+            }
+        };
+        let reads: Vec<String> = self.reads.iter().map(read).collect();
+        let sets: Vec<&str> = self.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
+        format!("{}: reads {}; sets {}", self.name, reads.join(", "), sets.join(", "))
+    }
 }
 
 /// Which resources stand for each other at a command that uses them.

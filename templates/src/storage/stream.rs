@@ -2,7 +2,7 @@
 
 use super::{array_resources, reset};
 use crate::conditions::{depth_key, limited};
-use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Kept, Pass, Permits, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Permits, Resource, Row, Step};
 
 /// The k nearest of those to come; the nearest of all leaves for every one that comes.
 pub(super) fn stream_array() -> Row {
@@ -53,7 +53,6 @@ pub(super) fn stream_array() -> Row {
             ("sort".into(), "none".into()),
             ("resolve".into(), "stream".into()),
         ],
-        keeps: Some(Kept::worst()),
         hazards: vec![Hazard::new(
             "out-of-order",
             "a fragment that comes more than k places late is composited behind those it lies before, and \

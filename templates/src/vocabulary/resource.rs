@@ -100,6 +100,11 @@ pub enum Life {
 }
 
 impl Resource {
+    /// Whether its size depends on this symbol.
+    pub fn mentions(&self, symbol: &str) -> bool {
+        self.extents.iter().any(|extent| extent.length.mentions(symbol))
+    }
+
     /// A buffer of `element`s without extents, kept from nothing.
     pub fn new(name: &str, element: Element, summary: impl Into<Text>) -> Self {
         Resource {

@@ -196,7 +196,7 @@ impl Row {
 
     /// Which fragments stay of those that it is handed; `None`: it does not say, or does not store.
     pub fn kept(&self) -> Option<Kept> {
-        let by_fact = [(Fact::KeepsAll, Kept::all()), (Fact::KeepsBest, Kept::best())];
+        let by_fact = [(Fact::KeepsAll, Kept::all()), (Fact::KeepsBest, Kept::best()), (Fact::Streams, Kept::worst())];
         let by_fact = || by_fact.into_iter().find(|(fact, _)| self.offers.contains(fact)).map(|(_, kept)| kept);
         self.keeps.clone().or_else(by_fact)
     }

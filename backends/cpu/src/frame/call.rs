@@ -29,7 +29,7 @@ pub(super) fn call(frame: &Frame<'_>, pass: &Pass) -> Result<Call, Error> {
     let triangles = (frame.mesh.indices.len() / 3) as u32;
     Ok(match &pass.objects {
         Objects::Visible(query) => {
-            let objects = frame.objects(query)?;
+            let objects = frame.objects(query);
             Call {
                 triangles: objects.into_iter().map(|object| object.start / 3..object.end / 3).collect(),
                 ..Call::once(0)

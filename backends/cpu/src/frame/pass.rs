@@ -7,13 +7,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use fragbuf_codegen::{PassId, PlannedPass};
-use fragbuf_frame::{Run, Values, unsupported};
+use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, Run, Values, is_cut_by_near_plane, unsupported};
 use fragbuf_interpreter::{Program, Space};
 use fragbuf_templates::vocabulary::{Access, Coverage, Kind, Objects, Pass};
 
 use super::Frame;
 use super::call::{call, workgroups};
-use super::objects::FACES;
 use crate::Error;
 use crate::attachment::Attachments;
 use crate::code::PassCode;
@@ -95,17 +94,16 @@ impl Frame<'_> {
             found.push(1);
             let is_asked = !self.cursor.is_dropped(&self.code.plan, query, number);
             let Some(corners) = self.corners(object, stride).filter(|_| is_asked) else { continue };
-            let placed = vertices::run((stages.0, &prepared.vertex.1), &corners.vertices, 8, 0);
+            let placed = vertices::run((stages.0, &prepared.vertex.1), &corners, BOX_CORNERS, 0);
             let placed = placed.map_err(|what| refused(pass, what))?;
             let crosses = placed.chunks(varyings.stride).any(|vertex| {
                 let [_, _, z, w] = varyings.position_in(vertex);
-                // Not a number is no place that could be dropped, either.
-                !(z >= 0.0 && w > 0.0)
+                is_cut_by_near_plane(z, w)
             });
             let call = Draw {
-                vertices: &corners.vertices,
-                indices: Some(&FACES),
-                call: Call::once(FACES.len() as u32 / 3),
+                vertices: &corners,
+                indices: Some(&BOX_TRIANGLES),
+                call: Call::once(BOX_TRIANGLES.len() as u32 / 3),
                 attachments: prepared.attachments.clone(),
                 vertex: prepared.vertex.clone(),
                 fragment: prepared.fragment.clone(),

@@ -91,7 +91,7 @@ impl<'p> Rules<'p> {
 }
 
 fn is_measured_in_k(row: &Row) -> bool {
-    row.resources.iter().flat_map(|resource| &resource.extents).any(|extent| extent.length.mentions("k"))
+    row.resources.iter().any(|resource| resource.mentions("k"))
 }
 
 /// Limits that a hint may name, the one that suits most first.
