@@ -4,7 +4,7 @@
 //! with anything else.
 
 use fragbuf_codegen::{FIRST_BINDING, PassId, ResourceId, SymbolId};
-use fragbuf_frame::{Counting, Cursor, Question, Span, Turn, Values};
+use fragbuf_frame::{Counting, Cursor, Question, Run, Span, Turn, Values, bytes};
 use fragbuf_interpreter::{Dispatch, Exit, Machine, Program, Sequential, Space, dispatch};
 use fragbuf_templates::vocabulary::Kind;
 
@@ -62,11 +62,12 @@ impl<'s> Frame<'s> {
     /// Gives room to whatever can be sized by now, and tells the programs.
     fn allocate(&mut self) -> Result<(), String> {
         let plan = &self.subject.plan;
-        for (planned, words) in plan.resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
-            let size = self.values.evaluate(&planned.words, &planned.resource.name);
+        let sizes = bytes(plan, &self.values).map_err(|error| error.to_string())?;
+        let memory = self.memory[FIRST_BINDING as usize..].iter_mut();
+        for ((planned, (_, bytes)), words) in plan.resources.iter().zip(sizes).zip(memory) {
             // What the caller brings is filled: nothing is nearer than the far plane.
             let value = if planned.is_brought() { NOTHING_OPAQUE } else { STALE };
-            words.resize((size.map_err(|error| error.to_string())? as usize).max(1), value);
+            words.resize((bytes as usize / 4).max(1), value);
         }
         self.enter(0)
     }
@@ -133,7 +134,7 @@ impl<'s> Frame<'s> {
                 self.enter(run.iteration)?;
                 self.samples[run.pass.0] = 0;
                 if let Some(runnable) = self.subject.passes.iter().find(|other| other.is_of(run)) {
-                    self.pass(runnable, fragments)?;
+                    self.pass(runnable, run, fragments)?;
                 }
             }
             Turn::Ask(question) => self.answer(question)?,
@@ -174,15 +175,12 @@ impl<'s> Frame<'s> {
                 spans.iter().map(|span| self.words(*span)).collect::<Result<Vec<_>, _>>()?.concat()
             }
         };
-        let before = self.values.clone();
-        let mut values = before.clone();
-        self.cursor.answer(&self.subject.plan, &words, &mut values).map_err(|error| error.to_string())?;
-        if values == before {
-            return Ok(());
-        }
-        let decisions = self.subject.plan.frame.decisions();
-        let memory = decisions.flat_map(|decision| &decision.sets).filter(|id| **id != SymbolId::K);
-        let memory: Vec<SymbolId> = memory.copied().collect();
+        let plan = &self.subject.plan;
+        let decision = self.cursor.decides(plan);
+        let mut values = self.values.clone();
+        self.cursor.answer(plan, &words, &mut values).map_err(|error| error.to_string())?;
+        let Some(decision) = decision else { return Ok(()) };
+        let memory: Vec<SymbolId> = decision.sets.iter().copied().filter(|id| *id != SymbolId::K).collect();
         self.asked = memory.iter().filter_map(|id| values.get(*id)).max().or(self.asked);
         if let Some(most) = self.reserved.map(u64::from) {
             for id in memory {
@@ -200,12 +198,13 @@ impl<'s> Frame<'s> {
         Ok(read.ok_or_else(|| format!("word {first}, which the host reads, is not there"))?.to_vec())
     }
 
-    fn pass(&mut self, runnable: &Runnable, fragments: &Fragments<'_>) -> Result<(), String> {
+    fn pass(&mut self, runnable: &Runnable, run: Run, fragments: &Fragments<'_>) -> Result<(), String> {
         match &runnable.pass.kind {
             Kind::Compute { .. } => {
                 let mut counts = [1; 3];
+                let values = self.values.in_iteration(run.iteration);
                 for (count, groups) in counts.iter_mut().zip(&runnable.pass.groups) {
-                    let groups = self.values.word(groups, &runnable.pass.anchor);
+                    let groups = values.word(groups, &runnable.pass.anchor);
                     *count = groups.map_err(|error| error.to_string())?;
                 }
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {

@@ -56,6 +56,9 @@ pub struct ReadOut {
     formats: Vec<Option<TextureFormat>>,
 }
 
+/// Fragments of a pixel that are read at most: a walk that goes on behind them is said to have no end.
+const LONGEST: usize = 1 << 14;
+
 impl ReadOut {
     /// Links and compiles the functions. The texts are those of the profile; of what a pixel holds they say the same.
     pub fn new(plan: &Plan, profile: Profile, registry: &Registry) -> Result<Self, Diagnostics> {
@@ -113,6 +116,8 @@ impl ReadOut {
     ) -> Result<Vec<Vec<u32>>, ReadOutError> {
         let mut entries = Vec::new();
         let mut passed = BTreeSet::new();
+        // No two entries share a word, so there are no more of them than words.
+        let most = memory.iter().map(Vec::len).sum::<usize>().min(LONGEST);
         loop {
             // Of what walks count only that of the last is kept, which goes through to the end.
             let before = self.written(memory);
@@ -120,7 +125,7 @@ impl ReadOut {
             if cursor == u32::MAX {
                 return Ok(entries);
             }
-            if !passed.insert(cursor) {
+            if !passed.insert(cursor) || entries.len() == most {
                 return Err(ReadOutError::Endless);
             }
             before.into_iter().for_each(|(home, words)| memory[home] = words);

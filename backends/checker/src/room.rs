@@ -66,7 +66,7 @@ impl Asking<'_> {
 /// Every room that a case is tried in. `is_behind`: a geometry pass has come before the one under test.
 pub(crate) fn rooms(subject: &Subject, asking: &Asking<'_>, is_behind: bool) -> Result<Vec<Room>, String> {
     let plan = &subject.plan;
-    let is_counted = plan.frame.decisions().next().is_some();
+    let is_counted = plan.frame.decisions().flat_map(|decision| &decision.sets).any(|id| *id != SymbolId::K);
     let has_slots = plan.has_field(SymbolId::N);
     let is_pooled = plan.has_field(SymbolId::FRAGMENTS) && !is_counted;
     let mut rooms = match (is_counted, has_slots, is_pooled) {

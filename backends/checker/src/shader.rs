@@ -12,7 +12,6 @@ use naga::{Binding, BuiltIn, ScalarKind};
 
 use crate::explore::{End, Judge, explore};
 use crate::frame::{Memory, run_alone};
-use crate::model::Model;
 use crate::report::{Names, Schedule, fault, letter, lines};
 use crate::state::{Ground, Home};
 use crate::subject::{MARKERS, Source, Subject};
@@ -61,7 +60,7 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
     let source = Source { text: shader.text.to_owned(), lines: LineMap::default(), file: shader.file.to_owned() };
     let mut report = Report::new(limits);
     for &count in &limits.fragments {
-        let (ground, words) = ground(&program, &memory, limits.model);
+        let (ground, words) = Ground::new(&program, &memory, limits.model);
         let machines = (0..count).map(|number| invocation(&program, number)).collect();
         let mut judge = ShaderJudge { holds: holds.as_ref(), memory: memory.clone(), ground: &ground };
         let found = match ground.start(words, machines) {
@@ -147,28 +146,6 @@ fn memory(programs: &[Option<&Program>], shader: &Shader<'_>) -> Memory {
         memory[home] = words;
     }
     memory
-}
-
-fn ground<'p>(program: &'p Program, memory: &Memory, model: Model) -> (Ground<'p>, Vec<u32>) {
-    let (homes, words, ordered) = Ground::lay_out(program, memory);
-    let has_fences = model == Model::Late;
-    let fixed = memory.clone();
-    let (helper, by_submission, one_by_one) = (None, false, false);
-    (
-        Ground {
-            program,
-            homes,
-            fixed,
-            ordered,
-            model,
-            has_fences,
-            helper,
-            by_submission,
-            one_by_one,
-            counts_samples: false,
-        },
-        words,
-    )
 }
 
 /// An invocation with inputs of its own.

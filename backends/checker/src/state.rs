@@ -126,9 +126,28 @@ pub(crate) enum Mishap {
     Barrier,
 }
 
-impl Ground<'_> {
+impl<'p> Ground<'p> {
+    /// For a program over this memory, with fences if it is late, and nothing else that a caller may set. Also: the words of
+    /// the first state.
+    pub(crate) fn new(program: &'p Program, memory: &[Vec<u32>], model: Model) -> (Self, Vec<u32>) {
+        let (homes, words, ordered) = Ground::lay_out(program, memory);
+        let ground = Ground {
+            program,
+            homes,
+            fixed: memory.to_vec(),
+            ordered,
+            model,
+            has_fences: model == Model::Late,
+            helper: None,
+            by_submission: false,
+            one_by_one: false,
+            counts_samples: false,
+        };
+        (ground, words)
+    }
+
     /// Where each buffer of the program lies; the moving words, those whose order matters first; how many those are.
-    pub(crate) fn lay_out(program: &Program, memory: &[Vec<u32>]) -> (Vec<Home>, Vec<u32>, usize) {
+    fn lay_out(program: &Program, memory: &[Vec<u32>]) -> (Vec<Home>, Vec<u32>, usize) {
         let mut homes = vec![Home::Fixed(0); program.buffers.len()];
         let mut words: Vec<u32> = Vec::new();
         let mut ordered = 0;

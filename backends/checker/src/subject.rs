@@ -268,7 +268,7 @@ fn runnable(plan: &Plan, (pass, id): (&PlannedPass, PassId), checked: &Checked) 
         _ => None,
     };
     let source = Source { text: checked.pass().text.clone(), lines: checked.pass().lines.clone(), file: String::new() };
-    let is_awaited = plan.frame.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(id));
+    let is_awaited = plan.frame.waits_for_samples(id);
     Ok(Runnable { pass: pass.clone(), id, iteration: None, is_awaited, program, fragment, source })
 }
 

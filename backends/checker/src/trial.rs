@@ -228,26 +228,10 @@ fn machine<'p>(program: &'p Program, inputs: &[Vec<u32>]) -> Machine<'p> {
 
 /// What the states of a trial share, and the words of the first.
 fn ground<'s>(subject: &Subject, program: &'s Program, memory: &Memory, model: Model) -> (Ground<'s>, Vec<u32>) {
-    let (homes, words, ordered) = Ground::lay_out(program, memory);
-    let has_fences = subject.has_fences && model == Model::Late;
-    let by_submission = subject.has_ordered_interlock;
-    let fixed = memory.clone();
-    let (helper, one_by_one) = (None, false);
-    (
-        Ground {
-            program,
-            homes,
-            fixed,
-            ordered,
-            model,
-            has_fences,
-            helper,
-            by_submission,
-            one_by_one,
-            counts_samples: false,
-        },
-        words,
-    )
+    let (mut ground, words) = Ground::new(program, memory, model);
+    ground.has_fences &= subject.has_fences;
+    ground.by_submission = subject.has_ordered_interlock;
+    (ground, words)
 }
 
 /// (memory, first moving word, words) for every buffer that moves.
@@ -311,16 +295,16 @@ impl<'s> EndJudge<'_, 's> {
         let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);
         let counters = counters.map_or(&[][..], |at| &frame.memory[FIRST_BINDING as usize + at]);
         Ok(match policy.finding(&kept, counters) {
-            Finding::Right => self.streamed(&frame, counters)?.map_or(End::Right, End::Wrong),
+            Finding::Right => self.streamed(&frame, &policy, counters)?.map_or(End::Right, End::Wrong),
             Finding::Stated(text) => End::Stated(text),
             Finding::Wrong(text) => End::Wrong(text),
         })
     }
 
     /// What is wrong with what has left a pixel, where the storage hands fragments on.
-    fn streamed(&mut self, frame: &Frame<'s>, counters: &[u32]) -> Result<Option<String>, String> {
+    fn streamed(&mut self, frame: &Frame<'s>, policy: &Policy, counters: &[u32]) -> Result<Option<String>, String> {
         let trial = self.trial;
-        let (Some(programs), Some(most)) = (&trial.subject.stream, trial.policy.promise.streams()) else {
+        let (Some(programs), Some(most)) = (&trial.subject.stream, policy.promise.streams()) else {
             return Ok(None);
         };
         let count = |wanted: &str| {
@@ -330,8 +314,8 @@ impl<'s> EndJudge<'_, 's> {
         let mut memory = frame.memory.clone();
         let gone = count("spin_exhausted") as usize;
         if let Entry::Vacant(place) = self.left.entry(gone) {
-            let stream = Stream { programs, promise: &trial.policy.promise, most };
-            let fragments = trial.policy.fragments.split_at(trial.case.prior.len());
+            let stream = Stream { programs, promise: &policy.promise, most };
+            let fragments = policy.fragments.split_at(trial.case.prior.len());
             place.insert(stream.left(fragments, gone, &mut memory)?);
         }
         let mut machine = Machine::new(&programs.streamed);

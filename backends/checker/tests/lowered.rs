@@ -85,7 +85,7 @@ fn exchanged_resources_stand_for_each_other() {
     assert!(found.failure.is_some(), "the heads are those that nothing was stored under");
 }
 
-/// The deepest pixel's fragments, or one less.
+/// Rows in which a host function sets k by a histogram of the fragments of pixels.
 fn registry_of(function: fn(&HostCall<'_>) -> Vec<u64>) -> Registry {
     let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 64)", "1")
         .uses("counts", Access::Read)
