@@ -15,9 +15,10 @@ pub(super) fn steps(plan: &Plan) -> Value {
     plan.frame.commands.iter().map(|command| step(plan, command)).collect()
 }
 
-/// Pairs of resources that exchange their roles.
+/// Pairs of resources that exchange their roles, and how they stand once the frame is over.
 pub(super) fn exchanges(plan: &Plan) -> Value {
-    plan.frame.exchanges.iter().map(|pair| Value::from(pair.map(|id| name(plan, id)).to_vec())).collect()
+    let ends = plan.frame.exchanges.iter().zip(&plan.frame.end);
+    ends.map(|(pair, parity)| exchanged(plan, *pair, parity)).collect()
 }
 
 fn name(plan: &Plan, id: ResourceId) -> &str {
