@@ -5,7 +5,8 @@
 //! by it. Known conditions select a branch, unread locals are removed. This repeats until nothing changes.
 //!
 //! Invariant: an expression is removed only if it has no side effects, so a program keeps its meaning. Never changed: texts
-//! of the user's own, marker functions, whose calls other targets replace, and functions that cannot be parsed.
+//! of the user's own, marker functions, whose calls other targets replace, and functions that cannot be parsed or that have
+//! block comments.
 
 mod choice;
 mod edit;
@@ -100,10 +101,11 @@ struct Folding<'f> {
 }
 
 impl Folding<'_> {
-    /// Whether a function uses another that has a substitute.
+    /// Whether a function uses another that has a substitute. Block comments are not understood here: a function with one
+    /// stays as it was written.
     fn may_fold(&self, id: usize, is_first: bool) -> bool {
-        (is_first && self.items[id].1.compares_constants)
-            || self.uses(id).iter().any(|used| *used != id && self.is_replaced[*used])
+        let uses_replaced = || self.uses(id).iter().any(|used| *used != id && self.is_replaced[*used]);
+        ((is_first && self.items[id].1.compares_constants) || uses_replaced()) && !self.items[id].1.text.contains("/*")
     }
 
     fn function(&mut self, id: usize) {

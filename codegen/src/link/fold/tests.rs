@@ -209,3 +209,9 @@ fn what_cannot_be_read_stays() {
     let body = "    if yes() {\n        state = x;\n    }\n    @diagnostic(off, derivative_uniformity)\n    if t {\n        state = 1u;\n    }\n";
     folds("", body, body);
 }
+
+#[test]
+fn functions_with_block_comments_stay() {
+    let body = "    nothing(x); /* // */ state = x;\n    if yes() { /* { */\n        state = 1u;\n    }\n";
+    folds("", body, body);
+}
