@@ -29,13 +29,19 @@ impl Lines {
         Lines { text: text.to_owned(), origins: (0..text.lines().count()).collect() }
     }
 
-    /// Applies the edits. Where two overlap, the later one begins where the earlier ends.
+    /// Applies the edits. Where two overlap, the later one begins where the earlier ends; one inside of another is left out.
     pub(super) fn apply(&self, mut edits: Vec<Edit>) -> Self {
         edits.sort_by_key(|edit| (edit.range.start, edit.range.end));
-        let mut copy = Copy { old: self, new: Lines { text: String::new(), origins: Vec::new() }, line: 0, at: 0 };
+        let mut copy =
+            Copy { old: self, new: Lines { text: String::new(), origins: Vec::new() }, line: 0, at: 0, is_cut: false };
         for edit in edits {
+            if edit.range.start < copy.at && edit.range.end <= copy.at {
+                continue;
+            }
             copy.keep(edit.range.start.max(copy.at));
+            copy.is_cut |= !edit.range.is_empty();
             copy.put(&edit.text);
+            copy.is_cut |= !edit.text.is_empty();
             copy.skip(edit.range.end.max(copy.at));
         }
         copy.keep(self.text.len());
@@ -49,6 +55,8 @@ struct Copy<'l> {
     /// The line of `at`.
     line: usize,
     at: usize,
+    /// Whether what comes next did not follow the new text's end before.
+    is_cut: bool,
 }
 
 impl Copy<'_> {
@@ -71,6 +79,22 @@ impl Copy<'_> {
         if begins && !piece.is_empty() {
             self.new.origins.push(self.old.origins.get(self.line).copied().unwrap_or_default());
         }
+        if self.is_cut && joins(&self.new.text, piece) {
+            self.new.text.push(' ');
+        }
+        self.is_cut &= piece.is_empty();
         self.new.text.push_str(piece);
+    }
+}
+
+/// Whether the last token of one text and the first of another would be read as one, or as a comment.
+fn joins(before: &str, behind: &str) -> bool {
+    let (Some(&last), Some(&first)) = (before.as_bytes().last(), behind.as_bytes().first()) else { return false };
+    let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || !byte.is_ascii();
+    match (last, first) {
+        (b'+' | b'-' | b'&' | b'|' | b'<' | b'>' | b'=' | b'/', _) if last == first => true,
+        (b'+' | b'-' | b'*' | b'/' | b'%' | b'&' | b'|' | b'^' | b'<' | b'>' | b'!', b'=') => true,
+        (b'/', b'*') | (b'-', b'>') => true,
+        _ => is_word(last) && is_word(first),
     }
 }

@@ -215,3 +215,15 @@ fn functions_with_block_comments_stay() {
     let body = "    nothing(x); /* // */ state = x;\n    if yes() { /* { */\n        state = 1u;\n    }\n";
     folds("", body, body);
 }
+
+#[test]
+fn tokens_stay_apart() {
+    folds(
+        "",
+        "    if(yes() && t) {\n        state = x;\n    }\n    nothing(x);\n",
+        "    if t {\n        state = x;\n    }\n",
+    );
+    folds(" -> bool", "    return(yes());\n", "    return true;\n");
+    folds(" -> f32", "    let a = f32(x);\n    return a -share()*-a;\n", "    let a = f32(x);\n    return a - -a;\n");
+    folds(" -> bool", "    if(yes()&&t){\n        return true;\n    }\n    return false;\n", "    return t;\n");
+}
