@@ -75,15 +75,16 @@ impl Rules<'_> {
         let moved: Vec<&str> =
             inner.filter(|inner| KEYWORDS.contains(&inner[0].text)).map(|inner| inner[1].text).collect();
         let is_single = |name: &&str| self.declarations.iter().filter(|other| *other == name).count() == 1;
-        if !moved.iter().all(is_single) {
-            return;
+        let has_lines = self.has_lines(statement, block);
+        if !has_lines && self.is_empty(block) {
+            return self.remove(statement);
+        }
+        if !has_lines || !moved.iter().all(is_single) {
+            return self.block(block);
         }
         let (outer, open, close) =
             (self.whole_lines(statement), self.tokens[block.open].at, self.tokens[block.close].at);
         let (first, last) = (self.line_end(open), self.line_start(close));
-        if first > last {
-            return;
-        }
         self.values.edits.push(removal(outer.start..first));
         let mut at = first;
         for line in self.text[first..last].split_inclusive('\n') {
@@ -92,6 +93,15 @@ impl Rules<'_> {
             at += line.len();
         }
         self.values.edits.push(removal(last..outer.end));
+    }
+
+    /// Whether the lines of the statement and of the block's braces hold nothing else, comments apart: they are removed
+    /// whole.
+    fn has_lines(&self, statement: &Range<usize>, block: &Block) -> bool {
+        let line = |index: usize| self.line_start(self.tokens[index].at);
+        let is_first = |index: usize| index == 0 || line(index - 1) < line(index);
+        let is_last = |index: usize| index + 1 == self.tokens.len() || line(index) < line(index + 1);
+        is_first(statement.start) && is_last(block.open) && is_first(block.close) && is_last(statement.end - 1)
     }
 
     /// `if a { return true; } return false;` becomes `return a;`, and the reverse `return !a;`.

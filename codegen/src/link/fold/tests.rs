@@ -227,3 +227,16 @@ fn tokens_stay_apart() {
     folds(" -> f32", "    let a = f32(x);\n    return a -share()*-a;\n", "    let a = f32(x);\n    return a - -a;\n");
     folds(" -> bool", "    if(yes()&&t){\n        return true;\n    }\n    return false;\n", "    return t;\n");
 }
+
+#[test]
+fn statements_on_the_lines_of_braces_stay() {
+    let kept = |body: &str| folds("", body, &body.replace("yes()", "true"));
+    kept("    if yes() { state = 1u;\n        state = x;\n    }\n");
+    kept("    if yes() {\n        state = x;\n    state = 2u; }\n");
+    kept("    if yes() {\n        state = x;\n    } state = 2u;\n");
+    kept("    state = 3u; if yes() {\n        state = x;\n    }\n");
+    kept("    if yes() { state = x; }\n");
+    folds("", "    if yes() {}\n    state = x;\n", "    state = x;\n");
+    folds("", "    if yes() { // Why.\n        state = x;\n    } // So.\n", "    state = x;\n");
+    folds("", "    if yes() { nothing(x); state = x; }\n", "    if true { state = x; }\n");
+}
