@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use super::edit::{Edit, removal};
 use super::expression::{self, Expression};
-use super::rules::{KEYWORDS, Rules};
+use super::locals::declared;
+use super::rules::Rules;
 use super::syntax::{Block, Branch, Kind, Statement};
 use super::values::Position;
 
@@ -71,15 +72,11 @@ impl Rules<'_> {
 
     /// Puts the statements of `block` in place of the statement that it is a branch of.
     fn unwrap(&mut self, statement: &Range<usize>, block: &Block) {
-        let inner = block.statements.iter().map(|inner| &self.tokens[inner.tokens.start..inner.tokens.end]);
-        let moved: Vec<&str> =
-            inner.filter(|inner| KEYWORDS.contains(&inner[0].text)).map(|inner| inner[1].text).collect();
-        let is_single = |name: &&str| self.declarations.iter().filter(|other| *other == name).count() == 1;
         let has_lines = self.has_lines(statement, block);
         if !has_lines && self.is_empty(block) {
             return self.remove(statement);
         }
-        if !has_lines || !moved.iter().all(is_single) {
+        if !has_lines || !self.may_move(block) {
             return self.block(block);
         }
         let (outer, open, close) =
@@ -93,6 +90,17 @@ impl Rules<'_> {
             at += line.len();
         }
         self.values.edits.push(removal(last..outer.end));
+    }
+
+    /// Whether what a block declares can be declared around it: no other declaration has such a name, and no such name means
+    /// anything else around the block.
+    fn may_move(&self, block: &Block) -> bool {
+        let inner = block.open..block.close;
+        let declared = block.statements.iter().filter_map(|inner| declared(self.tokens, inner.tokens.start));
+        declared.into_iter().all(|at| {
+            let name = self.tokens[at].text;
+            self.locals.count(name) == 1 && self.uses(name, at).iter().all(|at| inner.contains(at))
+        })
     }
 
     /// Whether the lines of the statement and of the block's braces hold nothing else, comments apart: they are removed

@@ -13,6 +13,7 @@ mod edit;
 mod effects;
 mod expression;
 mod lines;
+mod locals;
 mod rules;
 mod substitute;
 mod syntax;

@@ -3,12 +3,11 @@
 //! In: a function's text, and what is known of the names in it. Out: edits. What they make possible is left to the next
 //! round. Comments directly above a removed statement are removed with it.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::edit::Edit;
-use super::effects::declared;
 use super::expression::{self, Expression};
+use super::locals::{KEYWORDS, Locals};
 use super::substitute::Substitute;
 use super::syntax::{self, Block, Kind, Statement};
 use super::values::{Known, Position, Values};
@@ -17,11 +16,9 @@ use crate::link::token::{Token, TokenKind};
 /// The edits of one round; none where the function cannot be read. `is_first`: nothing has changed so far.
 pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_first: bool) -> Vec<Edit> {
     let Some(body) = syntax::body(tokens) else { return Vec::new() };
-    let parameters = tokens[..body.open].windows(2).filter(|pair| pair[1].text == ":").map(|pair| pair[0].text);
-    let declarations: Vec<&str> = declared(tokens, &KEYWORDS).chain(parameters).collect();
-    let locals: BTreeSet<&str> = declarations.iter().copied().collect();
+    let locals = Locals::of(tokens);
     let values = Values { tokens, known, locals: &locals, tidies: !is_first, edits: Vec::new() };
-    let mut rules = Rules { text, tokens, declarations: &declarations, is_first, values };
+    let mut rules = Rules { text, tokens, locals: &locals, is_first, values };
     rules.block(&body);
     match body.statements.last().map(|last| last.tokens.clone()) {
         Some(last) if !is_first && last.len() == 2 && tokens[last.start].text == "return" => rules.remove(&last),
@@ -30,15 +27,11 @@ pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_firs
     rules.values.edits
 }
 
-/// What a declaration begins with.
-pub(super) const KEYWORDS: [&str; 3] = ["let", "var", "const"];
-
 /// The rules on one function.
 pub(super) struct Rules<'r> {
     pub(super) text: &'r str,
     pub(super) tokens: &'r [Token<'r>],
-    /// Names that the function declares, as often as it does.
-    pub(super) declarations: &'r [&'r str],
+    pub(super) locals: &'r Locals<'r>,
     pub(super) is_first: bool,
     pub(super) values: Values<'r>,
 }
@@ -140,7 +133,7 @@ impl Rules<'_> {
         if uses.is_empty() && self.values.is_pure(&value) {
             return self.remove(statement);
         }
-        let is_once = self.declarations.iter().filter(|other| **other == name.text).count() == 1;
+        let is_once = self.locals.count(name.text) == 1;
         let stays = uses.iter().all(|&at| (statement.end..around.close).contains(&at) && !self.is_changed(at));
         match self.values.truth(&value) {
             Some(truth) if is_once && stays => {
@@ -155,7 +148,7 @@ impl Rules<'_> {
     }
 
     /// Where else a name stands, as no member.
-    fn uses(&self, name: &str, declared: usize) -> Vec<usize> {
+    pub(super) fn uses(&self, name: &str, declared: usize) -> Vec<usize> {
         let is_use = |index: &usize| {
             *index != declared && self.tokens[*index].text == name && self.tokens[index - 1].text != "."
         };

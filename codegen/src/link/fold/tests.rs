@@ -240,3 +240,13 @@ fn statements_on_the_lines_of_braces_stay() {
     folds("", "    if yes() { // Why.\n        state = x;\n    } // So.\n", "    state = x;\n");
     folds("", "    if yes() { nothing(x); state = x; }\n", "    if true { state = x; }\n");
 }
+
+#[test]
+fn declarations_stay_in_blocks_where_their_names_mean_something_else() {
+    let kept = |body: &str| folds("", body, &body.replace("yes()", "true"));
+    // `MOST` is a constant behind the block, `state` a variable.
+    kept("    if yes() {\n        let MOST = x;\n        state = MOST;\n    }\n    state = MOST;\n");
+    kept("    if yes() {\n        var state = x;\n        state += x;\n    }\n    state = x;\n");
+    kept("    if yes() {\n        var<function> x = 1u;\n        x += 1u;\n        state = x;\n    }\n");
+    folds("", "    if yes() {\n        let a = x;\n        state = a;\n    }\n", "    let a = x;\n    state = a;\n");
+}

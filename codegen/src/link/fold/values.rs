@@ -2,12 +2,12 @@
 //!
 //! In: an expression, and what is known of the names in it. Out: edits. An operand is removed only if it has no side effects.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::edit::{Edit, removal};
 use super::effects::built_in_has_effects;
 use super::expression::{Expression, Kind, is_template};
+use super::locals::Locals;
 use super::substitute::{Substitute, integer};
 use crate::link::token::{Token, TokenKind};
 
@@ -34,8 +34,8 @@ pub(super) enum Position {
 pub(super) struct Values<'v> {
     pub(super) tokens: &'v [Token<'v>],
     pub(super) known: &'v Known<'v>,
-    /// Names that the function declares, parameters included: they hide declarations.
-    pub(super) locals: &'v BTreeSet<&'v str>,
+    /// What the function declares: these names hide declarations.
+    pub(super) locals: &'v Locals<'v>,
     /// Whether parentheses around a single operand go, once something else has.
     pub(super) tidies: bool,
     pub(super) edits: Vec<Edit>,
@@ -96,7 +96,7 @@ impl Values<'_> {
 
     /// The substitute of a name, if no local hides it.
     pub(super) fn substitute(&self, name: &str) -> Substitute {
-        if self.locals.contains(name) { Substitute::None } else { (self.known.substitute)(name) }
+        if self.locals.declares(name) { Substitute::None } else { (self.known.substitute)(name) }
     }
 
     /// The bytes of some tokens.
@@ -153,7 +153,7 @@ impl Values<'_> {
             let name = self.tokens[index].text;
             let next = self.tokens.get(index + 1).map_or("", |next| next.text);
             let is_called = next == "(" && (self.known.has_effects)(name).is_some();
-            self.locals.contains(name) || is_called || (is_template(name) && next == "<")
+            self.locals.declares(name) || is_called || (is_template(name) && next == "<")
         })
     }
 
