@@ -3,14 +3,13 @@
 //! In: tokens of a function, or the name of a built-in function. Out: whether it writes to anything but local variables, or
 //! discards. Loops are assumed to end; no read is a side effect.
 
-use std::collections::BTreeSet;
-
+use super::locals::{KEYWORDS, Locals};
 use crate::link::token::{Token, TokenKind};
 
 /// Whether a function has effects of its own; those of the functions that it calls are left out.
 pub(super) fn has_effects(tokens: &[Token<'_>]) -> bool {
-    let locals: BTreeSet<&str> = declared(tokens, &["var", "let", "const"]).chain(["_"]).collect();
-    let is_write = |index: usize| writes(tokens, index) && !locals.contains(target(tokens, index));
+    let locals = Locals::of(tokens);
+    let is_write = |index: usize| writes(tokens, index) && !stays_inside(tokens, &locals, index);
     let is_built_in = |token: &Token<'_>| token.kind == TokenKind::Name && built_in_has_effects(token.text);
     (0..tokens.len()).any(|index| is_write(index) || is_built_in(&tokens[index]))
 }
@@ -23,12 +22,6 @@ pub(super) fn built_in_has_effects(name: &str) -> bool {
         || name == "textureStore"
         || name.ends_with("Barrier")
         || name.starts_with("workgroupUniform")
-}
-
-/// The names declared behind these keywords, in order.
-pub(super) fn declared<'a>(tokens: &'a [Token<'a>], keywords: &'a [&str]) -> impl Iterator<Item = &'a str> {
-    let pairs = tokens.windows(2).filter(|pair| keywords.contains(&pair[0].text) && pair[1].kind == TokenKind::Name);
-    pairs.map(|pair| pair[1].text)
 }
 
 /// Whether an assignment, an increment or a decrement stands at `index`.
@@ -49,17 +42,18 @@ fn writes(tokens: &[Token<'_>], index: usize) -> bool {
     }
 }
 
-/// The first name of the statement that holds `index`; a declaration is no write, and counts as one of a local.
-fn target<'a>(tokens: &[Token<'a>], index: usize) -> &'a str {
-    let start = tokens[..index].iter().rposition(|token| matches!(token.text, ";" | "{" | "}"));
-    let mut statement = tokens[start.map_or(0, |start| start + 1)..=index].iter();
-    let mut first = statement.next().map_or("", |token| token.text);
+/// Whether the write at `index` is a declaration, or changes a local variable. What begins with anything but the name of a
+/// variable may write through a pointer.
+fn stays_inside(tokens: &[Token<'_>], locals: &Locals<'_>, index: usize) -> bool {
+    let first = target(tokens, index);
+    let name = tokens[first].text;
+    name == "_" || KEYWORDS.contains(&name) || locals.at(name, first).is_some_and(|local| local.keyword == "var")
+}
+
+/// The first token of the statement that holds `index`.
+fn target(tokens: &[Token<'_>], index: usize) -> usize {
+    let before = tokens[..index].iter().rposition(|token| matches!(token.text, ";" | "{" | "}"));
+    let start = before.map_or(0, |before| before + 1);
     // The head of a loop: `for (var index = ...`.
-    if first == "for" {
-        first = statement.nth(1).map_or("", |token| token.text);
-    }
-    match first {
-        "var" | "let" => statement.next().map_or("", |token| token.text),
-        _ => first,
-    }
+    if tokens[start].text == "for" { (start + 2).min(index) } else { start }
 }

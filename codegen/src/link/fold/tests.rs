@@ -11,6 +11,7 @@ const LIMIT = 0u;
 const MOST = 4u;
 const ONE = 1.0;
 var<private> state: u32;
+var<private> pair: vec2<u32>;
 
 fn nothing(a: u32) {}
 
@@ -49,6 +50,46 @@ fn write(a: u32) -> u32 {
 
 fn write_deep(a: u32) -> u32 {
     return write(a) + 1u;
+}
+
+fn write_behind_a_block(a: u32) -> u32 {
+    if a > 0u {
+        var state = a;
+        state += 1u;
+    }
+    state = a;
+    return a;
+}
+
+fn write_behind_a_loop(a: u32) -> u32 {
+    for (var state = 0u; state < a; state++) {
+        let b = a;
+    }
+    state = a;
+    return a;
+}
+
+fn write_through_a_pointer(a: u32) -> u32 {
+    let p = &pair;
+    p.x = a;
+    return a;
+}
+
+fn write_through_an_argument(p: ptr<function, vec2<u32>>) -> u32 {
+    p.x = 1u;
+    return 2u;
+}
+
+fn write_locals(a: u32) -> u32 {
+    const ZERO = 0u;
+    var<function> b = vec2<u32>(ZERO);
+    b.x = a;
+    for (var i = 0u; i < a; i++) {
+        i += 1u;
+    }
+    var state = a;
+    state += b.x;
+    return state;
 }
 
 fn memory_fence() {}
@@ -249,4 +290,14 @@ fn declarations_stay_in_blocks_where_their_names_mean_something_else() {
     kept("    if yes() {\n        var state = x;\n        state += x;\n    }\n    state = x;\n");
     kept("    if yes() {\n        var<function> x = 1u;\n        x += 1u;\n        state = x;\n    }\n");
     folds("", "    if yes() {\n        let a = x;\n        state = a;\n    }\n", "    let a = x;\n    state = a;\n");
+}
+
+#[test]
+fn writes_to_anything_but_a_local_variable_are_effects() {
+    let kept = |body: &str| folds("", body, body);
+    kept("    nothing(write_behind_a_block(x));\n");
+    kept("    nothing(write_behind_a_loop(x));\n");
+    kept("    nothing(write_through_a_pointer(x));\n");
+    kept("    var a = vec2<u32>(x);\n    nothing(write_through_an_argument(&a));\n    state = a.x;\n");
+    folds("", "    nothing(write_locals(x));\n    state = x;\n", "    state = x;\n");
 }
