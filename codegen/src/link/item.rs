@@ -24,6 +24,7 @@ pub(crate) struct Item<'a> {
     /// One line: set next to its like, without a blank line between.
     pub(crate) is_short: bool,
     pub(super) is_function: bool,
+    pub(super) is_variable: bool,
     /// What replaces its uses.
     pub(super) substitute: Substitute,
     /// For a function: whether it compares a constant with a number or another constant.
@@ -58,6 +59,7 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
             is_bound: attributes.windows(2).any(|pair| (pair[0].text, pair[1].text) == ("@", "binding")),
             is_short: !text[start..end].contains('\n'),
             is_function,
+            is_variable: tokens[keyword].text == "var",
             substitute: substitute(tokens),
             compares_constants: is_function && compares_constants(tokens),
             is_private_array: is_private_array(tokens),

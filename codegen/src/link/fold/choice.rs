@@ -61,7 +61,7 @@ impl Rules<'_> {
             _ => {}
         }
         for (branch, condition) in branches.iter().zip(conditions) {
-            condition.iter().for_each(|condition| self.values.fold(condition, Position::Whole));
+            condition.iter().for_each(|condition| self.values.fold(condition, Position::WHOLE));
             self.block(&branch.block);
         }
     }

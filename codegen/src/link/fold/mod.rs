@@ -18,6 +18,7 @@ mod rules;
 mod substitute;
 mod syntax;
 mod trace;
+mod types;
 mod values;
 
 #[cfg(test)]
@@ -37,7 +38,7 @@ use super::token::{Token, tokens};
 use crate::MARKERS;
 use edit::Lines;
 use effects::has_effects;
-use values::Known;
+use values::{Declared, Known};
 
 /// A function after folding.
 #[derive(Clone, Debug)]
@@ -114,6 +115,7 @@ impl Folding<'_> {
         let known = Known {
             substitute: &|name| self.substitutes.get(name).cloned().unwrap_or_default(),
             has_effects: &|name| self.index.get(name).map(|id| self.has_effects(*id)),
+            declared: &|name| self.index.get(name).map(|id| Declared::of(self.items[*id].1)),
         };
         let folded = match self.folded.get(&id) {
             Some(folded) => {

@@ -3,6 +3,7 @@
 //! In: a function's text, and what is known of the names in it. Out: edits. What they make possible is left to the next
 //! round. Comments directly above a removed statement are removed with it.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::edit::Edit;
@@ -17,7 +18,8 @@ use crate::link::token::{Token, TokenKind};
 pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_first: bool) -> Vec<Edit> {
     let Some(body) = syntax::body(tokens) else { return Vec::new() };
     let locals = Locals::of(tokens);
-    let values = Values { tokens, known, locals: &locals, tidies: !is_first, edits: Vec::new() };
+    let values =
+        Values { tokens, known, locals: &locals, tidies: !is_first, truths: BTreeMap::new(), edits: Vec::new() };
     let mut rules = Rules { text, tokens, locals: &locals, is_first, values };
     rules.block(&body);
     match body.statements.last().map(|last| last.tokens.clone()) {
@@ -78,8 +80,10 @@ impl Rules<'_> {
         let parts: Vec<usize> = head.clone().filter(|&index| self.tokens[index].text == ";").collect();
         match parts[..] {
             [first, second] => {
-                if let Some(equals) = (head.start..first).find(|&index| self.tokens[index].text == "=") {
-                    self.fold(equals + 1..first);
+                if let Some(equals) = (head.start..first).find(|&index| self.tokens[index].text == "=")
+                    && let Some(value) = self.read(equals + 1..first)
+                {
+                    self.values.fold(&value, self.assigned(equals));
                 }
                 self.fold(first + 1..second);
             }
@@ -97,8 +101,11 @@ impl Rules<'_> {
                 let does_nothing = self.values.substitute(name) != Substitute::None;
                 match self.read(inner) {
                     Some(call) if does_nothing && self.has_pure_arguments(&call) => self.remove(statement),
-                    Some(call) => self.values.fold(&call, Position::Whole),
-                    None => {}
+                    Some(Expression { kind: expression::Kind::Call(arguments), tokens }) => {
+                        // What takes the place of a call as a value may be no statement.
+                        self.values.arguments(self.tokens[tokens.start].text, &arguments);
+                    }
+                    _ => {}
                 }
             }
             _ => self.assignment(statement),
@@ -120,7 +127,15 @@ impl Rules<'_> {
         if scales && target.is_some() && self.values.is_one(&value) {
             self.remove(statement);
         } else {
-            self.values.fold(&value, Position::Whole);
+            self.values.fold(&value, self.assigned(equals));
+        }
+    }
+
+    /// Where a value stands behind this `=`: `/=`, `%=`, `<<=` and `>>=` refuse some constants, as their operators do.
+    fn assigned(&self, equals: usize) -> Position {
+        match self.tokens[equals - 1].text {
+            "/" | "%" | "<" | ">" => Position::EVALUATED,
+            _ => Position::WHOLE,
         }
     }
 
@@ -136,14 +151,9 @@ impl Rules<'_> {
         let is_once = self.locals.count(name.text) == 1;
         let stays = uses.iter().all(|&at| (statement.end..around.close).contains(&at) && !self.is_changed(at));
         match self.values.truth(&value) {
-            Some(truth) if is_once && stays => {
-                for at in uses {
-                    let range = self.values.bytes(&(at..at + 1));
-                    self.values.edits.push(Edit { range, text: truth.to_string() });
-                }
-                self.remove(statement);
-            }
-            _ => self.values.fold(&value, Position::Whole),
+            // Once nothing reads it any more it is removed.
+            Some(truth) if is_once && stays => _ = self.values.truths.insert(name.text, truth),
+            _ => self.values.fold(&value, Position::WHOLE),
         }
     }
 
@@ -155,18 +165,22 @@ impl Rules<'_> {
         (1..self.tokens.len()).filter(is_use).collect()
     }
 
-    /// Whether a name is assigned to here, or a pointer to it taken.
+    /// Whether a name is assigned to here, or a pointer to it taken; parentheses may be around it.
     fn is_changed(&self, at: usize) -> bool {
         let text = |index: usize| self.tokens.get(index).map_or("", |token| token.text);
-        let assigned = text(at + 1) == "=" && text(at + 2) != "=";
-        let is_pointed_at = text(at - 1) == "&" && text(at.wrapping_sub(2)) != "&";
-        let is_combined = matches!(text(at + 1), "&" | "|") && text(at + 2) == "=";
+        let (mut before, mut behind) = (at - 1, at + 1);
+        while before > 1 && text(before) == "(" && text(behind) == ")" {
+            (before, behind) = (before - 1, behind + 1);
+        }
+        let assigned = text(behind) == "=" && text(behind + 1) != "=";
+        let is_pointed_at = text(before) == "&" && text(before.wrapping_sub(1)) != "&";
+        let is_combined = matches!(text(behind), "&" | "|") && text(behind + 1) == "=";
         assigned || is_pointed_at || is_combined
     }
 
     fn fold(&mut self, range: Range<usize>) {
         if let Some(expression) = self.read(range) {
-            self.values.fold(&expression, Position::Whole);
+            self.values.fold(&expression, Position::WHOLE);
         }
     }
 

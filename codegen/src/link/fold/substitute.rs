@@ -53,8 +53,9 @@ fn of_function(tokens: &[Token<'_>]) -> Substitute {
 fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Substitute {
     match value.kind {
         _ if matches!(value.text, "true" | "false") => Substitute::Literal(value.text.to_owned()),
-        // Without a type of its own a number could become another at the call.
-        TokenKind::Number if value.text.ends_with('u') || value.text.contains('.') => {
+        // Without a type of its own a number could become another at the call: one with a fraction becomes `f32` there.
+        TokenKind::Number if value.text.ends_with('u') => Substitute::Literal(value.text.to_owned()),
+        TokenKind::Number if value.text.contains('.') && signature.last().is_some_and(|last| last.text == "f32") => {
             Substitute::Literal(value.text.to_owned())
         }
         TokenKind::Name => {

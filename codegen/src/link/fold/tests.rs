@@ -10,6 +10,7 @@ const LIBRARY: &str = "\
 const LIMIT = 0u;
 const MOST = 4u;
 const ONE = 1.0;
+const TABLE = array(1.0, 2.0);
 var<private> state: u32;
 var<private> pair: vec2<u32>;
 
@@ -29,6 +30,10 @@ fn share() -> f32 {
 
 fn zero() -> u32 {
     return 0u;
+}
+
+fn half() -> f16 {
+    return 0.5;
 }
 
 fn second(a: u32, b: u32) -> u32 {
@@ -300,4 +305,77 @@ fn writes_to_anything_but_a_local_variable_are_effects() {
     kept("    nothing(write_through_a_pointer(x));\n");
     kept("    var a = vec2<u32>(x);\n    nothing(write_through_an_argument(&a));\n    state = a.x;\n");
     folds("", "    nothing(write_locals(x));\n    state = x;\n", "    state = x;\n");
+}
+
+#[test]
+fn literals_keep_the_types_around_them() {
+    let value = |result: &str, expression: &str, expected: &str| {
+        let body = |value: &str| format!("    var<function> y = f32(x);\n    return {value};\n");
+        folds(result, &body(expression), &body(expected));
+    };
+    let float = |expression: &str, expected: &str| value(" -> f32", expression, expected);
+    // The other side could be a whole number without the factor.
+    float("f32(1 * share())", "f32(1 * share())");
+    float("y + f32(no(x, x) || 1 * 1.0 > ONE)", "y + f32(no(x, x) || 1 * 1.0 > ONE)");
+    float("ONE * share()", "ONE * share()");
+    float("y * (ONE * share())", "y * (ONE * share())");
+    float("TABLE[0] * share()", "TABLE[0] * share()");
+    float("share() * y + share()", "y + 1.0");
+    float("(y + 2.0) * share()", "y + 2.0");
+    float("2.0f * share()", "2.0f * share()");
+    float("y * half()", "y * half()");
+    float("select(1, 2, yes()) * y", "select(1, 2, true) * y");
+    float("y + select(1, 2.0f, yes())", "y + 2.0f");
+    float("select(y, 1, yes())", "select(y, 1, true)");
+    float("select(y, 1.0f, yes())", "1.0f");
+    float("select(1, y, yes())", "y");
+    value(" -> u32", "second(x, 1)", "second(x, 1)");
+    value(" -> u32", "second(x, MOST)", "second(x, MOST)");
+    value(" -> u32", "second(x, 1u)", "1u");
+}
+
+#[test]
+fn constants_do_not_take_places_that_the_compiler_evaluates() {
+    let kept = |expression: &str| {
+        let body = format!("    var<function> y = array<u32, 2>(x, x);\n    return {expression};\n");
+        folds(" -> u32", &body, &body);
+    };
+    kept("y[zero()]");
+    kept("y[second(x, 5u)]");
+    kept("y[zero() + 1u]");
+    kept("max(zero(), x)");
+    kept("max(second(x, 1u), x)");
+    kept("u32(1.0 / share())");
+    kept("1u << zero()");
+    kept("x / second(x, 0u)");
+    kept("1u / u32(no(x, x))");
+    kept("second(x, 0u) + zero()");
+    kept("1u / (zero() + zero())");
+    folds("", "    state /= zero();\n", "    state /= zero();\n");
+    folds("", "    state <<= zero();\n    state += zero();\n", "    state <<= zero();\n    state += 0u;\n");
+    let moved = |expression: &str, expected: &str| {
+        let body = |value: &str| format!("    var<function> y = array<u32, 2>(x, x);\n    return {value};\n");
+        folds(" -> u32", &body(expression), &body(expected));
+    };
+    moved("y[second(x, x & 1u)]", "y[x & 1u]");
+    moved("max(x + zero(), second(x, state))", "max(x + 0u, state)");
+    moved("1u / u32(t && no(x, x))", "1u / u32(t && false)");
+    moved("read(zero())", "read(0u)");
+    moved("x / second(x, state + 1u)", "x / (state + 1u)");
+}
+
+#[test]
+fn known_locals_stay_where_a_constant_may_not_stand() {
+    let body = "    let wanted = yes();\n    if wanted && t {\n        state = 1u / u32(!wanted);\n    }\n";
+    folds("", body, &body.replace("yes()", "true").replace("wanted && t", "t"));
+    let changed = "    var wanted = yes();\n    (wanted) = t;\n    if wanted {\n        state = x;\n    }\n";
+    folds("", changed, &changed.replace("yes()", "true"));
+    // Two edits of one statement: the use goes with the statement.
+    let unread = "    let wanted = yes();\n    let other = !wanted;\n    nothing(x);\n    state = x;\n";
+    folds("", unread, "    state = x;\n");
+}
+
+#[test]
+fn a_statement_stays_one() {
+    folds("", "    second(x, x + write(x));\n", "    second(x, x + write(x));\n");
 }

@@ -11,7 +11,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use super::Folded;
 use super::substitute::Substitute;
-use super::values::Known;
+use super::values::{Declared, Known};
 
 /// Folds `text`, or takes over what it came to before. `fold` does the work; `None`: nothing changes.
 pub(super) fn folded(
@@ -32,11 +32,16 @@ pub(super) fn folded(
             let answer = (known.has_effects)(name);
             *asked.effects.borrow_mut().entry(name.to_owned()).or_insert(answer)
         };
-        fold(&Known { substitute: &substitute, has_effects: &has_effects }).map(Arc::new)
+        let declared = |name: &str| {
+            let answer = (known.declared)(name);
+            *asked.declared.borrow_mut().entry(name.to_owned()).or_insert(answer)
+        };
+        fold(&Known { substitute: &substitute, has_effects: &has_effects, declared: &declared }).map(Arc::new)
     };
     let trace = Trace {
         substitutes: asked.substitutes.into_inner().into_iter().collect(),
         effects: asked.effects.into_inner().into_iter().collect(),
+        declared: asked.declared.into_inner().into_iter().collect(),
         result: result.clone(),
     };
     let mut kept = kept();
@@ -55,12 +60,14 @@ const MOST: usize = 4096;
 struct Asked {
     substitutes: RefCell<BTreeMap<String, Substitute>>,
     effects: RefCell<BTreeMap<String, Option<bool>>>,
+    declared: RefCell<BTreeMap<String, Option<Declared>>>,
 }
 
 /// A result, and what led to it.
 struct Trace {
     substitutes: Vec<(String, Substitute)>,
     effects: Vec<(String, Option<bool>)>,
+    declared: Vec<(String, Option<Declared>)>,
     result: Option<Arc<Folded>>,
 }
 
@@ -77,7 +84,8 @@ fn taken_over(text: &str, known: &Known<'_>) -> Option<Option<Arc<Folded>>> {
     let kept = kept();
     let is_same = |trace: &&Trace| {
         let substitutes = trace.substitutes.iter().all(|(name, answer)| (known.substitute)(name) == *answer);
-        substitutes && trace.effects.iter().all(|(name, answer)| (known.has_effects)(name) == *answer)
+        let declared = || trace.declared.iter().all(|(name, answer)| (known.declared)(name) == *answer);
+        substitutes && declared() && trace.effects.iter().all(|(name, answer)| (known.has_effects)(name) == *answer)
     };
     kept.get(text)?.iter().find(is_same).map(|trace| trace.result.clone())
 }

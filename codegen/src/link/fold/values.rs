@@ -2,13 +2,15 @@
 //!
 //! In: an expression, and what is known of the names in it. Out: edits. An operand is removed only if it has no side effects.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::edit::{Edit, removal};
 use super::effects::built_in_has_effects;
-use super::expression::{Expression, Kind, is_template};
+use super::expression::{Expression, Kind};
 use super::locals::Locals;
 use super::substitute::{Substitute, integer};
+use crate::link::item::Item;
 use crate::link::token::{Token, TokenKind};
 
 /// What is known of declarations, by name.
@@ -17,17 +19,47 @@ pub(super) struct Known<'k> {
     pub(super) substitute: &'k dyn Fn(&str) -> Substitute,
     /// Whether a call of a declared function does more than return a value; `None` where none is declared.
     pub(super) has_effects: &'k dyn Fn(&str) -> Option<bool>,
+    /// What a name is declared as; `None` where it is not.
+    pub(super) declared: &'k dyn Fn(&str) -> Option<Declared>,
+}
+
+/// What a declaration around the function declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Declared {
+    Function,
+    Variable,
+    /// A constant or a type.
+    Other,
+}
+
+impl Declared {
+    pub(super) fn of(item: &Item<'_>) -> Self {
+        match item {
+            _ if item.is_function => Declared::Function,
+            _ if item.is_variable => Declared::Variable,
+            _ => Declared::Other,
+        }
+    }
 }
 
 /// Where an expression stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Position {
-    /// Nothing binds to it.
-    Whole,
-    /// An operator binds to it.
-    Operand,
-    /// Behind an operator that refuses some constants: `/`, `%`, `<<`, `>>`.
-    Divisor,
+pub(super) struct Position {
+    /// Whether an operator binds to it.
+    is_operand: bool,
+    /// Whether a constant may take the place of a value that is found when the program runs. Elsewhere the compiler would
+    /// evaluate what is around it, and refuse a division by zero or an index out of bounds, or choose another type.
+    may_be_constant: bool,
+}
+
+impl Position {
+    /// What is assigned, returned, decided on, or given to a declared function: its type is that of its place.
+    pub(super) const WHOLE: Position = Position { is_operand: false, may_be_constant: true };
+    /// An index, an argument of a function of WGSL's own, or behind `/=`.
+    pub(super) const EVALUATED: Position = Position { is_operand: false, may_be_constant: false };
+    fn operand(may_be_constant: bool) -> Self {
+        Position { is_operand: true, may_be_constant }
+    }
 }
 
 /// The expressions of one function.
@@ -38,33 +70,51 @@ pub(super) struct Values<'v> {
     pub(super) locals: &'v Locals<'v>,
     /// Whether parentheses around a single operand go, once something else has.
     pub(super) tidies: bool,
+    /// Locals that are `true` or `false` and never change.
+    pub(super) truths: BTreeMap<&'v str, bool>,
     pub(super) edits: Vec<Edit>,
 }
 
-impl Values<'_> {
+impl<'v> Values<'v> {
     /// Adds what folds in an expression.
     pub(super) fn fold(&mut self, expression: &Expression, position: Position) {
         match &expression.kind {
-            Kind::Atom => {}
+            Kind::Atom => {
+                if let Some(value) = self.constant(expression).filter(|_| position.may_be_constant) {
+                    self.replace(expression, &value.to_string());
+                }
+            }
             Kind::Parenthesised(inner) => {
                 let is_single = matches!(inner.kind, Kind::Atom | Kind::Call(_) | Kind::Part(..));
-                if self.tidies && (is_single || position == Position::Whole) {
+                if self.tidies && (is_single || !position.is_operand) {
                     self.keep_only(expression, inner);
                 } else {
-                    self.fold(inner, Position::Whole);
+                    self.fold(inner, Position { is_operand: false, ..position });
                 }
             }
             Kind::Unary(operand) => match self.truth(operand).filter(|_| self.first(expression) == "!") {
                 Some(value) => self.replace(expression, if value { "false" } else { "true" }),
-                None => self.fold(operand, Position::Operand),
+                None => self.fold(operand, Position { is_operand: true, ..position }),
             },
             Kind::Part(base, index) => {
-                self.fold(base, Position::Operand);
-                index.iter().for_each(|index| self.fold(index, Position::Whole));
+                self.fold(base, Position::operand(false));
+                index.iter().for_each(|index| self.fold(index, Position::EVALUATED));
             }
             Kind::Call(arguments) => self.call(expression, arguments, position),
-            Kind::Binary(operator, left, right) => self.binary(expression, operator, left, right),
+            Kind::Binary(operator, left, right) => self.binary(expression, operator, [left, right], position),
         }
+    }
+
+    /// The value of a local that is `true` or `false` and never changes.
+    pub(super) fn constant(&self, atom: &Expression) -> Option<bool> {
+        if atom.tokens.len() > 1 { None } else { self.truths.get(self.first(atom)).copied() }
+    }
+
+    /// Folds the arguments of a call, but not the call.
+    pub(super) fn arguments(&mut self, name: &str, arguments: &[Expression]) {
+        let is_ours = (self.known.declared)(name) == Some(Declared::Function);
+        let position = if is_ours { Position::WHOLE } else { Position::EVALUATED };
+        arguments.iter().for_each(|argument| self.fold(argument, position));
     }
 
     /// Whether evaluating it does nothing but give a value.
@@ -105,7 +155,7 @@ impl Values<'_> {
         self.tokens[tokens.start].at..end.at + end.text.len()
     }
 
-    fn first(&self, expression: &Expression) -> &str {
+    pub(super) fn first(&self, expression: &Expression) -> &'v str {
         self.tokens[expression.tokens.start].text
     }
 
@@ -123,72 +173,94 @@ impl Values<'_> {
 
     fn call(&mut self, call: &Expression, arguments: &[Expression], position: Position) {
         let all_but = |kept: usize| arguments.iter().enumerate().filter(move |(number, _)| *number != kept);
-        match self.substitute(self.first(call)) {
-            // A division by a constant zero does not compile.
-            Substitute::Literal(text)
-                if position != Position::Divisor && arguments.iter().all(|one| self.is_pure(one)) =>
+        match (self.substitute(self.first(call)), arguments) {
+            (Substitute::Literal(text), _)
+                if position.may_be_constant && arguments.iter().all(|one| self.is_pure(one)) =>
             {
-                return self.replace(call, &text);
+                self.replace(call, &text);
             }
-            Substitute::Argument(number) if all_but(number).all(|(_, argument)| self.is_pure(argument)) => {
-                if let Some(argument) = arguments.get(number).filter(|argument| self.has_type(argument)) {
-                    return self.keep_argument(call, argument, position);
+            (Substitute::Argument(number), _) if all_but(number).all(|(_, argument)| self.is_pure(argument)) => {
+                match arguments.get(number).filter(|argument| self.fits(argument, position)) {
+                    Some(argument) => self.keep_argument(call, argument, position),
+                    None => self.arguments(self.first(call), arguments),
                 }
             }
-            _ => {}
+            (_, [no, yes, condition]) if self.is_select(call) => self.select(call, [no, yes, condition], position),
+            _ => self.arguments(self.first(call), arguments),
         }
-        if let ("select", [no, yes, condition]) = (self.first(call), arguments) {
-            match self.truth(condition) {
-                Some(true) if self.is_pure(no) => return self.keep_argument(call, yes, position),
-                Some(false) if self.is_pure(yes) => return self.keep_argument(call, no, position),
-                _ => {}
-            }
-        }
-        arguments.iter().for_each(|argument| self.fold(argument, Position::Whole));
     }
 
-    /// Whether its type does not depend on what it is given to, as that of a bare number does.
-    fn has_type(&self, expression: &Expression) -> bool {
-        expression.tokens.clone().any(|index| {
-            let name = self.tokens[index].text;
-            let next = self.tokens.get(index + 1).map_or("", |next| next.text);
-            let is_called = next == "(" && (self.known.has_effects)(name).is_some();
-            self.locals.declares(name) || is_called || (is_template(name) && next == "<")
-        })
+    /// Whether it may stand for a call that returns its value.
+    fn fits(&self, expression: &Expression, position: Position) -> bool {
+        if position.may_be_constant { self.has_type(expression) } else { self.is_runtime(expression) }
+    }
+
+    pub(super) fn is_select(&self, call: &Expression) -> bool {
+        self.first(call) == "select" && (self.known.declared)("select").is_none()
+    }
+
+    fn select(&mut self, call: &Expression, [no, yes, condition]: [&Expression; 3], position: Position) {
+        let chosen = match self.truth(condition) {
+            Some(true) => Some((yes, no)),
+            Some(false) => Some((no, yes)),
+            None => None,
+        };
+        if let Some((kept, _)) = chosen.filter(|(kept, other)| self.is_pure(other) && self.fits(kept, position)) {
+            return self.keep_argument(call, kept, position);
+        }
+        // With one argument that is found when the program runs, the whole is.
+        let is_runtime = self.is_runtime(no) || self.is_runtime(yes);
+        let may_be_constant = position.may_be_constant || is_runtime;
+        self.fold(no, Position::EVALUATED);
+        self.fold(yes, Position::EVALUATED);
+        self.fold(condition, Position { is_operand: false, may_be_constant });
     }
 
     fn keep_argument(&mut self, call: &Expression, argument: &Expression, position: Position) {
         let is_operation = matches!(argument.kind, Kind::Binary(..) | Kind::Unary(_));
         let at = self.edits.len();
         self.keep_only(call, argument);
-        if is_operation && position != Position::Whole {
+        if is_operation && position.is_operand {
             self.edits[at].text.push('(');
             self.edits[at + 1].text.push(')');
         }
     }
 
-    fn binary(&mut self, whole: &Expression, operator: &str, left: &Expression, right: &Expression) {
-        // `true` decides `||`, and leaves `&&` to the other operand.
-        let decisive = operator == "||";
-        match (operator, self.truth(left), self.truth(right)) {
-            ("&&" | "||", Some(value), _) if value == decisive => return self.replace(whole, &value.to_string()),
-            ("&&" | "||", Some(_), _) => return self.keep_only(whole, right),
-            ("&&" | "||", _, Some(value)) if value != decisive => return self.keep_only(whole, left),
-            ("&&" | "||", _, Some(value)) if self.is_pure(left) => return self.replace(whole, &value.to_string()),
-            _ => {}
+    fn binary(&mut self, whole: &Expression, operator: &str, sides: [&Expression; 2], position: Position) {
+        let [left, right] = sides;
+        let is_logical = matches!(operator, "&&" | "||");
+        if is_logical && self.logical(whole, operator == "||", sides, position) {
+            return;
         }
         if let Some(value) = self.compared(operator, left, right) {
             return self.replace(whole, &value.to_string());
         }
         match operator {
-            "*" if self.is_one(right) => self.keep_only(whole, left),
-            "*" if self.is_one(left) => self.keep_only(whole, right),
+            "*" if self.is_one(right) && self.has_type(left) => self.keep_only(whole, left),
+            "*" if self.is_one(left) && self.has_type(right) => self.keep_only(whole, right),
             _ => {
+                let beside = |other: &Expression| (is_logical && position.may_be_constant) || self.is_runtime(other);
                 let divides = matches!(operator, "/" | "%" | "<<" | ">>");
-                self.fold(left, Position::Operand);
-                self.fold(right, if divides { Position::Divisor } else { Position::Operand });
+                let (first, second) = (beside(right), beside(left) && !divides);
+                self.fold(left, Position::operand(first));
+                self.fold(right, Position::operand(second));
             }
         }
+    }
+
+    /// Folds `&&` and `||` where a side is known: `decisive` decides alone, the other value leaves it to the other side.
+    fn logical(&mut self, whole: &Expression, decisive: bool, sides: [&Expression; 2], position: Position) -> bool {
+        let [left, right] = sides;
+        match (self.truth(left), self.truth(right)) {
+            (Some(value), _) if value != decisive => self.keep_only(whole, right),
+            (_, Some(value)) if value != decisive => self.keep_only(whole, left),
+            (Some(_), _) if position.may_be_constant => self.replace(whole, &decisive.to_string()),
+            (_, Some(_)) if position.may_be_constant && self.is_pure(left) => {
+                self.replace(whole, &decisive.to_string());
+            }
+            _ => return false,
+        }
+        true
     }
 
     fn compared(&self, operator: &str, left: &Expression, right: &Expression) -> Option<bool> {
