@@ -1,6 +1,6 @@
 //! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
 
-use super::fold::{Substitute, substitute};
+use super::fold::{Substitute, has_effects, substitute};
 use super::index::Index;
 use super::token::{Token, TokenKind, tokens};
 use crate::program::Stage;
@@ -29,6 +29,8 @@ pub(crate) struct Item<'a> {
     pub(super) substitute: Substitute,
     /// For a function: whether it compares a constant with a number or another constant.
     pub(super) compares_constants: bool,
+    /// For a function: whether it does more than return a value; what it calls is left out.
+    pub(super) has_effects: bool,
     /// `var<private>` of an array without an initial value.
     pub(super) is_private_array: bool,
 }
@@ -62,6 +64,7 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
             is_variable: tokens[keyword].text == "var",
             substitute: substitute(tokens),
             compares_constants: is_function && compares_constants(tokens),
+            has_effects: is_function && has_effects(tokens),
             is_private_array: is_private_array(tokens),
         });
         rest = after;

@@ -7,7 +7,7 @@ use super::locals::{KEYWORDS, Locals};
 use crate::link::token::{Token, TokenKind};
 
 /// Whether a function has effects of its own; those of the functions that it calls are left out.
-pub(super) fn has_effects(tokens: &[Token<'_>]) -> bool {
+pub(in crate::link) fn has_effects(tokens: &[Token<'_>]) -> bool {
     let locals = Locals::of(tokens);
     let is_write = |index: usize| writes(tokens, index) && !stays_inside(tokens, &locals, index);
     let is_built_in = |token: &Token<'_>| token.kind == TokenKind::Name && built_in_has_effects(token.text);

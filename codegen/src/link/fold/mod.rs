@@ -24,11 +24,11 @@ mod values;
 #[cfg(test)]
 mod tests;
 
+pub(super) use effects::has_effects;
 pub(super) use substitute::{Substitute, substitute};
 
 use std::borrow::Cow;
-use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::index::Index;
@@ -37,7 +37,6 @@ use super::reach::Reached;
 use super::token::{Token, tokens};
 use crate::MARKERS;
 use edit::Lines;
-use effects::has_effects;
 use values::{Declared, Known};
 
 /// A function after folding.
@@ -67,7 +66,6 @@ pub(super) fn fold(
         reached,
         substitutes: constants.map(|id| (items[*id].1.name, items[*id].1.substitute.clone())).collect(),
         is_replaced: vec![false; items.len()],
-        effects: RefCell::default(),
         folded: BTreeMap::new(),
     };
     let functions: Vec<usize> = ours.iter().copied().filter(|id| items[*id].1.is_function).collect();
@@ -97,8 +95,6 @@ struct Folding<'f> {
     substitutes: BTreeMap<&'f str, Substitute>,
     /// The functions among them, by number.
     is_replaced: Vec<bool>,
-    /// Whether functions that have not been folded have side effects of their own, as far as that was asked.
-    effects: RefCell<HashMap<usize, bool>>,
     folded: BTreeMap<usize, Arc<Folded>>,
 }
 
@@ -139,7 +135,7 @@ impl Folding<'_> {
         while let Some(id) = waiting.pop() {
             let item = self.items[id].1;
             let folded = self.folded.get(&id);
-            if MARKERS.contains(&item.name) || folded.map_or_else(|| self.writes(id), |folded| folded.has_effects) {
+            if MARKERS.contains(&item.name) || folded.map_or(item.has_effects, |folded| folded.has_effects) {
                 return true;
             }
             let uses = self.uses(id);
@@ -154,11 +150,6 @@ impl Folding<'_> {
             Some(folded) => folded.mentions.iter().filter_map(|name| self.index.get(name.as_str())).copied().collect(),
             None => Cow::Borrowed(self.reached.uses(id)),
         }
-    }
-
-    fn writes(&self, id: usize) -> bool {
-        let text = self.items[id].1.text;
-        *self.effects.borrow_mut().entry(id).or_insert_with(|| has_effects(&tokens(text).0))
     }
 }
 
