@@ -2,7 +2,8 @@
 //! they ask of the declarations around them.
 //!
 //! In: a text, and what is known of names. Out: the result, with every question that led to it. A result is taken over only
-//! where all of its questions have the same answers, so it is what folding would give. The number of results is bounded.
+//! where all of its questions have the same answers, so it is what folding would give. The number of results is bounded: the
+//! first ones stay.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -44,15 +45,11 @@ pub(super) fn folded(
         declared: asked.declared.into_inner().into_iter().collect(),
         result: result.clone(),
     };
-    let mut kept = kept();
-    if kept.values().map(Vec::len).sum::<usize>() >= MOST {
-        kept.clear();
-    }
-    kept.entry(text.into()).or_default().push(trace);
+    kept().keep(text, trace);
     result
 }
 
-/// Results that are kept at most: each template has a few.
+/// Results that are kept at most: each template has a few. Beyond them a text is folded again each time.
 const MOST: usize = 4096;
 
 /// The questions of one folding and their answers.
@@ -71,7 +68,22 @@ struct Trace {
     result: Option<Arc<Folded>>,
 }
 
-type Kept = HashMap<Arc<str>, Vec<Trace>>;
+/// The results by the texts that they are of.
+#[derive(Default)]
+struct Kept {
+    traces: HashMap<Arc<str>, Vec<Trace>>,
+    count: usize,
+}
+
+impl Kept {
+    /// Keeps a result if there is room.
+    fn keep(&mut self, text: &str, trace: Trace) {
+        if self.count < MOST {
+            self.count += 1;
+            self.traces.entry(text.into()).or_default().push(trace);
+        }
+    }
+}
 
 fn kept() -> std::sync::MutexGuard<'static, Kept> {
     static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
@@ -87,5 +99,22 @@ fn taken_over(text: &str, known: &Known<'_>) -> Option<Option<Arc<Folded>>> {
         let declared = || trace.declared.iter().all(|(name, answer)| (known.declared)(name) == *answer);
         substitutes && declared() && trace.effects.iter().all(|(name, answer)| (known.has_effects)(name) == *answer)
     };
-    kept.get(text)?.iter().find(is_same).map(|trace| trace.result.clone())
+    kept.traces.get(text)?.iter().find(is_same).map(|trace| trace.result.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_results_stay_and_later_ones_find_no_room() {
+        let mut kept = Kept::default();
+        for number in 0..=MOST {
+            let trace = Trace { substitutes: Vec::new(), effects: Vec::new(), declared: Vec::new(), result: None };
+            kept.keep(&format!("fn f{number}() {{}}"), trace);
+        }
+        assert_eq!(kept.count, MOST);
+        assert!(kept.traces.contains_key("fn f0() {}"));
+        assert!(!kept.traces.contains_key(format!("fn f{MOST}() {{}}").as_str()));
+    }
 }
