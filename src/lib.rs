@@ -37,7 +37,7 @@ pub mod own;
 pub mod report;
 pub mod snapshot;
 
-pub use fragbuf_backends::{
+pub use fragbuf_targets::{
     Checked, File, Generation, Request, SCHEMA, TARGETS, TIERS, Target, generate, manifest, plan_json, target, tier,
 };
 pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};

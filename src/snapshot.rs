@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use fragbuf_backends::{Generation, Request, TARGETS, Target, generate, target};
+use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_templates::Registry;
 

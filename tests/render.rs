@@ -102,7 +102,7 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, b
 }
 
 /// The techniques that keep all, or the k best of all: what keeps neither is tested against an oracle of its own, in
-/// `backends/runtime/tests/losses.rs`. On a software driver, which runs the fragments of a pixel one after the
+/// `backends/run/runtime/tests/losses.rs`. On a software driver, which runs the fragments of a pixel one after the
 /// other, those are exact too whose races lose fragments elsewhere. What keeps one alone is tried with one, below.
 fn techniques(keep: KeepDefault) -> Vec<String> {
     let registry = Registry::builtin();

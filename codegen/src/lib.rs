@@ -4,7 +4,7 @@
 //! Variant ──select──► Selection ──plan──► Plan ──link──► Program: one WGSL text per pass, each line with its source
 //! ```
 //!
-//! A plan has no text in it, and a program nothing that naga has seen: `fragbuf-backends` checks it. Statements come from
+//! A plan has no text in it, and a program nothing that naga has seen: `fragbuf-targets` checks it. Statements come from
 //! templates and from the user's closures; what is generated here is declarations, the packing of a fragment into words,
 //! the orders over packed fragments, and the accessors of buffers.
 

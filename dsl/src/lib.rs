@@ -31,6 +31,7 @@
 //! assert_eq!(built.draft(), Ok(glass::draft()));
 //! ```
 
+pub mod builder;
 mod expanded;
 
 pub use expanded::{Fragments, UniformValue};
@@ -38,13 +39,6 @@ pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Variant, check};
 pub use fragbuf_syntax::{Captured, Parsed, parse};
 pub use fragbuf_templates::Registry;
 pub use glam;
-
-/// The builder, with the macros that capture its functions.
-pub mod builder {
-    pub use crate::{closure, function};
-    pub use fragbuf_builder::*;
-    pub use fragbuf_model::{KeepCount, OptionValue};
-}
 
 #[doc(hidden)]
 pub use fragbuf_macros as macros;

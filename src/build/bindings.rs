@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use fragbuf_backends::{File, Generation, Planned};
+use fragbuf_targets::{File, Generation, Planned};
 use fragbuf_codegen::Plan;
 use fragbuf_model::UniformType;
 

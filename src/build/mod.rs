@@ -25,7 +25,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use fragbuf_backends::{Generation, Request, TARGETS, Target, generate, target};
+use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_model::Origin;
 use fragbuf_templates::Registry;

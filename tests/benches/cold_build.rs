@@ -12,7 +12,7 @@ const BUILDS: [(&str, &[&str]); 6] = [
     ("fragbuf-model", &[]),
     ("fragbuf-syntax", &[]),
     ("fragbuf-codegen", &[]),
-    ("fragbuf-backends", &[]),
+    ("fragbuf-targets", &[]),
     ("fragbuf", &["--no-default-features"]),
 ];
 

@@ -1,0 +1,131 @@
+//! One device for all tests, and what is needed to see a frame of quads: a renderer, a target, and everything read back.
+
+use std::collections::BTreeMap;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+use fragbuf_targets::{Request, generate, target};
+use fragbuf_codegen::Form;
+use fragbuf_model::{Draft, Origin, Variant, check};
+use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
+use fragbuf_runtime::{Counters, Error, Output, Pending, Renderer, Settings, Shaders, block_on};
+use fragbuf_templates::Registry;
+
+use crate::kept;
+use crate::oracle::Words;
+use crate::quads::{Quad, SIZE, vertices};
+use crate::samples;
+
+/// The CPU's adapter: the same on every machine, and in the order of submission.
+pub fn device() -> MutexGuard<'static, Headless> {
+    static DEVICE: LazyLock<Mutex<Headless>> = LazyLock::new(|| {
+        let opened = Headless::open(&Choice::Cpu, wgpu::Features::PASSTHROUGH_SHADERS);
+        Mutex::new(opened.unwrap_or_else(|error| panic!("these tests run on a software driver: {error}")))
+    });
+    DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+pub const FORMAT: wgpu::TextureFormat = BLENDED;
+
+/// The opaque background of every picture.
+pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
+
+/// A technique with `set`, each as in `--set name=value`.
+pub fn technique(key: &str, set: &[(&str, &str)]) -> Variant {
+    let origin = Origin::new(key, 1, 1);
+    let mut draft = Draft::from_technique(key, &origin);
+    for (name, value) in set {
+        draft.set(name, value, &origin).unwrap();
+    }
+    check(&draft, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A description in the written language.
+pub fn described(text: &str) -> Variant {
+    let parsed = fragbuf_syntax::parse(text, "test.fragbuf");
+    assert!(parsed.diagnostics.is_empty(), "{}", parsed.diagnostics);
+    check(&parsed.draft.unwrap(), &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The shaders of one target.
+pub fn shaders(variant: &Variant, name: &str) -> Shaders {
+    let request = Request { targets: &[target(name).unwrap()], form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    Shaders::from_generation(&generation, name, 0).unwrap()
+}
+
+pub fn settings() -> Settings {
+    Settings::new(FORMAT, SIZE, SIZE)
+}
+
+pub fn renderer(stage: &Headless, shaders: &Shaders, settings: &Settings) -> Result<Renderer, Error> {
+    block_on(&stage.device, Renderer::new(&stage.device, &stage.queue, shaders, settings))?
+}
+
+/// A frame, seen from all sides.
+pub struct Seen {
+    /// Red, green, blue and alpha, row after row from the top.
+    pub pixels: Vec<[f32; 4]>,
+    pub kept: Vec<Vec<Words>>,
+    pub counters: Counters,
+}
+
+/// Draws `quads` in their order and reads everything back.
+pub fn see(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Seen {
+    let Headless { device, queue, .. } = stage;
+    let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
+    draw_over(stage, renderer, quads, &offscreen).unwrap();
+    let counters = read_counters(stage, renderer);
+    let pixels = offscreen.colors(device, queue).unwrap();
+    Seen { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer)), counters }
+}
+
+pub fn read_counters(stage: &Headless, renderer: &Renderer) -> Counters {
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let counters = renderer.counters(&mut encoder).unwrap();
+    stage.queue.submit([encoder.finish()]);
+    counters.wait(&stage.device).unwrap()
+}
+
+/// All words of all resources that are not empty, by name.
+pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, Vec<u32>> {
+    let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let names: Vec<String> = renderer.plan().resources.iter().map(|planned| planned.resource.name.clone()).collect();
+    let reads: Vec<_> = names.iter().map(|name| (name.clone(), renderer.words(name, &mut encoder))).collect();
+    stage.queue.submit([encoder.finish()]);
+    let read = |(name, words): (String, Option<Pending<Vec<u32>>>)| match (words, renderer.texture(&name)) {
+        (Some(words), _) => Some((name, words.wait(&stage.device).unwrap())),
+        (None, Some(texture)) => Some((name, samples::read(stage, texture))),
+        (None, None) => None,
+    };
+    reads.into_iter().filter_map(read).collect()
+}
+
+/// A vertex buffer with these bytes, or with nothing.
+pub fn vertex_buffer(stage: &Headless, bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("vertices"),
+        size: bytes.len().max(4) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    stage.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+/// Draws `quads` in their order over the background.
+pub fn draw_over(
+    stage: &Headless,
+    renderer: &mut Renderer,
+    quads: &[Quad],
+    offscreen: &Offscreen,
+) -> Result<(), Error> {
+    let bytes = vertices(quads, renderer.vertex_inputs());
+    let buffer = vertex_buffer(stage, &bytes);
+    let [r, g, b] = BACKGROUND;
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
+    renderer.render(&output, &mut |pass, _| {
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..6 * quads.len() as u32, 0..1);
+    })?;
+    Ok(())
+}
