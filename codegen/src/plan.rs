@@ -10,7 +10,7 @@ mod textures;
 
 pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
-use summary::{passes, words_per_pixel};
+use summary::{normal_form, passes, words_per_pixel};
 
 use std::sync::Arc;
 
@@ -199,6 +199,7 @@ fn build(
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
         let named = |error: FormulaError| format!("`{}`: {error}", resource.name);
         let words = symbols.compile(&size(&resource)?).map_err(named)?;
+        normal_form(words.formula(), symbols).map_err(named)?;
         let lengths = resource.extents.iter().map(|extent| symbols.compile(&extent.length));
         let lengths = lengths.collect::<Result<_, _>>().map_err(named)?;
         planned.push(Planned { resource, binding, words, lengths, part });

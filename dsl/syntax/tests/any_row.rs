@@ -106,3 +106,38 @@ fn any_text_is_a_row_or_mistakes_inside_it() {
     }
     assert!(refused > 1000, "{refused}");
 }
+
+/// A formula that would be read, multiplied out or written without end is a mistake at its place, wherever it stands.
+#[test]
+fn formulas_are_bounded() {
+    let nested = |count: usize| format!("{}k{}", "(".repeat(count), ")".repeat(count));
+    let sums = ["(width + height + pixels + k + n + fragments + kept)"; 5].join(" * ");
+    let of_conditions = |text: &str| text.replace(['k', 'n'], "keep").replace("pixels", "color");
+    let long = format!("1{}", " + k".repeat(200_000));
+    let deep = [nested(200_000), "!".repeat(200_000), "-".repeat(200_000), nested(41)];
+    for formula in deep.iter().chain([&long]) {
+        let condition = of_conditions(formula);
+        for line in [
+            format!("//: buffer b[slot < {formula}]: word"),
+            format!("//: host allocate: reads b[{formula}]; sets k\n//: buffer b: word"),
+            format!("//: parameter limit LIMIT = {}, from 1 to 2", formula.replace(['k', 'n'], "capacity")),
+            format!("//: keeps best {}", formula.replace('n', "k")),
+            format!("//: keeps best 1 of each {}", formula.replace('n', "k")),
+            format!("//: when {condition}"),
+            format!("//: implies sorted when {condition}"),
+            format!("//: defines pixels = {}", formula.replace(['k', 'n'], "width")),
+        ] {
+            let text = format!("//: storage -- it\n{line}\n");
+            let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err("too much");
+            assert!(faults.iter().all(|fault| fault.origin.line == 2 && !fault.hint.is_empty()), "{line:.60}");
+        }
+    }
+    for (formula, hint) in [(&deep[3], "fewer parentheses"), (&long, "shorter"), (&sums, "fewer sums")] {
+        let text = format!("//: storage -- it\n//: buffer b[a < width][slot < {formula}]: word\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err("too much");
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("row", 2, 32)], "{hint}");
+        assert!(faults.iter().all(|fault| fault.hint.contains(hint)), "{faults}");
+    }
+}

@@ -17,6 +17,9 @@ pub struct Kept {
     pub group: Option<Formula>,
 }
 
+/// What only the groups of fragments are over.
+pub const KEY_SYMBOLS: [&str; 2] = ["key", "depth_millionths"];
+
 /// An end of the order of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

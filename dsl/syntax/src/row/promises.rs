@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Spanned, codes};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Condition, Hazard, Kept, Permits, Side, Soundness};
+use fragbuf_templates::vocabulary::{Condition, Hazard, KEY_SYMBOLS, Kept, Permits, Side, Soundness};
 
 use super::line::Line;
 use super::reader::Read;
@@ -43,8 +43,8 @@ impl Statements {
         self.reader.formula(&at(most), &["k"])?;
         if let Some(group) = group {
             let constants = self.own.row.parameters.iter().map(|parameter| parameter.constant.to_string());
-            let symbols: Vec<String> =
-                ["k", "key", "depth_millionths"].map(str::to_owned).into_iter().chain(constants).collect();
+            let symbols = ["k"].into_iter().chain(KEY_SYMBOLS).map(str::to_owned);
+            let symbols: Vec<String> = symbols.chain(constants).collect();
             let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
             self.reader.formula(&at(group), &symbols)?;
         }

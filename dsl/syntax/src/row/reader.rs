@@ -26,6 +26,9 @@ const RETIRED: [(&str, &str); 10] = [
     ("keeps-all", "limited == 0"),
 ];
 
+/// The operators of formulas, in the words of a message.
+const OPERATORS: &str = "`+ - * /`, `== != < <= > >=`, `&& ||`";
+
 /// The mistakes so far.
 pub(super) struct Reader {
     pub(super) faults: Diagnostics,
@@ -101,7 +104,7 @@ impl Reader {
             return self.stop(codes::ROW, &text.origin, message, format!("write `{now}`"));
         }
         let symbols: Vec<&str> = Given::symbols().map(|symbol| symbol.name).collect();
-        self.formula_of(&text, &symbols, "`== != < <= > >= && ||`, `+ - * /`")?;
+        self.formula(&text, &symbols)?;
         Ok(text.value.into())
     }
 
@@ -146,22 +149,19 @@ impl Reader {
         self.stop(codes::ROW, &word.origin, format!("`{}` is {what}", word.value), near::hint(&word.value, &known))
     }
 
-    /// Reports a formula that cannot be read, or that depends on what it may not.
+    /// Reports a formula that cannot be read, that depends on what it may not, or that has no value whatever that is.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
-        self.formula_of(formula, &symbols, "`+ - * /`")
-    }
-
-    fn formula_of(&mut self, formula: &Spanned<String>, symbols: &[&str], signs: &str) -> Read<()> {
-        let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
-        let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
-            // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
-            Ok(_) | Err(FormulaError::Overflow(_)) => return Ok(()),
-            Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
-            Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
+        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
+        let known = || {
+            let symbols = symbols.join(", ");
+            format!("the formula may use {symbols}, {OPERATORS}, min, max, ceil_div, pow2 and log2_ceil")
         };
-        let hint =
-            format!("the formula may use {}, {signs}, min, max, ceil_div, pow2 and log2_ceil", symbols.join(", "));
+        let (problem, hint) = match &error {
+            FormulaError::Unbound(symbol) => (format!("`{symbol}` is no name that a formula may use here"), known()),
+            FormulaError::Malformed { text, .. } => (format!("`{text}` is no formula"), known()),
+            other => (other.to_string(), other.hint().to_owned()),
+        };
         self.stop(codes::ROW, &formula.origin, problem, hint)
     }
 
@@ -179,4 +179,14 @@ impl Reader {
     pub(super) fn fault(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) {
         self.faults.push(Diagnostic::new(code, at, message, hint));
     }
+}
+
+/// Whether a formula can be read, is over these symbols, and has a value for some of theirs.
+fn readable(formula: &Formula, symbols: &[&str]) -> Result<(), FormulaError> {
+    let expression = formula.read()?;
+    if let Some(symbol) = expression.symbols().into_iter().find(|symbol| !symbols.contains(symbol)) {
+        return Err(FormulaError::Unbound(symbol.to_owned()));
+    }
+    expression.folded(&|_| None)?.polynomial(&|_| None)?;
+    Ok(())
 }
