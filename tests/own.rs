@@ -313,6 +313,47 @@ fn a_condition_of_the_users_own() {
     }
 }
 
+/// The code, line, column and hint of each fault that lies in the user's file.
+fn placed(name: &str, description: &str, file: &str) -> Vec<(&'static str, u32, u32, String)> {
+    let folder = with(name, description, file);
+    let Err((faults, _)) = faults(&folder) else { return Vec::new() };
+    let own = folder.join("mine.wgsl").display().to_string();
+    assert!(faults.iter().all(|fault| *fault.origin.file == *own), "{faults}");
+    let place = |origin: &fragbuf_model::Origin| (origin.line, origin.column);
+    faults
+        .iter()
+        .map(|fault| (fault.code.name, place(&fault.origin).0, place(&fault.origin).1, fault.hint.clone()))
+        .collect()
+}
+
+/// A default is a value that a description could set: what it comes to depends on the description.
+#[test]
+fn a_default_outside_of_its_range_is_said_where_it_stands() {
+    let file = example("first_k.wgsl");
+    for (index, (default, is_right)) in [
+        ("capacity - 3", true),
+        ("capacity * 2", false),
+        ("capacity - 9", false),
+        ("pow2(32) + 4", false),
+        ("pow2(capacity * 8)", false),
+        ("7 / (capacity - 8)", false),
+        ("keep + limited", true),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let line = format!("//: parameter limit LIMIT = {default}, from 2 to 9");
+        let file = file.replace("//: offers", &format!("{line}\n//: offers"));
+        let found = placed(&format!("default-{index}"), DESCRIPTION, &file);
+        let (line, column) = place(&file, &format!("{default}, from"));
+        assert_eq!(found.is_empty(), is_right, "{default}: {found:?}");
+        let is_it = |(code, at, from, hint): &(&str, u32, u32, String)| {
+            (*code, *at, *from) == ("row", line, column) && !hint.is_empty()
+        };
+        assert!(found.len() <= 1 && found.iter().all(is_it), "{default} at {line}:{column}: {found:?}");
+    }
+}
+
 /// The guide's table of symbols is the vocabulary's.
 #[test]
 fn the_guide_names_every_symbol_of_conditions() {

@@ -4,10 +4,12 @@
 
 mod dump;
 mod edit;
+mod formulas;
 mod roles;
 mod summary;
 mod textures;
 
+use formulas::symbols;
 pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
 use summary::{normal_form, passes, words_per_pixel};
@@ -17,7 +19,7 @@ use std::sync::Arc;
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Capability, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Row, Soundness, Step, When,
+    Capability, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step, When,
 };
 
 use crate::frame::{Context, Lowered, lower};
@@ -104,7 +106,7 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let (mut symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
+    let (mut symbols, constants) = symbols(variant, selection, &layout)?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
     bound_k(variant, &mut symbols).map_err(|error| fault(error.to_string()))?;
     let offers = selection.offers();
@@ -130,39 +132,6 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
             .filter(|hazard| hazard.unless.is_none_or(|fact| !offers.contains(&fact)))
             .collect(),
     })
-}
-
-/// The symbols of a plan: numbers of generation time, what rows define, the parameters of the rows. Also: the generated
-/// constants, which are what every program may name, then the parameters.
-fn symbols(
-    variant: &Variant,
-    selection: &Selection,
-    layout: &Layout,
-) -> Result<(SymbolTable, Vec<(String, u32)>), FormulaError> {
-    let given = variant.given(selection);
-    let capacity = u64::from(bucket(variant.keep));
-    let number = |name: &str| if name == "capacity" { Some(capacity) } else { given.value(name) };
-    let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let defined: Vec<(&str, &Formula)> =
-        rows().flat_map(|row| &row.defines).map(|defined| (&*defined.symbol, &defined.value)).collect();
-    let mut table = SymbolTable::new(&number, &defined)?;
-    let mut constants =
-        vec![("CAPACITY".to_owned(), bucket(variant.keep)), ("BESIDE_WORDS".to_owned(), layout.beside_words())];
-    for selected in &selection.rows {
-        for parameter in &selected.row.parameters {
-            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-            let value = match set {
-                Some(value) => value,
-                None => table.evaluate(&table.compile(&parameter.default)?, &|_| None)? as u32,
-            };
-            constants.push((parameter.constant.to_string(), value));
-        }
-    }
-    let parameters = rows().flat_map(|row: &Row| &row.parameters);
-    for (parameter, (_, value)) in parameters.zip(constants.iter().skip(2)) {
-        table.add(&parameter.constant, &parameter.summary, parameter.range, u64::from(*value));
-    }
-    Ok((table, constants))
 }
 
 /// k goes from 1 to the capacity, and is what the description says where a frame says nothing.

@@ -72,6 +72,21 @@ pub struct Row {
     pub order: Option<Order>,
     /// The function that the host calls, for a row of the axis `host`.
     pub host: Option<HostFunction>,
+    /// For a row in a user's file: where its names and formulas stand.
+    pub places: Vec<Place>,
+}
+
+/// Where a row in a user's file writes a name or a formula. Lines and columns count from 1, columns in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The name or formula.
+    pub text: Text,
+    /// Its line.
+    pub line: u32,
+    /// Its first column.
+    pub column: u32,
+    /// Its length in characters.
+    pub length: u32,
 }
 
 /// A whole WGSL file.
@@ -235,6 +250,7 @@ impl Row {
             soundness: Soundness::Atomics,
             order: None,
             host: None,
+            places: Vec::new(),
         }
     }
 }

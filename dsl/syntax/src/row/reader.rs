@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits};
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits, Place};
 
 use super::line::Line;
 use crate::near;
@@ -32,6 +32,8 @@ const OPERATORS: &str = "`+ - * /`, `== != < <= > >=`, `&& ||`";
 /// The mistakes so far.
 pub(super) struct Reader {
     pub(super) faults: Diagnostics,
+    /// Names and formulas that are right as far as the row goes, for what only a description can tell.
+    pub(super) places: Vec<Place>,
 }
 
 impl Reader {
@@ -152,7 +154,10 @@ impl Reader {
     /// Reports a formula that cannot be read, that depends on what it may not, or that has no value whatever that is.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
-        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
+        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else {
+            self.stands(formula);
+            return Ok(());
+        };
         let known = || {
             let symbols = symbols.join(", ");
             format!("the formula may use {symbols}, {OPERATORS}, min, max, ceil_div, pow2 and log2_ceil")
@@ -163,6 +168,12 @@ impl Reader {
             other => (other.to_string(), other.hint().to_owned()),
         };
         self.stop(codes::ROW, &formula.origin, problem, hint)
+    }
+
+    /// Keeps the place of a name or a formula.
+    pub(super) fn stands(&mut self, text: &Spanned<String>) {
+        let Origin { line, column, length, .. } = text.origin;
+        self.places.push(Place { text: text.value.clone().into(), line, column, length });
     }
 
     pub(super) fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {

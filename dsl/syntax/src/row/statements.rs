@@ -70,7 +70,7 @@ pub(super) struct Statements {
 
 impl Statements {
     pub(super) fn new(own: OwnRow, faults: Diagnostics) -> Self {
-        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults } }
+        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults, places: Vec::new() } }
     }
 
     /// The whole row, or every mistake.
@@ -83,6 +83,7 @@ impl Statements {
             };
             self.reader.fault(codes::UNKNOWN_RESOURCE, &used.origin, message, hint);
         }
+        self.own.row.places = self.reader.places;
         self.reader.faults.gate(self.own)
     }
 
@@ -155,6 +156,7 @@ impl Statements {
             self.reader.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
             return Err(Stop);
         }
+        self.reader.stands(&name);
         self.own.row.resources.push(resource);
         self.own.places.resources.push(name.origin);
         Ok(())
@@ -302,6 +304,7 @@ impl Statements {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
         let name = self.reader.word(line, "the option's name", SHAPE)?;
         let constant = self.reader.name(line, "a generated constant", SHAPE)?;
+        self.reader.stands(&constant);
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
         let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= When::Generation);
