@@ -4,7 +4,7 @@
 
 use fragbuf_syntax::row;
 use fragbuf_templates::vocabulary::{
-    Access, Blended, Capability, Element, Fact, Host, Init, Kept, Loads, Permits, Soundness, Step,
+    Access, Blended, Capability, Element, Fact, Host, Init, Kept, Loads, Permits, SYMBOLS, Soundness, Step,
 };
 
 const GOOD: &str = "// What it is.\n\
@@ -139,5 +139,20 @@ fn formulas_are_bounded() {
             faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
         assert_eq!(found, [("row", 2, 32)], "{hint}");
         assert!(faults.iter().all(|fault| fault.hint.contains(hint)), "{faults}");
+    }
+}
+
+/// A constant of the name of a symbol would change what the formulas of the row mean.
+#[test]
+fn no_constant_takes_a_word_of_formulas() {
+    let words = SYMBOLS.iter().map(|symbol| symbol.name);
+    for word in words.chain(["key", "depth_millionths", "ceil_div", "pow2", "log2_ceil"]) {
+        let text = format!("//: storage -- it\n//: parameter limit {word} = 3, from 1 to 9\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err(word);
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("row", 2, 21)], "{faults}");
+        let way_out = format!("`OWN_{}`", word.to_ascii_uppercase());
+        assert!(faults.iter().all(|fault| fault.hint.contains(&way_out)), "{faults}");
     }
 }

@@ -3,7 +3,7 @@
 use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
     Access, Definition, Element, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Step, Takes, Use,
-    When,
+    When, is_word_of_formulas,
 };
 
 use super::line::Line;
@@ -303,8 +303,7 @@ impl Statements {
     fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
         let name = self.reader.word(line, "the option's name", SHAPE)?;
-        let constant = self.reader.name(line, "a generated constant", SHAPE)?;
-        self.reader.stands(&constant);
+        let constant = self.constant(line, SHAPE)?;
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
         let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= When::Generation);
@@ -333,6 +332,18 @@ impl Statements {
         });
         self.own.places.parameters.push(constant.origin);
         Ok(())
+    }
+
+    /// The constant of a parameter, which formulas name beside the symbols that every row has.
+    fn constant(&mut self, line: &mut Line<'_>, shape: &str) -> Read<Spanned<String>> {
+        let constant = self.reader.name(line, "a generated constant", shape)?;
+        if !is_word_of_formulas(&constant.value) {
+            self.reader.stands(&constant);
+            return Ok(constant);
+        }
+        let message = format!("`{}` means something else in every formula", constant.value);
+        let hint = format!("choose another name, such as `OWN_{}`", constant.value.to_ascii_uppercase());
+        self.reader.stop(codes::ROW, &constant.origin, message, hint)
     }
 
     /// `defines pixels = ceil_div(width, 4) * 4 * height`
