@@ -59,7 +59,7 @@ fn a_row_says_what_its_lines_say() {
     let limit = &row.parameters[0];
     assert_eq!((&*limit.name, &*limit.constant, limit.range), ("limit", "LIMIT", (1, 99)));
     assert_eq!((row.hazards[0].unless, row.soundness), (Some(Fact::Critical), Soundness::Lock));
-    let both = Permits::STALE.and(&Permits::LOST);
+    let both = Permits::STALE.and(&Permits::LOST).expect("both take a race");
     let permits: Vec<_> = row.hazards.iter().map(|hazard| hazard.permits.clone()).collect();
     assert_eq!(permits, [Permits::TORN, both, Permits::NOTHING]);
     assert_eq!(row.kept(), Some(Kept::best_of_each("min(k - 1, key / LIMIT)")));
@@ -155,4 +155,19 @@ fn no_constant_takes_a_word_of_formulas() {
         let way_out = format!("`OWN_{}`", word.to_ascii_uppercase());
         assert!(faults.iter().all(|fault| fault.hint.contains(&way_out)), "{faults}");
     }
+}
+
+/// What a hazard permits under several conditions is a hazard for each.
+#[test]
+fn permits_keep_their_conditions() {
+    let text = "//: storage -- it\n//: hazard mixed permits torn, unsettled, stale, equal-keys -- a mixture\n";
+    let own = row(text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect("it is a row");
+    let found: Vec<_> = own.row.hazards.iter().map(|hazard| (&*hazard.what, hazard.permits.clone())).collect();
+    let torn_and_stale = Permits::TORN.and(&Permits::STALE).expect("both take a race");
+    let wanted = [
+        ("a mixture, in a race", torn_and_stale),
+        ("a mixture, where `unsettled` is counted", Permits::UNSETTLED),
+        ("a mixture, whatever the order", Permits::ONE_OF_EQUAL_KEYS),
+    ];
+    assert_eq!(found, wanted);
 }
