@@ -303,9 +303,9 @@ fn a_condition_of_the_users_own() {
     assert_eq!(faults(&with("condition_met", &met, &four)).map_err(|(faults, _)| faults.to_string()), Ok(()));
     for (line, code, hint) in [
         ("//: when k == 4 -- write `keep 4;`", codes::ROW, "the formula may use keep, limited"),
-        ("//: requires limited-to-one", codes::UNKNOWN_FACT, "`//: when keep == 1"),
+        ("//: requires keep-best", codes::UNKNOWN_FACT, "`keeps-best`"),
         ("//: offers fragment-atomics", codes::UNKNOWN_FACT, "`//: requires fragment-atomics`"),
-        ("//: implies sorted when depth-key", codes::ROW, "write `depth_key`"),
+        ("//: implies sorted when depth-key", codes::ROW, "depth_key"),
     ] {
         let (faults, _) = faults(&with("condition_unread", DESCRIPTION, &with_condition(line))).unwrap_err();
         let is_it = |fault: &&fragbuf::Diagnostic| fault.code == code && fault.hint.contains(hint);

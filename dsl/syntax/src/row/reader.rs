@@ -12,20 +12,6 @@ pub(super) struct Stop;
 
 pub(super) type Read<T> = Result<T, Stop>;
 
-/// Words that were facts before conditions had formulas, and the formula of each.
-const RETIRED: [(&str, &str); 10] = [
-    ("limited", "limited"),
-    ("limited-to-one", "keep == 1"),
-    ("sample-count", "keep == 2 || keep == 4 || keep == 8"),
-    ("depth-key", "depth_key"),
-    ("color", "color"),
-    ("one-word-beside-depth", "payload_words <= 2"),
-    ("word-per-target", "payload_words <= 8"),
-    ("one-word-beside-key", "entry_words <= 2"),
-    ("keeps-best", "limited"),
-    ("keeps-all", "limited == 0"),
-];
-
 /// The operators of formulas, in the words of a message.
 const OPERATORS: &str = "`+ - * /`, `== != < <= > >=`, `&& ||`";
 
@@ -101,10 +87,6 @@ impl Reader {
     /// A formula over what the description gives.
     pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
         let text = line.until(&[]);
-        if let Some((_, now)) = RETIRED.iter().find(|(word, now)| *word == text.value && word != now) {
-            let message = format!("`{}` is no condition", text.value);
-            return self.stop(codes::ROW, &text.origin, message, format!("write `{now}`"));
-        }
         let symbols: Vec<&str> = Given::symbols().map(|symbol| symbol.name).collect();
         self.formula(&text, &symbols)?;
         Ok(text.value.into())
@@ -114,11 +96,6 @@ impl Reader {
     fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
         if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
             return Ok(*fact);
-        }
-        if let Some((_, formula)) = RETIRED.iter().find(|(retired, _)| *retired == word.value) {
-            let message = format!("`{}` is a condition on the description, not a fact", word.value);
-            let hint = format!("write it on a line of its own: `//: when {formula} -- how to meet it`");
-            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
         }
         if Capability::ALL.iter().any(|capability| capability.word() == word.value) {
             let message = format!("`{}` is a capability, which targets offer and rows require", word.value);
