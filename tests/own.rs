@@ -150,7 +150,7 @@ const BAD: &[Bad] = &[
     bad("//: offers", "//: parameter limit CAPACITY = 3, from 1 to 9\n//: offers", "row", "CAPACITY", "letters"),
     bad("//: offers", "//: parameter limit LAYERS = 3, from 1 to 9\n//: offers", "contract", "LAYERS", "OWN_LAYERS"),
     bad("//: pass resolve", "//: host allocate: reads taken[0]\n//: pass resolve", "row", "allocate", "sets fragments"),
-    bad("//: offers", "//: when 1 < keep < 9 -- write `keep 4;`\n//: offers", "row", "1 < keep", ""),
+    bad("//: offers", "//: when 1 < keep < 9 -- write `keep 4;`\n//: offers", "row", "1 < keep", "join two comparisons by `&&`"),
     bad("//: offers", "//: parameter limit LIMIT = 3, from 9 to 1\n//: offers", "row", "1\n//: offers", "9"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "row", "//: paper", "the file's head"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "refused", "}\nfn first", "every brace closed"),
@@ -173,6 +173,7 @@ fn every_mistake_in_a_file_is_said_at_its_line_and_column() {
     let mut wrong = Vec::new();
     for (index, case) in BAD.iter().enumerate() {
         assert_eq!(good.matches(case.from).count().min(1), 1, "{}", case.from);
+        assert!(!case.way_out.is_empty(), "no way out of {}", case.to);
         let text = good.replacen(case.from, case.to, 1);
         let folder = with(&format!("bad-{index}"), DESCRIPTION, &text);
         let (faults, sources) = faults(&folder).err().unwrap_or_else(|| panic!("accepted: {}", case.to));
