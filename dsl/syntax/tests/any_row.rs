@@ -171,3 +171,30 @@ fn permits_keep_their_conditions() {
     ];
     assert_eq!(found, wanted);
 }
+
+/// What a row says once is a mistake where it says it again: the second does not silently take the place of the first.
+#[test]
+fn what_is_said_twice_is_reported_at_the_second() {
+    for (first, second, column) in [
+        ("keeps best k", "keeps worst k", 5),
+        ("keeps best k", "hazard one-per-range -- ranges", 12),
+        ("hazard one-per-range -- ranges", "keeps best k", 5),
+        ("hazard merged-farthest -- mixed", "hazard merged-neighbours -- mixed", 12),
+        ("paper A", "paper B", 5),
+        ("offers indexed", "offers sorted", 5),
+        ("requires critical", "requires fragment-atomics", 5),
+        ("uses b read", "uses b plain", 5),
+        ("soundness lock", "soundness racy", 5),
+        ("suits cull early", "suits sync none, cull none", 22),
+        ("defines pixels = width", "defines pixels = height", 13),
+        ("parameter limit A = 1, from 1 to 2", "parameter limit B = 2, from 1 to 2", 15),
+    ] {
+        let text = format!("//: storage -- it\n//: buffer b: word\n//: {first}\n//: {second}\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err(second);
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("duplicate", 4, column)], "{faults}");
+        let labels = faults.iter().flat_map(|fault| &fault.labels).map(|label| label.origin.line);
+        assert_eq!(labels.collect::<Vec<_>>(), [3], "{faults}");
+    }
+}

@@ -60,7 +60,7 @@ pub struct Row {
     pub least: Vec<(Text, Formula)>,
     /// Symbols of formulas that it gives a value.
     pub defines: Vec<Definition>,
-    /// Which fragments stay, where no fact that it offers says so.
+    /// Which fragments stay, said more closely than by a fact that it offers; `None`: by a fact, or not at all.
     pub keeps: Option<Kept>,
     /// How entries become one.
     pub merges: Option<Merges>,

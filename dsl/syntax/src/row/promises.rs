@@ -56,7 +56,7 @@ impl Statements {
     /// `hazard name permits name, name unless fact -- what`
     pub(super) fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
         let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
-        let own = self.permits_of(&name);
+        let own = self.permits_of(&name)?;
         let permits = if line.exactly("permits") { self.permitted(line)? } else { vec![own] };
         let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
         if unless.is_some() && matches!(Shorthand::of(&name.value), Some(Shorthand::Keeps(_) | Shorthand::Merges(_))) {
@@ -87,15 +87,22 @@ impl Statements {
         }
     }
 
-    /// What a hazard's name permits by itself; some names say what the row keeps or merges.
-    fn permits_of(&mut self, name: &Spanned<String>) -> Permits {
+    /// What a hazard's name permits by itself; some names say what the row keeps or merges, which a row says once.
+    fn permits_of(&mut self, name: &Spanned<String>) -> Read<Permits> {
+        const HINT: &str = "which fragments stay, and how they merge, is said once: leave one of the lines out";
         match Shorthand::of(&name.value) {
-            Some(Shorthand::Permits(permits)) => return permits,
-            Some(Shorthand::Keeps(kept)) => self.own.row.keeps = Some(kept),
-            Some(Shorthand::Merges(merges)) => self.own.row.merges = Some(merges),
+            Some(Shorthand::Permits(permits)) => return Ok(permits),
+            Some(Shorthand::Keeps(kept)) => {
+                self.once("keeps", &name.origin, HINT)?;
+                self.own.row.keeps = Some(kept);
+            }
+            Some(Shorthand::Merges(merges)) => {
+                self.once("merged", &name.origin, HINT)?;
+                self.own.row.merges = Some(merges);
+            }
             None => {}
         }
-        Permits::NOTHING
+        Ok(Permits::NOTHING)
     }
 
     pub(super) fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {

@@ -1,6 +1,6 @@
 //! What each line of a row says.
 
-use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
     Access, Definition, Element, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Step, Takes, Use,
     When, is_word_of_formulas,
@@ -65,12 +65,23 @@ pub(super) struct Statements {
     declared: Vec<String>,
     /// The buffers that lines refer to.
     used: Vec<Spanned<String>>,
+    /// What a row says once, and where it has: a kind of line, or a name.
+    said: Vec<(String, Origin)>,
     pub(super) reader: Reader,
 }
 
+/// Lines of which a row has one: what a second said would take the place of what the first did.
+const SINGLE: [&str; 6] = ["paper", "offers", "requires", "uses", "keeps", "soundness"];
+
 impl Statements {
     pub(super) fn new(own: OwnRow, faults: Diagnostics) -> Self {
-        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults, places: Vec::new() } }
+        Statements {
+            own,
+            declared: Vec::new(),
+            used: Vec::new(),
+            said: Vec::new(),
+            reader: Reader { faults, places: Vec::new() },
+        }
     }
 
     /// The whole row, or every mistake.
@@ -98,6 +109,9 @@ impl Statements {
 
     fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
         let word = self.reader.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
+        if SINGLE.contains(&word.value.as_str()) {
+            self.once(&word.value, &word.origin, "join the two lines, or leave one of them out")?;
+        }
         let row = &mut self.own.row;
         match word.value.as_str() {
             "paper" => row.paper = line.until(&[]).value.into(),
@@ -123,6 +137,17 @@ impl Statements {
             }
         }
         Ok(())
+    }
+
+    /// Reports what a row has said already.
+    pub(super) fn once(&mut self, what: &str, at: &Origin, hint: &str) -> Read<()> {
+        let Some((_, first)) = self.said.iter().find(|(said, _)| said == what) else {
+            self.said.push((what.to_owned(), at.clone()));
+            return Ok(());
+        };
+        let diagnostic = Diagnostic::new(codes::DUPLICATE, at, format!("the row says `{what}` twice"), hint);
+        self.reader.faults.push(diagnostic.label(first, "the first is here"));
+        Err(Stop)
     }
 
     /// `buffer name[index < length]…: element, clear 0, host, persistent -- summary`
@@ -291,6 +316,7 @@ impl Statements {
         loop {
             let axis = self.reader.word(line, "an axis", "`suits cull early`")?;
             let value = self.reader.word(line, "a value", "`suits cull early`")?;
+            self.once(&format!("suits {}", axis.value), &axis.origin, "leave one of them out")?;
             self.own.row.defaults.push((axis.value.into(), value.value.into()));
             self.own.places.defaults.push(value.origin);
             if !line.sign(',') {
@@ -303,6 +329,7 @@ impl Statements {
     fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
         let name = self.reader.word(line, "the option's name", SHAPE)?;
+        self.once(&format!("parameter {}", name.value), &name.origin, "give one of the options another name")?;
         let constant = self.constant(line, SHAPE)?;
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
@@ -349,8 +376,9 @@ impl Statements {
     /// `defines pixels = ceil_div(width, 4) * 4 * height`
     fn defines(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`defines pixels = ceil_div(width, 4) * 4 * height`";
-        let symbol = self.reader.word(line, "a symbol", SHAPE)?;
-        let symbol = self.reader.one_of(&symbol, &[("pixels", "pixels")], "no symbol that a row defines")?;
+        let name = self.reader.word(line, "a symbol", SHAPE)?;
+        let symbol = self.reader.one_of(&name, &[("pixels", "pixels")], "no symbol that a row defines")?;
+        self.once(&format!("defines {symbol}"), &name.origin, "leave one of them out")?;
         self.reader.sign(line, '=', SHAPE)?;
         let value = line.until(&[]);
         self.reader.formula(&value, &["width", "height"])?;
