@@ -9,7 +9,6 @@ mod roles;
 mod summary;
 mod textures;
 
-use formulas::symbols;
 pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
 use summary::{normal_form, passes, words_per_pixel};
@@ -19,7 +18,7 @@ use std::sync::Arc;
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Capability, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step, When,
+    Capability, Element, Expression, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step, When,
 };
 
 use crate::frame::{Context, Lowered, lower};
@@ -106,7 +105,8 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let (mut symbols, constants) = symbols(variant, selection, &layout)?;
+    let (mut symbols, constants) = formulas::symbols(variant, selection, &layout)?;
+    formulas::check(variant, selection, &symbols)?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
     bound_k(variant, &mut symbols).map_err(|error| fault(error.to_string()))?;
     let offers = selection.offers();
@@ -167,9 +167,9 @@ fn build(
     let mut planned = Vec::with_capacity(resources.len());
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
         let named = |error: FormulaError| format!("`{}`: {error}", resource.name);
-        let words = symbols.compile(&size(&resource)?).map_err(named)?;
+        let words = size(&resource).and_then(|size| symbols.compile(&size)).map_err(named)?;
         normal_form(words.formula(), symbols).map_err(named)?;
-        let lengths = resource.extents.iter().map(|extent| symbols.compile(&extent.length));
+        let lengths = resource.extents.iter().map(|extent| symbols.length(&extent.length));
         let lengths = lengths.collect::<Result<_, _>>().map_err(named)?;
         planned.push(Planned { resource, binding, words, lengths, part });
     }
@@ -205,7 +205,7 @@ fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Ste
 }
 
 /// Words of a resource: the product of its extents and of an element's words.
-fn size(resource: &Resource) -> Result<Formula, String> {
+fn size(resource: &Resource) -> Result<Formula, FormulaError> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
         Element::Word => {}
@@ -217,17 +217,27 @@ fn size(resource: &Resource) -> Result<Formula, String> {
         Element::BesideTextures(_) => factors.push("beside_words".into()),
         Element::EntryTextures(_) => factors.push("entry_words".into()),
     }
-    for factor in &factors {
-        factor.read().map_err(|error| error.to_string())?;
-    }
-    let texts: Vec<String> = factors.iter().map(written_factor).collect();
+    let texts: Vec<String> =
+        factors.iter().enumerate().map(|(at, factor)| written_factor(factor, at == 0)).collect::<Result<_, _>>()?;
     let text = if texts.is_empty() { "1".to_owned() } else { texts.join(" * ") };
     Ok(text.into())
 }
 
-fn written_factor(factor: &Formula) -> String {
-    let is_sum = factor.0.contains(" + ") || factor.0.contains(" - ");
-    if is_sum && !factor.0.contains('(') { format!("({factor})") } else { factor.to_string() }
+/// A factor of a product, in parentheses where the product would come to something else.
+fn written_factor(factor: &Formula, is_first: bool) -> Result<String, FormulaError> {
+    let is_closed = is_closed(&factor.read()?, is_first);
+    Ok(if is_closed { factor.to_string() } else { format!("({factor})") })
+}
+
+/// Whether all operators bind as close as that of a product. Only what stands first may divide: elsewhere the rest before
+/// it would be divided too.
+fn is_closed(factor: &Expression, is_first: bool) -> bool {
+    match factor {
+        Expression::Apply("*", parts) => is_closed(&parts[0], is_first),
+        Expression::Apply("/", _) => is_first,
+        Expression::Apply(operator, _) => operator.starts_with(|sign: char| sign.is_ascii_alphabetic()),
+        _ => true,
+    }
 }
 
 /// The fields of the shaders' `frame`: its size, the row at which a slice of a picture begins (0: there are no slices), k

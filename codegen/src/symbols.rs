@@ -108,6 +108,13 @@ pub enum PlanValue {
 pub struct Quantity {
     text: Formula,
     term: Term,
+    /// The same with every part computed that has a value when code is generated.
+    folded: Term,
+}
+
+/// Whether an operator says that something holds, which texts do by a type of its own.
+pub fn is_truth(operator: &str) -> bool {
+    matches!(operator, "==" | "!=" | "<" | "<=" | ">" | ">=" | "&&" | "||")
 }
 
 /// A formula, resolved.
@@ -289,9 +296,22 @@ impl SymbolTable {
         self.number(self.find(name)?)
     }
 
-    /// A formula with its symbols resolved. `Err`: it cannot be read, or names a symbol that there is not.
+    /// A formula with its symbols resolved. `Err`: it cannot be read, names a symbol that there is not, or has a part that has
+    /// no value in any frame.
     pub fn compile(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
-        Ok(Quantity { text: formula.clone(), term: self.term(&formula.read()?)? })
+        let expression = formula.read()?;
+        let term = self.term(&expression)?;
+        let folded = self.term(&expression.folded(&|name| self.number_of(name))?)?;
+        Ok(Quantity { text: formula.clone(), term, folded })
+    }
+
+    /// The same for a length, which shaders compute in words of 32 bits.
+    pub fn length(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
+        let length = self.compile(formula)?;
+        match length.folded.greatest_number() {
+            Some(number) if number > u64::from(u32::MAX) => Err(FormulaError::Word(number)),
+            _ => Ok(length),
+        }
     }
 
     fn term(&self, expression: &Expression) -> Result<Term, FormulaError> {
@@ -347,15 +367,25 @@ fn open(symbol: &Symbol) -> PlanSymbol {
     }
 }
 
+impl Term {
+    fn greatest_number(&self) -> Option<u64> {
+        match self {
+            Term::Number(number) => Some(*number),
+            Term::Symbol(_) => None,
+            Term::Apply(_, arguments) => arguments.iter().filter_map(Term::greatest_number).max(),
+        }
+    }
+}
+
 impl Quantity {
     /// The formula as it was written.
     pub fn formula(&self) -> &Formula {
         &self.text
     }
 
-    /// The formula, resolved.
+    /// The formula as texts say it: resolved, and every part computed that has a value when code is generated.
     pub fn term(&self) -> &Term {
-        &self.term
+        &self.folded
     }
 
     /// Whether the formula itself names the symbol.

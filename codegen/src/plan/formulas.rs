@@ -4,9 +4,10 @@
 //! that say so.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Selected, Selection, Variant, codes};
-use fragbuf_templates::vocabulary::{Formula, Parameter, Row};
+use fragbuf_templates::vocabulary::{Formula, FormulaError, Parameter, Row, Step, Words, Written};
 
-use super::bucket;
+use super::summary::normal_form;
+use super::{bucket, size};
 use crate::symbols::Misdefined;
 use crate::{Layout, SymbolTable};
 
@@ -45,7 +46,7 @@ fn misdefined(fault: &Misdefined, variant: &Variant, selection: &Selection) -> D
         defines.any(|defined| defined.symbol == fault.symbol && defined.value == fault.formula)
     };
     let at = Place { row: rows.rfind(is_its), variant };
-    at.fault(&fault.formula.0, fault.to_string(), fault.hint().to_owned()).into()
+    at.fault(Written::Definition, &fault.formula.0, fault.to_string(), fault.hint().to_owned()).into()
 }
 
 /// Adds a parameter to the symbols: what the description sets, else its default.
@@ -60,7 +61,7 @@ fn constant(
     let value = set.map_or_else(|| default(selected, parameter, table, at), Ok)?;
     table.add(&parameter.constant, &parameter.summary, parameter.range, value).map_err(|_| {
         let message = format!("`{}` means something else in formulas already", parameter.constant);
-        at.fault(&parameter.constant, message, "choose another name for the constant".to_owned())
+        at.fault(Written::Constant, &parameter.constant, message, "choose another name for the constant".to_owned())
     })?;
     Ok(value)
 }
@@ -69,15 +70,63 @@ fn constant(
 fn default(selected: &Selected, parameter: &Parameter, table: &SymbolTable, at: Place<'_>) -> Result<u32, Diagnostic> {
     let text = &parameter.default;
     let value = table.compile(text).and_then(|default| table.evaluate(&default, &|_| None));
-    let value = value.map_err(|error| at.fault(&text.0, error.to_string(), error.hint().to_owned()))?;
+    let value =
+        value.map_err(|error| at.fault(Written::Default, &text.0, error.to_string(), error.hint().to_owned()))?;
     let (least, greatest) = parameter.range;
     let word = u32::try_from(value).ok().filter(|value| (least..=greatest).contains(value));
     word.ok_or_else(|| {
         let (name, axis) = (&parameter.name, &selected.row.axis);
         let message = format!("the default of `{name}` is {value} here, not from {least} to {greatest}");
         let hint = format!("set it in the description, `{axis}: … {{ {name}: {least} }}`, or write another default");
-        Diagnostic { code: at.code_or(&text.0, codes::BAD_OPTION), ..at.fault(&text.0, message, hint) }
+        Diagnostic {
+            code: at.code_or(Written::Default, &text.0, codes::BAD_OPTION),
+            ..at.fault(Written::Default, &text.0, message, hint)
+        }
     })
+}
+
+/// Whether the formulas of users' files that memory and reads rest on can be computed by every shader and device: whatever
+/// else is refused in a plan is not the user's own mistake.
+pub(super) fn check(variant: &Variant, selection: &Selection, symbols: &SymbolTable) -> Result<(), Diagnostics> {
+    let mut faults = Diagnostics::new();
+    for row in selection.rows.iter().map(|selected| &*selected.row) {
+        let at = Place { row: Some(row), variant };
+        let mut report = |what, text: &str, result: Result<(), FormulaError>| {
+            if let Err(error) = result {
+                faults.push(at.fault(what, text, error.to_string(), error.hint().to_owned()));
+            }
+        };
+        for resource in &row.resources {
+            let lengths = resource.extents.iter().map(|extent| &extent.length);
+            let is_right = lengths.clone().all(|length| symbols.length(length).is_ok());
+            lengths.for_each(|length| report(Written::Length, &length.0, symbols.length(length).map(drop)));
+            if is_right {
+                report(Written::Resource, &resource.name, size(resource).and_then(|size| sized(&size, symbols)));
+            }
+        }
+        for formula in row.steps.iter().flat_map(reads) {
+            report(Written::Read, &formula.0, symbols.compile(formula).map(drop));
+        }
+    }
+    faults.gate(())
+}
+
+/// Whether the size of a resource has a value, and a form that a plan can print.
+fn sized(size: &Formula, symbols: &SymbolTable) -> Result<(), FormulaError> {
+    symbols.compile(size)?;
+    normal_form(size, symbols).map(drop)
+}
+
+/// The formulas of the words that a host step reads.
+fn reads(step: &Step) -> Vec<&Formula> {
+    let Step::Host(host) = step else { return Vec::new() };
+    let words = host.reads.iter().map(|read| &read.words);
+    words
+        .flat_map(|words| match words {
+            Words::All => Vec::new(),
+            Words::Some { first, count } => vec![first, count],
+        })
+        .collect()
 }
 
 /// Where messages about a row's formulas point: into the user's file, where the row is one.
@@ -89,20 +138,20 @@ struct Place<'a> {
 
 impl Place<'_> {
     /// The place of a name or formula in the user's file.
-    fn origin(self, text: &str) -> Option<Origin> {
+    fn origin(self, what: Written, text: &str) -> Option<Origin> {
         let row = self.row?;
         let file = row.template.as_ref()?.own.as_deref()?;
-        let written = row.places.iter().find(|written| written.text == text)?;
-        Some(Origin::new(file, written.line, written.column).with_length(written.length))
+        let place = row.places.iter().find(|place| (place.what, &*place.text) == (what, text))?;
+        Some(Origin::new(file, place.line, place.column).with_length(place.length))
     }
 
-    fn code_or(self, text: &str, other: Code) -> Code {
-        if self.origin(text).is_some() { codes::ROW } else { other }
+    fn code_or(self, what: Written, text: &str, other: Code) -> Code {
+        if self.origin(what, text).is_some() { codes::ROW } else { other }
     }
 
     /// What is wrong with a name or formula. Rows that no file says are a program's, or fragbuf's own.
-    fn fault(self, text: &str, message: String, hint: String) -> Diagnostic {
-        if let Some(origin) = self.origin(text) {
+    fn fault(self, what: Written, text: &str, message: String, hint: String) -> Diagnostic {
+        if let Some(origin) = self.origin(what, text) {
             return Diagnostic::new(codes::ROW, &origin, message, hint);
         }
         let row = self.row.map(|row| format!("`{}: {}`: ", row.axis, row.key)).unwrap_or_default();

@@ -34,7 +34,7 @@ pub use pass::{Access, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Rol
 pub use polynomial::Polynomial;
 pub use reference::{Alike, Blended, KEY_SYMBOLS, Kept, Merges, Permits, PromisedKeys, Side, Torn};
 pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
-pub use row::{Axis, Carried, Definition, Order, Parameter, Place, Row, Soundness, Takes, Template};
+pub use row::{Axis, Carried, Definition, Order, Parameter, Place, Row, Soundness, Takes, Template, Written};
 pub use state::{Blend, Compare, Coverage, DepthState, Samples, State, StencilOperation, StencilState, Target};
 pub use symbol::{SYMBOLS, SetBy, Symbol, When};
 pub use technique::{KeepDefault, Technique};

@@ -76,9 +76,28 @@ pub struct Row {
     pub places: Vec<Place>,
 }
 
+/// What a row in a user's file writes somewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// The name of a buffer.
+    Resource,
+    /// The length of an extent.
+    Length,
+    /// The words that a host step reads: the first, or how many.
+    Read,
+    /// The constant of a parameter.
+    Constant,
+    /// The default of a parameter.
+    Default,
+    /// The formula of a definition.
+    Definition,
+}
+
 /// Where a row in a user's file writes a name or a formula. Lines and columns count from 1, columns in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
+    /// What it is.
+    pub what: Written,
     /// The name or formula.
     pub text: Text,
     /// Its line.

@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits, Place};
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits, Place, Written};
 
 use super::line::Line;
 use crate::near;
@@ -131,10 +131,7 @@ impl Reader {
     /// Reports a formula that cannot be read, that depends on what it may not, or that has no value whatever that is.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
-        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else {
-            self.stands(formula);
-            return Ok(());
-        };
+        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
         let known = || {
             let symbols = symbols.join(", ");
             format!("the formula may use {symbols}, {OPERATORS}, min, max, ceil_div, pow2 and log2_ceil")
@@ -148,9 +145,9 @@ impl Reader {
     }
 
     /// Keeps the place of a name or a formula.
-    pub(super) fn stands(&mut self, text: &Spanned<String>) {
+    pub(super) fn stands(&mut self, what: Written, text: &Spanned<String>) {
         let Origin { line, column, length, .. } = text.origin;
-        self.places.push(Place { text: text.value.clone().into(), line, column, length });
+        self.places.push(Place { what, text: text.value.clone().into(), line, column, length });
     }
 
     pub(super) fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {

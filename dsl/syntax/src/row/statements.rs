@@ -3,7 +3,7 @@
 use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
     Access, Definition, Element, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Step, Takes, Use,
-    When, is_word_of_formulas,
+    When, Written, is_word_of_formulas,
 };
 
 use super::line::Line;
@@ -181,7 +181,7 @@ impl Statements {
             self.reader.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
             return Err(Stop);
         }
-        self.reader.stands(&name);
+        self.reader.stands(Written::Resource, &name);
         self.own.row.resources.push(resource);
         self.own.places.resources.push(name.origin);
         Ok(())
@@ -201,6 +201,7 @@ impl Statements {
         self.reader.sign(line, ']', SHAPE)?;
         let symbols = self.symbols();
         self.reader.formula(&length, &symbols)?;
+        self.reader.stands(Written::Length, &length);
         Ok(resource.by(&index.value, length.value))
     }
 
@@ -273,7 +274,9 @@ impl Statements {
         let (first, count) = words.value.split_once(" for ").unwrap_or((&words.value, "1"));
         let symbols = self.symbols();
         for formula in [first, count] {
-            self.reader.formula(&Spanned::new(formula.trim().to_owned(), words.origin.clone()), &symbols)?;
+            let formula = Spanned::new(formula.trim().to_owned(), words.origin.clone());
+            self.reader.formula(&formula, &symbols)?;
+            self.reader.stands(Written::Read, &formula);
         }
         Ok(host.reads_some(&name.value, first.trim().to_owned(), count.trim().to_owned()))
     }
@@ -336,6 +339,7 @@ impl Statements {
         let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= When::Generation);
         let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
         self.reader.formula(&default, &generation)?;
+        self.reader.stands(Written::Default, &default);
         if !line.sign(',') || !line.exactly("from") {
             return self.reader.unexpected(line, "`, from`", SHAPE);
         }
@@ -365,7 +369,7 @@ impl Statements {
     fn constant(&mut self, line: &mut Line<'_>, shape: &str) -> Read<Spanned<String>> {
         let constant = self.reader.name(line, "a generated constant", shape)?;
         if !is_word_of_formulas(&constant.value) {
-            self.reader.stands(&constant);
+            self.reader.stands(Written::Constant, &constant);
             return Ok(constant);
         }
         let message = format!("`{}` means something else in every formula", constant.value);
@@ -382,6 +386,7 @@ impl Statements {
         self.reader.sign(line, '=', SHAPE)?;
         let value = line.until(&[]);
         self.reader.formula(&value, &["width", "height"])?;
+        self.reader.stands(Written::Definition, &value);
         self.own.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
         Ok(())
     }
