@@ -2,6 +2,7 @@
 //! what is refused is refused at the user's own line and column.
 
 use std::collections::BTreeSet;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use fragbuf::load::{Description, load};
@@ -150,7 +151,13 @@ const BAD: &[Bad] = &[
     bad("//: offers", "//: parameter limit CAPACITY = 3, from 1 to 9\n//: offers", "row", "CAPACITY", "letters"),
     bad("//: offers", "//: parameter limit LAYERS = 3, from 1 to 9\n//: offers", "contract", "LAYERS", "OWN_LAYERS"),
     bad("//: pass resolve", "//: host allocate: reads taken[0]\n//: pass resolve", "row", "allocate", "sets fragments"),
-    bad("//: offers", "//: when 1 < keep < 9 -- write `keep 4;`\n//: offers", "row", "1 < keep", ""),
+    bad(
+        "//: offers",
+        "//: when 1 < keep < 9 -- write `keep 4;`\n//: offers",
+        "row",
+        "1 < keep",
+        "join two comparisons by `&&`",
+    ),
     bad("//: offers", "//: parameter limit LIMIT = 3, from 9 to 1\n//: offers", "row", "1\n//: offers", "9"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "row", "//: paper", "the file's head"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "refused", "}\nfn first", "every brace closed"),
@@ -173,6 +180,7 @@ fn every_mistake_in_a_file_is_said_at_its_line_and_column() {
     let mut wrong = Vec::new();
     for (index, case) in BAD.iter().enumerate() {
         assert_eq!(good.matches(case.from).count().min(1), 1, "{}", case.from);
+        assert!(!case.way_out.is_empty(), "no way out of {}", case.to);
         let text = good.replacen(case.from, case.to, 1);
         let folder = with(&format!("bad-{index}"), DESCRIPTION, &text);
         let (faults, sources) = faults(&folder).err().unwrap_or_else(|| panic!("accepted: {}", case.to));
@@ -303,13 +311,187 @@ fn a_condition_of_the_users_own() {
     assert_eq!(faults(&with("condition_met", &met, &four)).map_err(|(faults, _)| faults.to_string()), Ok(()));
     for (line, code, hint) in [
         ("//: when k == 4 -- write `keep 4;`", codes::ROW, "the formula may use keep, limited"),
-        ("//: requires limited-to-one", codes::UNKNOWN_FACT, "`//: when keep == 1"),
+        ("//: requires keep-best", codes::UNKNOWN_FACT, "`keeps-best`"),
         ("//: offers fragment-atomics", codes::UNKNOWN_FACT, "`//: requires fragment-atomics`"),
-        ("//: implies sorted when depth-key", codes::ROW, "write `depth_key`"),
+        ("//: implies sorted when depth-key", codes::ROW, "depth_key"),
     ] {
         let (faults, _) = faults(&with("condition_unread", DESCRIPTION, &with_condition(line))).unwrap_err();
         let is_it = |fault: &&fragbuf::Diagnostic| fault.code == code && fault.hint.contains(hint);
         assert!(faults.iter().find(is_it).is_some(), "{line}: {faults}");
+    }
+}
+
+/// The code, line, column and hint of each fault that lies in the user's file.
+fn placed(name: &str, description: &str, file: &str) -> Vec<(&'static str, u32, u32, String)> {
+    let folder = with(name, description, file);
+    let Err((faults, _)) = faults(&folder) else { return Vec::new() };
+    let own = folder.join("mine.wgsl").display().to_string();
+    assert!(faults.iter().all(|fault| *fault.origin.file == *own), "{faults}");
+    let place = |origin: &fragbuf_model::Origin| (origin.line, origin.column);
+    faults
+        .iter()
+        .map(|fault| (fault.code.name, place(&fault.origin).0, place(&fault.origin).1, fault.hint.clone()))
+        .collect()
+}
+
+/// A default is a value that a description could set: what it comes to depends on the description.
+#[test]
+fn a_default_outside_of_its_range_is_said_where_it_stands() {
+    let file = example("first_k.wgsl");
+    for (index, (default, is_right)) in [
+        ("capacity - 3", true),
+        ("capacity * 2", false),
+        ("capacity - 9", false),
+        ("pow2(32) + 4", false),
+        ("pow2(capacity * 8)", false),
+        ("7 / (capacity - 8)", false),
+        ("keep + limited", true),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let line = format!("//: parameter limit LIMIT = {default}, from 2 to 9");
+        let file = file.replace("//: offers", &format!("{line}\n//: offers"));
+        let found = placed(&format!("default-{index}"), DESCRIPTION, &file);
+        let (line, column) = place(&file, &format!("{default}, from"));
+        assert_eq!(found.is_empty(), is_right, "{default}: {found:?}");
+        let is_it = |(code, at, from, hint): &(&str, u32, u32, String)| {
+            (*code, *at, *from) == ("row", line, column) && !hint.is_empty()
+        };
+        assert!(found.len() <= 1 && found.iter().all(is_it), "{default} at {line}:{column}: {found:?}");
+    }
+}
+
+/// Lengths of every operator, deep and long ones too, and whether shaders and devices can compute them for `keep 8`.
+fn lengths() -> Vec<(String, bool)> {
+    let right = [
+        "log2_ceil(k) + log2_ceil(capacity + 1)",
+        "1 + (k < n) + (k <= n) + (k > n) + (k >= n) + (k == n) + (k != n)",
+        "k < 3 && n < 4",
+        "k < 3 && n || fragments == 1 && (keep > 7)",
+        "(k && n) * (k || 0)",
+        "pow2(k + log2_ceil(n)) / ceil_div(k, n) - ceil_div(max(k, 2), min(n, capacity))",
+        "pixels * pow2(32) / pow2(32)",
+        "n / LIMIT",
+        "pow2(40) / pow2(20)",
+        "4294967295",
+    ];
+    let wrong = [
+        "4294967296",
+        "k + 18446744073709551615",
+        "99999999999999999999",
+        "pow2(32)",
+        "k * pow2(capacity * 4)",
+        "k / 0",
+        "n / (capacity - 8)",
+        "ceil_div(n, limited - 1)",
+        "k + 1 / 0",
+        "3 - capacity",
+        "k / (LIMIT - 3)",
+        "pow2(64)",
+        "1 < k < 9",
+        "4294967295 * 4294967295 * k * 4294967295",
+    ];
+    let chain = |sign: &str| format!("k{}", format!(" {sign} n").repeat(100));
+    let nested = |open: &str, close: &str| format!("{}k{}", open.repeat(40), close.repeat(40));
+    let deep = ["+", "*", "&&", "||"].map(chain).into_iter().chain([
+        nested("pow2(", ")"),
+        nested("log2_ceil(", ")"),
+        nested("min(n, ", ")"),
+        nested("max(", ", n)"),
+        nested("ceil_div(", ", n)"),
+        nested("(n == ", ")"),
+        nested("(n || ", ")"),
+        nested("(1 + n * ", ")"),
+    ]);
+    let right = right.map(str::to_owned).into_iter().chain(deep);
+    right.map(|text| (text, true)).chain(wrong.map(|text| (text.to_owned(), false))).collect()
+}
+
+/// A length is text that every shader language and Rust take, or a mistake at its place.
+#[test]
+fn every_length_is_valid_or_a_mistake() {
+    let (good, all) = (example("first_k.wgsl"), folder("lengths"));
+    let mut rust = String::new();
+    for (index, (length, is_right)) in lengths().into_iter().enumerate() {
+        let file = good
+            .replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"))
+            .replace("//: buffer taken", "//: parameter limit LIMIT = 3, from 1 to 9\n//: buffer taken");
+        let name = format!("length-{index}");
+        if !is_right {
+            let found = placed(&name, DESCRIPTION, &file);
+            let (line, column) = place(&file, &format!("{length}]: entry"));
+            let places: Vec<_> = found.iter().map(|(code, at, from, _)| (*code, *at, *from)).collect();
+            assert_eq!(places, [("row", line, column)], "{length}: {found:?}");
+            assert!(found.iter().all(|(.., hint)| !hint.is_empty()));
+            continue;
+        }
+        let description = Description::read(&with(&name, DESCRIPTION, &file).join("own.fragbuf")).unwrap();
+        let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap_or_else(|e| panic!("{e}"));
+        let targets: Vec<&'static Target> = ["wgsl", "glsl", "spirv", "msl"].map(|name| target(name).unwrap()).into();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let made = generate(&variant, &request, &Registry::builtin()).unwrap_or_else(|e| panic!("{length}: {e}"));
+        validate(made.files.iter());
+        for file in made.files.iter() {
+            std::fs::create_dir_all(all.join(&name).join(&file.path).parent().unwrap()).unwrap();
+            std::fs::write(all.join(&name).join(&file.path), &file.bytes).unwrap();
+        }
+        let module = format!("length_{index}");
+        rust.push_str(&fragbuf::build::bindings(&module, &length, &made, 0, &name));
+        let _ = writeln!(rust, "pub use {module}::plan::buffers::slots::bytes as bytes_{index};");
+    }
+    std::fs::write(all.join("lib.rs"), rust).unwrap();
+    let rustc = std::process::Command::new("rustc")
+        .args(["--edition", "2024", "--crate-type", "lib", "--emit", "metadata", "-D", "warnings", "lib.rs"])
+        .current_dir(&all)
+        .output()
+        .unwrap();
+    assert!(rustc.status.success(), "{}", String::from_utf8_lossy(&rustc.stderr));
+}
+
+/// `keep` is beyond every word for `keep all`, and only there.
+#[test]
+fn a_length_depends_on_what_is_kept() {
+    let list = |length: &str| {
+        example("first_k.wgsl")
+            .replace("[slot < k]", "[slot < 9]")
+            .replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"))
+    };
+    let all = DESCRIPTION.replace("keep 8", "keep all");
+    let facts = |file: String| file.replace("//: offers own-atomics, indexed", "//: offers keeps-all, indexed");
+    for (index, (length, is_right)) in
+        [("keep", false), ("limited * keep + 3", true), ("min(keep, 9)", true)].into_iter().enumerate()
+    {
+        let file = facts(list(length)).replace("frame.k", "9u").replace("//: suits sync slot_counter\n", "");
+        let found = placed(&format!("all-{index}"), &all, &file);
+        let (line, column) = place(&file, &format!("{length}]: entry"));
+        assert_eq!(found.is_empty(), is_right, "{length}: {found:?}");
+        assert!(found.iter().all(|(code, at, from, _)| (*code, *at, *from) == ("row", line, column)), "{found:?}");
+    }
+}
+
+/// The size of a buffer is the product of its lengths, whatever operators those have.
+#[test]
+fn sizes_are_products_of_whole_lengths() {
+    for (index, (length, size)) in [
+        ("k+1", "k * (k+1) * entry_words"),
+        ("(n + 1) / 2", "k * ((n + 1) / 2) * entry_words"),
+        ("n / 2 * 2", "k * (n / 2 * 2) * entry_words"),
+        ("2 * (n + 1)", "k * 2 * (n + 1) * entry_words"),
+        ("k == n", "k * (k == n) * entry_words"),
+        ("ceil_div(n, 2) + 1", "k * (ceil_div(n, 2) + 1) * entry_words"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let file = example("first_k.wgsl").replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"));
+        let folder = with(&format!("size-{index}"), DESCRIPTION, &file);
+        let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+        let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap();
+        let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let made = generate(&variant, &request, &Registry::builtin()).unwrap();
+        let slots = made.plans[0].plan.resource("slots").unwrap();
+        assert_eq!(slots.words.to_string(), size);
     }
 }
 

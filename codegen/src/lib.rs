@@ -28,7 +28,7 @@ pub use markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MARKERS, MEMORY_FEN
 pub use own::adopt;
 pub use plan::{Arrival, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
 pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
-pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term};
+pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term, is_truth};
 
 /// What a generator puts on the first line of every file that it writes.
 pub const GENERATOR: &str = concat!("fragbuf ", env!("CARGO_PKG_VERSION"));

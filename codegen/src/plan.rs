@@ -4,20 +4,21 @@
 
 mod dump;
 mod edit;
+mod formulas;
 mod roles;
 mod summary;
 mod textures;
 
 pub(crate) use roles::{axis_of, instance_row};
 pub use summary::Arrival;
-use summary::{passes, words_per_pixel};
+use summary::{normal_form, passes, words_per_pixel};
 
 use std::sync::Arc;
 
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Capability, Element, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Row, Soundness, Step, When,
+    Capability, Element, Expression, Formula, FormulaError, Hazard, Init, Kind, Life, Resource, Soundness, Step, When,
 };
 
 use crate::frame::{Context, Lowered, lower};
@@ -104,7 +105,8 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
         Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.origin, problem, hint))
     };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let (mut symbols, constants) = symbols(variant, selection, &layout).map_err(|error| fault(error.to_string()))?;
+    let (mut symbols, constants) = formulas::symbols(variant, selection, &layout)?;
+    formulas::check(variant, selection, &symbols)?;
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(fault)?;
     bound_k(variant, &mut symbols).map_err(|error| fault(error.to_string()))?;
     let offers = selection.offers();
@@ -130,39 +132,6 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
             .filter(|hazard| hazard.unless.is_none_or(|fact| !offers.contains(&fact)))
             .collect(),
     })
-}
-
-/// The symbols of a plan: numbers of generation time, what rows define, the parameters of the rows. Also: the generated
-/// constants, which are what every program may name, then the parameters.
-fn symbols(
-    variant: &Variant,
-    selection: &Selection,
-    layout: &Layout,
-) -> Result<(SymbolTable, Vec<(String, u32)>), FormulaError> {
-    let given = variant.given(selection);
-    let capacity = u64::from(bucket(variant.keep));
-    let number = |name: &str| if name == "capacity" { Some(capacity) } else { given.value(name) };
-    let rows = || selection.rows.iter().map(|selected| &*selected.row);
-    let defined: Vec<(&str, &Formula)> =
-        rows().flat_map(|row| &row.defines).map(|defined| (&*defined.symbol, &defined.value)).collect();
-    let mut table = SymbolTable::new(&number, &defined)?;
-    let mut constants =
-        vec![("CAPACITY".to_owned(), bucket(variant.keep)), ("BESIDE_WORDS".to_owned(), layout.beside_words())];
-    for selected in &selection.rows {
-        for parameter in &selected.row.parameters {
-            let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-            let value = match set {
-                Some(value) => value,
-                None => table.evaluate(&table.compile(&parameter.default)?, &|_| None)? as u32,
-            };
-            constants.push((parameter.constant.to_string(), value));
-        }
-    }
-    let parameters = rows().flat_map(|row: &Row| &row.parameters);
-    for (parameter, (_, value)) in parameters.zip(constants.iter().skip(2)) {
-        table.add(&parameter.constant, &parameter.summary, parameter.range, u64::from(*value));
-    }
-    Ok((table, constants))
 }
 
 /// k goes from 1 to the capacity, and is what the description says where a frame says nothing.
@@ -198,8 +167,9 @@ fn build(
     let mut planned = Vec::with_capacity(resources.len());
     for (binding, (resource, part)) in (FIRST_BINDING..).zip(resources) {
         let named = |error: FormulaError| format!("`{}`: {error}", resource.name);
-        let words = symbols.compile(&size(&resource)?).map_err(named)?;
-        let lengths = resource.extents.iter().map(|extent| symbols.compile(&extent.length));
+        let words = size(&resource).and_then(|size| symbols.compile(&size)).map_err(named)?;
+        normal_form(words.formula(), symbols).map_err(named)?;
+        let lengths = resource.extents.iter().map(|extent| symbols.length(&extent.length));
         let lengths = lengths.collect::<Result<_, _>>().map_err(named)?;
         planned.push(Planned { resource, binding, words, lengths, part });
     }
@@ -235,7 +205,7 @@ fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Ste
 }
 
 /// Words of a resource: the product of its extents and of an element's words.
-fn size(resource: &Resource) -> Result<Formula, String> {
+fn size(resource: &Resource) -> Result<Formula, FormulaError> {
     let mut factors: Vec<Formula> = resource.extents.iter().map(|extent| extent.length.clone()).collect();
     match resource.element {
         Element::Word => {}
@@ -247,17 +217,27 @@ fn size(resource: &Resource) -> Result<Formula, String> {
         Element::BesideTextures(_) => factors.push("beside_words".into()),
         Element::EntryTextures(_) => factors.push("entry_words".into()),
     }
-    for factor in &factors {
-        factor.read().map_err(|error| error.to_string())?;
-    }
-    let texts: Vec<String> = factors.iter().map(written_factor).collect();
+    let texts: Vec<String> =
+        factors.iter().enumerate().map(|(at, factor)| written_factor(factor, at == 0)).collect::<Result<_, _>>()?;
     let text = if texts.is_empty() { "1".to_owned() } else { texts.join(" * ") };
     Ok(text.into())
 }
 
-fn written_factor(factor: &Formula) -> String {
-    let is_sum = factor.0.contains(" + ") || factor.0.contains(" - ");
-    if is_sum && !factor.0.contains('(') { format!("({factor})") } else { factor.to_string() }
+/// A factor of a product, in parentheses where the product would come to something else.
+fn written_factor(factor: &Formula, is_first: bool) -> Result<String, FormulaError> {
+    let is_closed = is_closed(&factor.read()?, is_first);
+    Ok(if is_closed { factor.to_string() } else { format!("({factor})") })
+}
+
+/// Whether all operators bind as close as that of a product. Only what stands first may divide: elsewhere the rest before
+/// it would be divided too.
+fn is_closed(factor: &Expression, is_first: bool) -> bool {
+    match factor {
+        Expression::Apply("*", parts) => is_closed(&parts[0], is_first),
+        Expression::Apply("/", _) => is_first,
+        Expression::Apply(operator, _) => operator.starts_with(|sign: char| sign.is_ascii_alphabetic()),
+        _ => true,
+    }
 }
 
 /// The fields of the shaders' `frame`: its size, the row at which a slice of a picture begins (0: there are no slices), k

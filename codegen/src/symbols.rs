@@ -5,7 +5,9 @@
 
 use std::fmt;
 
-use fragbuf_templates::vocabulary::{Expression, Formula, FormulaError, SYMBOLS, SetBy, Symbol, Text, When, apply};
+use fragbuf_templates::vocabulary::{
+    Expression, Formula, FormulaError, SYMBOLS, SetBy, Symbol, Text, When, apply, is_word_of_formulas,
+};
 
 /// A symbol of a plan: the place in its [`SymbolTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -106,6 +108,13 @@ pub enum PlanValue {
 pub struct Quantity {
     text: Formula,
     term: Term,
+    /// The same with every part computed that has a value when code is generated.
+    folded: Term,
+}
+
+/// Whether an operator says that something holds, which texts do by a type of its own.
+pub fn is_truth(operator: &str) -> bool {
+    matches!(operator, "==" | "!=" | "<" | "<=" | ">" | ">=" | "&&" | "||")
 }
 
 /// A formula, resolved.
@@ -119,47 +128,134 @@ pub enum Term {
     Apply(&'static str, Vec<Term>),
 }
 
+/// A definition of a row that gives its symbol no value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Misdefined {
+    /// What is defined.
+    pub(crate) symbol: String,
+    /// As what.
+    pub(crate) formula: Formula,
+    /// What is wrong.
+    pub(crate) problem: Misdefinition,
+}
+
+/// What is wrong with a definition.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Misdefinition {
+    /// There is no such symbol.
+    Unknown,
+    /// The description, or another row, gives the symbol its value.
+    Twice,
+    /// It rests on itself.
+    Circular,
+    /// The formula cannot be read, or can have no value.
+    NoFormula(FormulaError),
+}
+
+/// The name of a parameter's constant has another meaning in formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NameTaken;
+
+impl fmt::Display for Misdefined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let symbol = &self.symbol;
+        match &self.problem {
+            Misdefinition::Unknown => write!(f, "there is no symbol `{symbol}` to define"),
+            Misdefinition::Twice => write!(f, "`{symbol}` has a value already"),
+            Misdefinition::Circular => write!(f, "the value of `{symbol}` rests on itself"),
+            Misdefinition::NoFormula(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Misdefined {
+    /// The way out, as an instruction.
+    pub(crate) fn hint(&self) -> &'static str {
+        match &self.problem {
+            Misdefinition::Unknown | Misdefinition::Twice => "leave the definition out",
+            Misdefinition::Circular => "define it over `width` and `height` alone",
+            Misdefinition::NoFormula(error) => error.hint(),
+        }
+    }
+}
+
 impl SymbolTable {
     /// The table of a plan: `number` gives the values of generation time, `defined` the formulas that rows give instead of a
     /// default. Parameters are added one by one ([`SymbolTable::add`]), because each may rest on the former.
-    pub(crate) fn new(
-        number: &dyn Fn(&str) -> Option<u64>,
-        defined: &[(&str, &Formula)],
-    ) -> Result<Self, FormulaError> {
+    pub(crate) fn new(number: &dyn Fn(&str) -> Option<u64>, defined: &[(&str, &Formula)]) -> Result<Self, Misdefined> {
         let mut table = SymbolTable { symbols: SYMBOLS.iter().map(open).collect() };
         for symbol in &mut table.symbols {
             if let Some(number) = number(&symbol.name) {
                 symbol.value = PlanValue::Number(number);
             }
         }
-        // Formulas are over symbols that have none themselves, so that none goes round in a circle.
-        let mut defaults = Vec::new();
-        for (index, symbol) in SYMBOLS.iter().enumerate() {
-            let own = defined.iter().find(|(name, _)| *name == symbol.name).map(|(_, formula)| (*formula).clone());
-            if let Some(formula) = own.or_else(|| symbol.default_formula()) {
-                defaults.push((index, table.compile(&formula)?));
+        for (at, (name, formula)) in defined.iter().enumerate() {
+            let fault = |problem| Misdefined { symbol: (*name).to_owned(), formula: (*formula).clone(), problem };
+            let id = table.find(name).ok_or_else(|| fault(Misdefinition::Unknown))?;
+            if table.number(id).is_some() || defined[..at].iter().any(|(other, _)| other == name) {
+                return Err(fault(Misdefinition::Twice));
             }
         }
-        for (index, quantity) in defaults {
-            let circular = |id: SymbolId| SYMBOLS.get(id.index()).is_some_and(|symbol| symbol.default.is_some());
-            if let Some(id) = quantity.symbols().into_iter().find(|id| circular(*id)) {
-                return Err(FormulaError::Unbound(table.get(id).name.to_string()));
-            }
-            table.symbols[index].value = PlanValue::Default(quantity);
-        }
+        table.define(defined)?;
         Ok(table)
     }
 
-    /// Adds a parameter of a row.
-    pub(crate) fn add(&mut self, constant: &Text, meaning: &Text, range: (u32, u32), value: u64) {
+    /// Gives symbols their formulas: those of rows, else their defaults. None may go round in a circle.
+    fn define(&mut self, defined: &[(&str, &Formula)]) -> Result<(), Misdefined> {
+        for (index, symbol) in SYMBOLS.iter().enumerate() {
+            let own = defined.iter().find(|(name, _)| *name == symbol.name).map(|(_, formula)| (*formula).clone());
+            let Some(formula) = own.or_else(|| symbol.default_formula()) else { continue };
+            let quantity = self.compile(&formula).map_err(|error| Misdefined {
+                symbol: symbol.name.to_owned(),
+                formula,
+                problem: Misdefinition::NoFormula(error),
+            })?;
+            self.symbols[index].value = PlanValue::Default(quantity);
+        }
+        for (name, formula) in defined {
+            if self.find(name).is_some_and(|id| self.rests_on_itself(id)) {
+                let (symbol, formula) = ((*name).to_owned(), (*formula).clone());
+                return Err(Misdefined { symbol, formula, problem: Misdefinition::Circular });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the formula of a symbol leads back to it, through those of others too.
+    fn rests_on_itself(&self, id: SymbolId) -> bool {
+        let formula_of = |id: SymbolId| match &self.get(id).value {
+            PlanValue::Default(quantity) => quantity.symbols(),
+            _ => Vec::new(),
+        };
+        let mut reached = formula_of(id);
+        let mut at = 0;
+        while let Some(next) = reached.get(at).copied() {
+            reached.extend(formula_of(next).into_iter().filter(|id| !reached.contains(id)).collect::<Vec<_>>());
+            at += 1;
+        }
+        reached.contains(&id)
+    }
+
+    /// Adds a parameter of a row. `Err`: its name means something else in formulas already.
+    pub(crate) fn add(
+        &mut self,
+        constant: &Text,
+        meaning: &Text,
+        range: (u32, u32),
+        value: u32,
+    ) -> Result<(), NameTaken> {
+        if is_word_of_formulas(constant) || self.find(constant).is_some() {
+            return Err(NameTaken);
+        }
         self.symbols.push(PlanSymbol {
             name: constant.clone(),
             meaning: meaning.clone(),
             when: When::Generation,
             set_by: SetBy::Description,
             range: (range.0.into(), range.1.into()),
-            value: PlanValue::Number(value),
+            value: PlanValue::Number(value.into()),
         });
+        Ok(())
     }
 
     /// Bounds a symbol that frames set, and says its value where none does.
@@ -183,8 +279,7 @@ impl SymbolTable {
 
     /// The handle of a name, for what comes from outside.
     pub fn find(&self, name: &str) -> Option<SymbolId> {
-        // Of a built-in symbol and a parameter of its name the latter counts: parameters are the row's own.
-        let index = self.symbols.iter().rposition(|symbol| symbol.name == name)?;
+        let index = self.symbols.iter().position(|symbol| symbol.name == name)?;
         Some(SymbolId(index as u16))
     }
 
@@ -201,9 +296,22 @@ impl SymbolTable {
         self.number(self.find(name)?)
     }
 
-    /// A formula with its symbols resolved. `Err`: it cannot be read, or names a symbol that there is not.
+    /// A formula with its symbols resolved. `Err`: it cannot be read, names a symbol that there is not, or has a part that has
+    /// no value in any frame.
     pub fn compile(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
-        Ok(Quantity { text: formula.clone(), term: self.term(&formula.read()?)? })
+        let expression = formula.read()?;
+        let term = self.term(&expression)?;
+        let folded = self.term(&expression.folded(&|name| self.number_of(name))?)?;
+        Ok(Quantity { text: formula.clone(), term, folded })
+    }
+
+    /// The same for a length, which shaders compute in words of 32 bits.
+    pub fn length(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
+        let length = self.compile(formula)?;
+        match length.folded.greatest_number() {
+            Some(number) if number > u64::from(u32::MAX) => Err(FormulaError::Word(number)),
+            _ => Ok(length),
+        }
     }
 
     fn term(&self, expression: &Expression) -> Result<Term, FormulaError> {
@@ -259,15 +367,25 @@ fn open(symbol: &Symbol) -> PlanSymbol {
     }
 }
 
+impl Term {
+    fn greatest_number(&self) -> Option<u64> {
+        match self {
+            Term::Number(number) => Some(*number),
+            Term::Symbol(_) => None,
+            Term::Apply(_, arguments) => arguments.iter().filter_map(Term::greatest_number).max(),
+        }
+    }
+}
+
 impl Quantity {
     /// The formula as it was written.
     pub fn formula(&self) -> &Formula {
         &self.text
     }
 
-    /// The formula, resolved.
+    /// The formula as texts say it: resolved, and every part computed that has a value when code is generated.
     pub fn term(&self) -> &Term {
-        &self.term
+        &self.folded
     }
 
     /// Whether the formula itself names the symbol.
@@ -333,8 +451,36 @@ mod tests {
     }
 
     #[test]
-    fn a_definition_in_a_circle_is_refused() {
-        let circle = Formula::from("pixels * 2");
-        assert!(SymbolTable::new(&|_| None, &[("pixels", &circle)]).is_err());
+    fn definitions_that_give_no_value_are_refused() {
+        let new = |defined: &[(&str, &'static str)]| {
+            let formulas: Vec<(&str, Formula)> = defined.iter().map(|(name, text)| (*name, (*text).into())).collect();
+            let formulas: Vec<(&str, &Formula)> = formulas.iter().map(|(name, formula)| (*name, formula)).collect();
+            let number = |name: &str| (name == "entry_words").then_some(2);
+            SymbolTable::new(&number, &formulas).map(|_| ()).map_err(|fault| (fault.symbol, fault.problem))
+        };
+        let circular = |name: &str| Err((name.to_owned(), Misdefinition::Circular));
+        assert_eq!(new(&[("pixels", "width * 2")]), Ok(()));
+        assert_eq!(new(&[("fragments", "kept"), ("kept", "pixels * 2")]), Ok(()));
+        assert_eq!(new(&[("pixels", "pixels * 2")]), circular("pixels"));
+        // Not through defaults alone.
+        assert_eq!(new(&[("fragments", "kept"), ("kept", "fragments")]), circular("fragments"));
+        assert_eq!(new(&[("height", "n"), ("width", "1")]), circular("height"));
+        assert_eq!(new(&[("pixel", "width")]), Err(("pixel".to_owned(), Misdefinition::Unknown)));
+        for twice in [&[("pixels", "width"), ("pixels", "height")][..], &[("entry_words", "3")]] {
+            assert_eq!(new(twice).map_err(|(_, problem)| problem), Err(Misdefinition::Twice));
+        }
+        let unread = new(&[("pixels", "width *")]);
+        assert!(matches!(unread, Err((_, Misdefinition::NoFormula(FormulaError::Malformed { .. })))), "{unread:?}");
+    }
+
+    #[test]
+    fn no_parameter_takes_the_name_of_a_symbol() {
+        let mut table = table();
+        let mut add = |name: &'static str| table.add(&name.into(), &"".into(), (1, 9), 3);
+        assert_eq!(add("LIMIT"), Ok(()));
+        for name in ["LIMIT", "pixels", "k", "keep", "key", "depth_millionths", "pow2"] {
+            assert_eq!(add(name), Err(NameTaken), "{name}");
+        }
+        assert_eq!((table.number_of("LIMIT"), table.number_of("k")), (Some(3), None));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fragbuf_codegen::{PlanValue, Quantity, SymbolId, SymbolTable, Term};
+use fragbuf_codegen::{PlanValue, Quantity, SymbolId, SymbolTable, Term, is_truth};
 
 /// Words that Rust keeps for itself.
 const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final \
@@ -41,19 +41,34 @@ fn written(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) ->
                 symbols.get(*id).name.to_string()
             }
         },
+        Term::Apply(operator, _) if is_truth(operator) => format!("({} as u64)", holding(term, symbols, used)),
         Term::Apply(operator, arguments) => {
             let parts: Vec<String> = arguments.iter().map(|argument| written(argument, symbols, used)).collect();
             match (*operator, parts.as_slice()) {
                 ("ceil_div", [a, b]) => format!("u64::div_ceil({a}, {b})"),
                 ("pow2", [a]) => format!("(1u64 << {a})"),
+                ("log2_ceil", [a]) => format!("(u64::next_power_of_two({a}).trailing_zeros() as u64)"),
                 // Functions of traits are not for constants.
-                ("min", [a, b]) => format!("(if {a} < {b} {{ {a} }} else {{ {b} }})"),
-                ("max", [a, b]) => format!("(if {a} > {b} {{ {a} }} else {{ {b} }})"),
-                (operator, [a, b]) => format!("({a} {operator} {b})"),
-                (operator, parts) => format!("{operator}({})", parts.join(", ")),
+                ("min", [a, b]) => format!("({{ let (a, b) = ({a}, {b}); if a < b {{ a }} else {{ b }} }})"),
+                ("max", [a, b]) => format!("({{ let (a, b) = ({a}, {b}); if a > b {{ a }} else {{ b }} }})"),
+                (operator, parts) => format!("({})", parts.join(&format!(" {operator} "))),
             }
         }
     }
+}
+
+/// Whether a formula holds, in parentheses.
+fn holding(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
+    let (operator, parts): (&str, Vec<String>) = match term {
+        Term::Apply(operator @ ("&&" | "||"), arguments) => {
+            (operator, arguments.iter().map(|argument| holding(argument, symbols, used)).collect())
+        }
+        Term::Apply(operator, arguments) if is_truth(operator) => {
+            (operator, arguments.iter().map(|argument| written(argument, symbols, used)).collect())
+        }
+        _ => ("!=", vec![written(term, symbols, used), "0".to_owned()]),
+    };
+    format!("({})", parts.join(&format!(" {operator} ")))
 }
 
 #[cfg(test)]
@@ -86,6 +101,14 @@ mod tests {
             (vec!["k".to_owned(), "fragments".to_owned()], "(fragments / (k * 2))".to_owned())
         );
         assert_eq!(of("n * pixels").0, ["width", "height", "n"]);
-        assert_eq!(of("max(k, 2) - min(k, 1)").1, "((if k > 2 { k } else { 2 }) - (if k < 1 { k } else { 1 }))");
+        assert_eq!(
+            of("max(k, 2) - min(k, 1)").1,
+            "(({ let (a, b) = (k, 2); if a > b { a } else { b } }) - ({ let (a, b) = (k, 1); if a < b { a } else { b } }))"
+        );
+        assert_eq!(
+            of("k * (n == 3 && fragments || k < 2)").1,
+            "(k * ((((n == 3) && (fragments != 0)) || (k < 2)) as u64))"
+        );
+        assert_eq!(of("log2_ceil(n) + 7 / capacity").1, "((u64::next_power_of_two(n).trailing_zeros() as u64) + 0)");
     }
 }

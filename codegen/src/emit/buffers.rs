@@ -6,7 +6,7 @@ use std::fmt::Write;
 use fragbuf_model::mangled;
 use fragbuf_templates::vocabulary::{Access, Element, Pass, Resource, Use};
 
-use crate::{Linking, Plan, PlanValue, Planned, Profile, SymbolId, Term};
+use crate::{Linking, Plan, PlanValue, Planned, Profile, SymbolId, Term, is_truth};
 
 pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> String {
     let mut text = uniform_blocks(plan, linking);
@@ -239,15 +239,32 @@ impl Accessors<'_> {
                 PlanValue::Number(number) => format!("{number}u"),
                 _ => format!("frame.{}", self.plan.symbols.get(*id).name),
             },
+            Term::Apply(operator, _) if is_truth(operator) => format!("u32{}", self.holding(term)),
             Term::Apply(operator, arguments) => {
                 let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
                 match (*operator, parts.as_slice()) {
                     ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),
                     ("pow2", [a]) => format!("(1u << {a})"),
-                    ("+" | "-" | "*" | "/", [a, b]) => format!("({a} {operator} {b})"),
-                    (function, parts) => format!("{function}({})", parts.join(", ")),
+                    ("log2_ceil", [a]) => format!("(32u - countLeadingZeros(max({a}, 1u) - 1u))"),
+                    ("min" | "max", [a, b]) => format!("{operator}({a}, {b})"),
+                    (operator, parts) => format!("({})", parts.join(&format!(" {operator} "))),
                 }
             }
+        }
+    }
+
+    /// Whether a length holds, in parentheses.
+    fn holding(&self, term: &Term) -> String {
+        match term {
+            Term::Apply(operator @ ("&&" | "||"), arguments) => {
+                let parts: Vec<String> = arguments.iter().map(|argument| self.holding(argument)).collect();
+                format!("({})", parts.join(&format!(" {operator} ")))
+            }
+            Term::Apply(operator, arguments) if is_truth(operator) => {
+                let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
+                format!("({})", parts.join(&format!(" {operator} ")))
+            }
+            _ => format!("({} != 0u)", self.written(term)),
         }
     }
 

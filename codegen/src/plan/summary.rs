@@ -3,7 +3,7 @@
 //! In: a plan. Out: formulas in the papers' notation, and words. Everything follows from facts, the rows' reference model and
 //! steps; nothing here names a technique.
 
-use fragbuf_templates::vocabulary::{Fact, Kind, Order, Pass, Polynomial, Side, Soundness};
+use fragbuf_templates::vocabulary::{Fact, Formula, FormulaError, Kind, Order, Pass, Polynomial, Side, Soundness};
 
 use super::{Plan, Planned};
 use crate::frame::Lowered;
@@ -95,9 +95,12 @@ fn runs(
     sum
 }
 
-/// A formula in normal form. What cannot be read has been refused when the plan was made.
+/// A formula in normal form. What has none has been refused when the plan was made.
 fn polynomial(quantity: &Quantity, symbols: &SymbolTable) -> Polynomial {
-    let expression = quantity.formula().read();
-    expression
-        .map_or_else(|_| Polynomial::default(), |expression| expression.polynomial(&|name| symbols.number_of(name)))
+    normal_form(quantity.formula(), symbols).unwrap_or_default()
+}
+
+/// A formula as a sum of products of symbols.
+pub(super) fn normal_form(formula: &Formula, symbols: &SymbolTable) -> Result<Polynomial, FormulaError> {
+    formula.read()?.polynomial(&|name| symbols.number_of(name))
 }

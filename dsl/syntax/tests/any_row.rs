@@ -4,7 +4,7 @@
 
 use fragbuf_syntax::row;
 use fragbuf_templates::vocabulary::{
-    Access, Blended, Capability, Element, Fact, Host, Init, Kept, Loads, Permits, Soundness, Step,
+    Access, Blended, Capability, Element, Fact, Host, Init, Kept, Loads, Permits, SYMBOLS, Soundness, Step,
 };
 
 const GOOD: &str = "// What it is.\n\
@@ -59,7 +59,7 @@ fn a_row_says_what_its_lines_say() {
     let limit = &row.parameters[0];
     assert_eq!((&*limit.name, &*limit.constant, limit.range), ("limit", "LIMIT", (1, 99)));
     assert_eq!((row.hazards[0].unless, row.soundness), (Some(Fact::Critical), Soundness::Lock));
-    let both = Permits::STALE.and(&Permits::LOST);
+    let both = Permits::STALE.and(&Permits::LOST).expect("both take a race");
     let permits: Vec<_> = row.hazards.iter().map(|hazard| hazard.permits.clone()).collect();
     assert_eq!(permits, [Permits::TORN, both, Permits::NOTHING]);
     assert_eq!(row.kept(), Some(Kept::best_of_each("min(k - 1, key / LIMIT)")));
@@ -105,4 +105,96 @@ fn any_text_is_a_row_or_mistakes_inside_it() {
         }
     }
     assert!(refused > 1000, "{refused}");
+}
+
+/// A formula that would be read, multiplied out or written without end is a mistake at its place, wherever it stands.
+#[test]
+fn formulas_are_bounded() {
+    let nested = |count: usize| format!("{}k{}", "(".repeat(count), ")".repeat(count));
+    let sums = ["(width + height + pixels + k + n + fragments + kept)"; 5].join(" * ");
+    let of_conditions = |text: &str| text.replace(['k', 'n'], "keep").replace("pixels", "color");
+    let long = format!("1{}", " + k".repeat(200_000));
+    let deep = [nested(200_000), "!".repeat(200_000), "-".repeat(200_000), nested(41)];
+    for formula in deep.iter().chain([&long]) {
+        let condition = of_conditions(formula);
+        for line in [
+            format!("//: buffer b[slot < {formula}]: word"),
+            format!("//: host allocate: reads b[{formula}]; sets k\n//: buffer b: word"),
+            format!("//: parameter limit LIMIT = {}, from 1 to 2", formula.replace(['k', 'n'], "capacity")),
+            format!("//: keeps best {}", formula.replace('n', "k")),
+            format!("//: keeps best 1 of each {}", formula.replace('n', "k")),
+            format!("//: when {condition}"),
+            format!("//: implies sorted when {condition}"),
+            format!("//: defines pixels = {}", formula.replace(['k', 'n'], "width")),
+        ] {
+            let text = format!("//: storage -- it\n{line}\n");
+            let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err("too much");
+            assert!(faults.iter().all(|fault| fault.origin.line == 2 && !fault.hint.is_empty()), "{line:.60}");
+        }
+    }
+    for (formula, hint) in [(&deep[3], "fewer parentheses"), (&long, "shorter"), (&sums, "fewer sums")] {
+        let text = format!("//: storage -- it\n//: buffer b[a < width][slot < {formula}]: word\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err("too much");
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("row", 2, 32)], "{hint}");
+        assert!(faults.iter().all(|fault| fault.hint.contains(hint)), "{faults}");
+    }
+}
+
+/// A constant of the name of a symbol would change what the formulas of the row mean.
+#[test]
+fn no_constant_takes_a_word_of_formulas() {
+    let words = SYMBOLS.iter().map(|symbol| symbol.name);
+    for word in words.chain(["key", "depth_millionths", "ceil_div", "pow2", "log2_ceil"]) {
+        let text = format!("//: storage -- it\n//: parameter limit {word} = 3, from 1 to 9\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err(word);
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("row", 2, 21)], "{faults}");
+        let way_out = format!("`OWN_{}`", word.to_ascii_uppercase());
+        assert!(faults.iter().all(|fault| fault.hint.contains(&way_out)), "{faults}");
+    }
+}
+
+/// What a hazard permits under several conditions is a hazard for each.
+#[test]
+fn permits_keep_their_conditions() {
+    let text = "//: storage -- it\n//: hazard mixed permits torn, unsettled, stale, equal-keys -- a mixture\n";
+    let own = row(text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect("it is a row");
+    let found: Vec<_> = own.row.hazards.iter().map(|hazard| (&*hazard.what, hazard.permits.clone())).collect();
+    let torn_and_stale = Permits::TORN.and(&Permits::STALE).expect("both take a race");
+    let wanted = [
+        ("a mixture, in a race", torn_and_stale),
+        ("a mixture, where `unsettled` is counted", Permits::UNSETTLED),
+        ("a mixture, whatever the order", Permits::ONE_OF_EQUAL_KEYS),
+    ];
+    assert_eq!(found, wanted);
+}
+
+/// What a row says once is a mistake where it says it again: the second does not silently take the place of the first.
+#[test]
+fn what_is_said_twice_is_reported_at_the_second() {
+    for (first, second, column) in [
+        ("keeps best k", "keeps worst k", 5),
+        ("keeps best k", "hazard one-per-range -- ranges", 12),
+        ("hazard one-per-range -- ranges", "keeps best k", 5),
+        ("hazard merged-farthest -- mixed", "hazard merged-neighbours -- mixed", 12),
+        ("paper A", "paper B", 5),
+        ("offers indexed", "offers sorted", 5),
+        ("requires critical", "requires fragment-atomics", 5),
+        ("uses b read", "uses b plain", 5),
+        ("soundness lock", "soundness racy", 5),
+        ("suits cull early", "suits sync none, cull none", 22),
+        ("defines pixels = width", "defines pixels = height", 13),
+        ("parameter limit A = 1, from 1 to 2", "parameter limit B = 2, from 1 to 2", 15),
+    ] {
+        let text = format!("//: storage -- it\n//: buffer b: word\n//: {first}\n//: {second}\n");
+        let faults = row(&text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").expect_err(second);
+        let found: Vec<_> =
+            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        assert_eq!(found, [("duplicate", 4, column)], "{faults}");
+        let labels = faults.iter().flat_map(|fault| &fault.labels).map(|label| label.origin.line);
+        assert_eq!(labels.collect::<Vec<_>>(), [3], "{faults}");
+    }
 }

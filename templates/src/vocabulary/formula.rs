@@ -2,14 +2,15 @@
 //!
 //! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2 log2_ceil`; then the comparisons
 //! `== != < <= > >=`, then `&&`, then `||`, which bind ever more weakly. `/` rounds down. What holds is 1 and what does not
-//! is 0; any other number than 0 counts as holding. All values are unsigned.
+//! is 0; any other number than 0 counts as holding. All values are unsigned. Parentheses and functions nest up to 40 deep, and a
+//! formula has up to 100 operators and functions: every text that one is written to holds these too.
 //! Symbols are those of [`SYMBOLS`](super::SYMBOLS), and parameters of the chosen rows by their constants, such as
 //! `PAGE_ENTRIES`; conditions are over those that a description gives ([`Given`](super::Given)).
 
 use std::borrow::Cow;
 use std::fmt;
 
-use super::Polynomial;
+use super::{KEY_SYMBOLS, Polynomial, SYMBOLS};
 
 /// A formula as written in a row.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -43,18 +44,64 @@ pub enum FormulaError {
         /// Where reading stopped.
         at: usize,
     },
+    /// The text compares what a comparison came to, as `1 < k < 9` does.
+    Chained(String),
+    /// The formula is longer or deeper than one may be.
+    TooLarge(Limit),
     /// A symbol has no value yet.
     Unbound(String),
-    /// A division by zero, or a result beyond 64 bits.
+    /// A division by zero, or a result below zero or beyond 64 bits.
     Overflow(String),
+    /// A number that a 32-bit word cannot hold, in a formula that shaders compute.
+    Word(u64),
+}
+
+/// What bounds a formula, so that neither reading nor writing one goes on without end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Parentheses and functions inside each other.
+    Depth,
+    /// Operators and functions.
+    Operators,
+    /// The products that are left once all parentheses are multiplied out, or the length of one of their factors.
+    Terms,
 }
 
 impl fmt::Display for FormulaError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             FormulaError::Malformed { text, at } => write!(f, "`{text}` is no formula from byte {at} on"),
+            FormulaError::Chained(text) => write!(f, "`{text}` compares what a comparison came to"),
+            FormulaError::TooLarge(Limit::Depth) => write!(f, "the formula is nested more than {MOST_DEPTH} deep"),
+            FormulaError::TooLarge(Limit::Operators) => {
+                write!(f, "the formula has more than {MOST_OPERATORS} operators and functions")
+            }
+            FormulaError::TooLarge(Limit::Terms) => {
+                write!(f, "the formula, multiplied out, has more than {MOST_TERMS} products, or one that is too long")
+            }
             FormulaError::Unbound(symbol) => write!(f, "`{symbol}` has no value yet"),
-            FormulaError::Overflow(text) => write!(f, "`{text}` divides by zero or exceeds 64 bits"),
+            FormulaError::Overflow(text) => {
+                write!(f, "`{text}` has no value: it divides by zero, or is below zero or beyond 64 bits")
+            }
+            FormulaError::Word(number) => write!(f, "{number} does not fit into a word of 32 bits"),
+        }
+    }
+}
+
+impl FormulaError {
+    /// The way out, as an instruction.
+    pub fn hint(&self) -> &'static str {
+        match self {
+            FormulaError::Malformed { .. } => "write it of numbers, symbols, operators and functions",
+            FormulaError::Chained(_) => "join two comparisons by `&&`: `1 < k && k < 9`",
+            FormulaError::TooLarge(Limit::Depth) => "write it with fewer parentheses and functions inside each other",
+            FormulaError::TooLarge(Limit::Operators) => {
+                "write it shorter; what stands in the divisor of a `ceil_div` counts twice"
+            }
+            FormulaError::TooLarge(Limit::Terms) => "write it with fewer sums that are multiplied with each other",
+            FormulaError::Unbound(_) => "name a symbol that has a value there",
+            FormulaError::Overflow(_) => "divide by 1 or more, keep differences at 0 or more, and numbers below 2^64",
+            FormulaError::Word(_) => "write it so that every number in it is below 2^32; `keep` is 2^32 for `keep all`",
         }
     }
 }
@@ -78,6 +125,24 @@ const FUNCTIONS: [(&str, usize); 5] = [("min", 2), ("max", 2), ("ceil_div", 2), 
 /// The operators from the weakest to the strongest. Of two with the same beginning the longer comes first.
 const OPERATORS: [&[&str]; 5] = [&["||"], &["&&"], &["==", "!=", "<=", ">=", "<", ">"], &["+", "-"], &["*", "/"]];
 
+/// See [`Limit::Depth`].
+const MOST_DEPTH: usize = 40;
+
+/// See [`Limit::Operators`].
+const MOST_OPERATORS: usize = 100;
+
+/// See [`Limit::Terms`].
+const MOST_TERMS: usize = 1000;
+
+/// The longest text of a symbol that stands for a function in a [`Polynomial`].
+const LONGEST_SYMBOL: usize = 4000;
+
+/// A name that means something in every formula: no constant of a row can have it.
+pub fn is_word_of_formulas(name: &str) -> bool {
+    let is_function = FUNCTIONS.iter().any(|(function, _)| *function == name);
+    is_function || KEY_SYMBOLS.contains(&name) || SYMBOLS.iter().any(|symbol| symbol.name == name)
+}
+
 impl Formula {
     /// Whether the value depends on this symbol.
     pub fn mentions(&self, symbol: &str) -> bool {
@@ -86,7 +151,7 @@ impl Formula {
 
     /// Reads the text.
     pub fn read(&self) -> Result<Expression, FormulaError> {
-        let mut reader = Reader { text: &self.0, at: 0 };
+        let mut reader = Reader { text: &self.0, at: 0, depth: 0, operators: 0 };
         let expression = reader.operation(0)?;
         reader.skip_spaces();
         if reader.at < self.0.len() { Err(reader.malformed()) } else { Ok(expression) }
@@ -109,28 +174,84 @@ impl Expression {
                 for argument in arguments {
                     values.push(argument.evaluate(value)?);
                 }
-                apply(operator, &values).ok_or_else(|| FormulaError::Overflow(format!("{operator}{values:?}")))
+                applied(operator, &values)
             }
         }
     }
 
-    /// The formula as a sum of products. Divisions and functions that do not reduce to a number stay whole, as symbols.
-    pub fn polynomial(&self, value: &dyn Fn(&str) -> Option<u64>) -> Polynomial {
+    /// The symbols that it names.
+    pub fn symbols(&self) -> Vec<&str> {
         match self {
-            Expression::Number(number) => Polynomial::number(*number as i64),
-            Expression::Symbol(name) => match value(name) {
-                Some(number) => Polynomial::number(number as i64),
-                None => Polynomial::symbol(name),
-            },
+            Expression::Number(_) => Vec::new(),
+            Expression::Symbol(name) => vec![name],
+            Expression::Apply(_, arguments) => arguments.iter().flat_map(Expression::symbols).collect(),
+        }
+    }
+
+    /// The formula with every part that has a value computed. A part that can have none, whatever the symbols left are, is an
+    /// error: a division by 0, or numbers whose difference is below zero.
+    pub fn folded(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<Expression, FormulaError> {
+        let Expression::Apply(operator, arguments) = self else {
+            return Ok(match self {
+                Expression::Symbol(name) => value(name).map_or_else(|| self.clone(), Expression::Number),
+                _ => self.clone(),
+            });
+        };
+        let parts = arguments.iter().map(|argument| argument.folded(value)).collect::<Result<Vec<_>, _>>()?;
+        let numbers: Option<Vec<u64>> = parts.iter().map(Expression::as_number).collect();
+        let divides_by_zero = matches!(*operator, "/" | "ceil_div") && parts[1].as_number() == Some(0);
+        match numbers {
+            Some(numbers) => applied(operator, &numbers).map(Expression::Number),
+            None if divides_by_zero => Err(FormulaError::Overflow(format!("{operator} 0"))),
+            None => Ok(Expression::Apply(operator, parts)),
+        }
+    }
+
+    fn as_number(&self) -> Option<u64> {
+        match self {
+            Expression::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// The formula as a sum of products. Divisions and functions that do not reduce to a number stay whole, as symbols.
+    pub fn polynomial(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<Polynomial, FormulaError> {
+        match self {
+            Expression::Number(number) => constant(*number),
+            Expression::Symbol(name) => value(name).map_or_else(|| Ok(Polynomial::symbol(name)), constant),
             Expression::Apply(operator, arguments) => {
-                let parts: Vec<Polynomial> = arguments.iter().map(|a| a.polynomial(value)).collect();
-                match (*operator, parts.as_slice()) {
+                let parts = arguments.iter().map(|a| a.polynomial(value)).collect::<Result<Vec<_>, _>>()?;
+                let sum = match (*operator, parts.as_slice()) {
                     ("+", [a, b]) => a.plus(b, 1),
                     ("-", [a, b]) => a.plus(b, -1),
+                    ("*", [a, b]) if a.terms() * b.terms() > MOST_TERMS => {
+                        return Err(FormulaError::TooLarge(Limit::Terms));
+                    }
                     ("*", [a, b]) => a.times(b),
-                    (operator, parts) => opaque(operator, parts),
-                }
+                    (operator, parts) => opaque(operator, parts)?,
+                };
+                if sum.is_saturated() { Err(FormulaError::Overflow(operator.to_string())) } else { Ok(sum) }
             }
+        }
+    }
+}
+
+fn constant(number: u64) -> Result<Polynomial, FormulaError> {
+    let number = i64::try_from(number).map_err(|_| FormulaError::Overflow(number.to_string()))?;
+    Ok(Polynomial::number(number))
+}
+
+fn applied(operator: &str, values: &[u64]) -> Result<u64, FormulaError> {
+    apply(operator, values).ok_or_else(|| FormulaError::Overflow(spelled(operator, values)))
+}
+
+/// An operator or a function with its arguments.
+fn spelled<T: fmt::Display>(operator: &str, arguments: &[T]) -> String {
+    match arguments {
+        [a, b] if !operator.starts_with(|sign: char| sign.is_ascii_alphabetic()) => format!("{a} {operator} {b}"),
+        _ => {
+            let texts: Vec<String> = arguments.iter().map(T::to_string).collect();
+            format!("{operator}({})", texts.join(", "))
         }
     }
 }
@@ -160,25 +281,33 @@ pub fn apply(operator: &str, values: &[u64]) -> Option<u64> {
 }
 
 /// A function whose arguments are all numbers is a number; any other is one symbol, named by its text.
-fn opaque(operator: &str, parts: &[Polynomial]) -> Polynomial {
+fn opaque(operator: &str, parts: &[Polynomial]) -> Result<Polynomial, FormulaError> {
     let numbers: Option<Vec<u64>> = parts.iter().map(Polynomial::as_number).collect();
-    if let Some(result) = numbers.and_then(|numbers| apply(operator, &numbers)) {
-        return Polynomial::number(result as i64);
+    if let Some(numbers) = numbers {
+        return constant(applied(operator, &numbers)?);
     }
     let texts: Vec<String> = parts.iter().map(Polynomial::to_string).collect();
-    match (operator, texts.as_slice()) {
-        ("/", [_, one]) if one == "1" => parts[0].clone(),
-        ("/", [a, b]) => Polynomial::symbol(&format!("({a}/{b})")),
-        (sign, [a, b]) if !sign.starts_with(|c: char| c.is_ascii_alphabetic()) => {
-            Polynomial::symbol(&format!("({a} {sign} {b})"))
+    let name = match (operator, texts.as_slice()) {
+        ("/", [_, one]) if one == "1" => return Ok(parts[0].clone()),
+        ("/", [a, b]) => format!("({a}/{b})"),
+        (sign, [_, _]) if !sign.starts_with(|c: char| c.is_ascii_alphabetic()) => {
+            format!("({})", spelled(sign, &texts))
         }
-        _ => Polynomial::symbol(&format!("{operator}({})", texts.join(", "))),
+        _ => spelled(operator, &texts),
+    };
+    if name.len() > LONGEST_SYMBOL {
+        return Err(FormulaError::TooLarge(Limit::Terms));
     }
+    Ok(Polynomial::symbol(&name))
 }
 
 struct Reader<'a> {
     text: &'a str,
     at: usize,
+    /// Parentheses and functions that are open.
+    depth: usize,
+    /// Operators and functions so far.
+    operators: usize,
 }
 
 impl Reader<'_> {
@@ -186,12 +315,13 @@ impl Reader<'_> {
     fn operation(&mut self, strength: usize) -> Result<Expression, FormulaError> {
         let Some(operators) = OPERATORS.get(strength) else { return self.atom() };
         let mut left = self.operation(strength + 1)?;
-        let (mut compares, begin) = (false, self.at);
+        let mut compares = false;
         while let Some(operator) = operators.iter().find(|operator| self.take(operator)) {
             // `1 < k < 9` would compare what the first comparison came to.
             if std::mem::replace(&mut compares, operators.contains(&"==")) {
-                return Err(FormulaError::Malformed { text: self.text.to_owned(), at: begin });
+                return Err(FormulaError::Chained(self.text.to_owned()));
             }
+            self.count(1)?;
             left = Expression::Apply(operator, vec![left, self.operation(strength + 1)?]);
         }
         Ok(left)
@@ -199,7 +329,7 @@ impl Reader<'_> {
 
     fn atom(&mut self) -> Result<Expression, FormulaError> {
         if self.take("(") {
-            let inner = self.operation(0)?;
+            let inner = self.inside()?;
             return if self.take(")") { Ok(inner) } else { Err(self.malformed()) };
         }
         let word = self.word();
@@ -216,14 +346,34 @@ impl Reader<'_> {
     }
 
     fn arguments(&mut self, name: &'static str, arity: usize) -> Result<Expression, FormulaError> {
-        let mut arguments = vec![self.operation(0)?];
+        self.count(1)?;
+        let mut arguments = vec![self.inside()?];
         while self.take(",") {
-            arguments.push(self.operation(0)?);
+            let before = self.operators;
+            arguments.push(self.inside()?);
+            // Shaders have no such function, and what is written instead names the divisor twice.
+            self.count(if name == "ceil_div" { self.operators - before } else { 0 })?;
         }
         if arguments.len() != arity || !self.take(")") {
             return Err(self.malformed());
         }
         Ok(Expression::Apply(name, arguments))
+    }
+
+    /// What stands inside parentheses.
+    fn inside(&mut self) -> Result<Expression, FormulaError> {
+        self.depth += 1;
+        if self.depth > MOST_DEPTH {
+            return Err(FormulaError::TooLarge(Limit::Depth));
+        }
+        let inner = self.operation(0)?;
+        self.depth -= 1;
+        Ok(inner)
+    }
+
+    fn count(&mut self, more: usize) -> Result<(), FormulaError> {
+        self.operators += more;
+        if self.operators > MOST_OPERATORS { Err(FormulaError::TooLarge(Limit::Operators)) } else { Ok(()) }
     }
 
     fn word(&mut self) -> String {
@@ -282,14 +432,65 @@ mod tests {
         assert_eq!(value("n"), Err(FormulaError::Unbound("n".into())));
         assert!(matches!(value("k / 0"), Err(FormulaError::Overflow(_))));
         assert!(matches!(value("3 - k"), Err(FormulaError::Overflow(_))));
-        for text in ["", "k +", "(k", "min(k)", "k k", "4é", "k =", "k && ", "k = 8", "1 < k < 9", "k == 1 != 0"] {
+        for text in ["", "k +", "(k", "min(k)", "k k", "4é", "k =", "k && ", "k = 8"] {
             assert!(matches!(value(text), Err(FormulaError::Malformed { .. })), "{text}");
+        }
+        for text in ["1 < k < 9", "k == 1 != 0"] {
+            assert!(matches!(value(text), Err(FormulaError::Chained(_))), "{text}");
+        }
+    }
+
+    #[test]
+    fn no_formula_goes_on_without_end() {
+        let read = |text: String| Formula::from(text).read().map(|_| ());
+        let nested = |open: &str, close: &str, count| format!("{}k{}", open.repeat(count), close.repeat(count));
+        for (open, close) in [("(", ")"), ("pow2(", ")"), ("(1 + min(2, ", "))"), ("k * (", ")")] {
+            assert_eq!(read(nested(open, close, 100_000)), Err(FormulaError::TooLarge(Limit::Depth)), "{open}");
+        }
+        assert_eq!(read(nested("(", ")", 40)), Ok(()));
+        assert_eq!(read(nested("(", ")", 41)), Err(FormulaError::TooLarge(Limit::Depth)));
+        assert_eq!(read(nested("", " + 1", 100)), Ok(()));
+        assert_eq!(read(nested("", " + 1", 100_000)), Err(FormulaError::TooLarge(Limit::Operators)));
+        // Written out, each divisor would stand there twice.
+        assert_eq!(read(nested("ceil_div(k, ", ")", 30)), Err(FormulaError::TooLarge(Limit::Operators)));
+        for signs in ["!", "-", "("] {
+            assert!(read(signs.repeat(100_000)).is_err(), "{signs}");
+        }
+    }
+
+    #[test]
+    fn products_of_sums_are_multiplied_out_up_to_a_bound() {
+        let form = |text: &str| Formula::from(text.to_owned()).read().and_then(|e| e.polynomial(&|_| None));
+        let sum = |letter: &str| format!("({})", [1, 2, 3, 4].map(|number| format!("{letter}{number}")).join(" + "));
+        let product = |letters: &[&str]| letters.iter().map(|letter| sum(letter)).collect::<Vec<_>>().join(" * ");
+        assert_eq!(form(&product(&["a", "b", "c", "d"])).map(|sum| sum.terms()), Ok(256));
+        assert_eq!(form(&product(&["a", "b", "c", "d", "e", "f"])), Err(FormulaError::TooLarge(Limit::Terms)));
+        // Names of functions would grow the same way.
+        let mut name = "a".to_owned();
+        for _ in 0..8 {
+            name = format!("min({name}, 9) * (b + c + d + e + f + g)");
+        }
+        assert_eq!(form(&name), Err(FormulaError::TooLarge(Limit::Terms)));
+        for text in ["a * 9223372036854775807 * 3", "18446744073709551615", "pow2(63)", "a + 1 / 0", "min(1, 0 / 0)"] {
+            assert!(matches!(form(text), Err(FormulaError::Overflow(_))), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_has_a_value_is_computed_beforehand() {
+        let form = |text: &'static str| {
+            Formula::from(text).read().and_then(|e| e.folded(&|name| (name == "w").then_some(1 << 32)))
+        };
+        assert_eq!(form("w / pow2(30) - 3"), Ok(Expression::Number(1)));
+        assert_eq!(form("k * (w > 2)"), form("k * 1"));
+        for text in ["k / (w - w)", "ceil_div(k, 0)", "k + (1 - 2)", "w * w"] {
+            assert!(matches!(form(text), Err(FormulaError::Overflow(_))), "{text}");
         }
     }
 
     #[test]
     fn fractions_of_a_symbol_are_found_among_other_terms() {
-        let sum = Formula::from("(a / 4 + p) * 9 + 2 * a + p / 4").read().map(|sum| sum.polynomial(&|_| None));
+        let sum = Formula::from("(a / 4 + p) * 9 + 2 * a + p / 4").read().and_then(|sum| sum.polynomial(&|_| None));
         let fractions = |name| sum.clone().map(|sum| sum.fractions(name, "f").to_string());
         assert_eq!(fractions("a"), Ok("9f/4".into()));
         assert_eq!(fractions("b"), Ok("0".into()));
@@ -298,7 +499,8 @@ mod tests {
     #[test]
     fn polynomials_have_one_form() {
         let form = |text: &'static str| {
-            Formula::from(text).read().map(|e| e.polynomial(&|name| (name == "w").then_some(2)).to_string())
+            let value = |name: &str| (name == "w").then_some(2);
+            Formula::from(text).read().and_then(|e| e.polynomial(&value)).map(|form| form.to_string())
         };
         assert_eq!(form("(k * w + 1) * pixels + pixels"), Ok("2k*pixels+2pixels".into()));
         assert_eq!(form("3 * f - 3 * f"), Ok("0".into()));

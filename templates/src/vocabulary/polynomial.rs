@@ -23,27 +23,38 @@ impl Polynomial {
         Polynomial(BTreeMap::from([(vec![name.to_owned()], 1)]))
     }
 
-    /// `self + factor * other`.
+    /// `self + factor * other`. Coefficients end at the bounds of `i64`.
     pub fn plus(&self, other: &Polynomial, factor: i64) -> Polynomial {
         let mut terms = self.0.clone();
         for (symbols, coefficient) in &other.0 {
-            *terms.entry(symbols.clone()).or_insert(0) += factor * coefficient;
+            add(&mut terms, symbols.clone(), coefficient.saturating_mul(factor));
         }
         terms.retain(|_, coefficient| *coefficient != 0);
         Polynomial(terms)
     }
 
-    /// `self * other`.
+    /// `self * other`. Coefficients end at the bounds of `i64`.
     pub fn times(&self, other: &Polynomial) -> Polynomial {
-        let mut product = Polynomial::default();
+        let mut terms = BTreeMap::new();
         for (left, a) in &self.0 {
             for (right, b) in &other.0 {
                 let mut symbols = [left.as_slice(), right.as_slice()].concat();
                 symbols.sort();
-                product = product.plus(&Polynomial(BTreeMap::from([(symbols, 1)])), a * b);
+                add(&mut terms, symbols, a.saturating_mul(*b));
             }
         }
-        product
+        terms.retain(|_, coefficient| *coefficient != 0);
+        Polynomial(terms)
+    }
+
+    /// How many products are summed.
+    pub fn terms(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether a coefficient has reached the bounds of `i64`, and may be another.
+    pub(super) fn is_saturated(&self) -> bool {
+        self.0.values().any(|coefficient| matches!(*coefficient, i64::MIN | i64::MAX))
     }
 
     /// The coefficient of the single factor `name`: what remains of each term that has `name` in it, without one of them.
@@ -88,6 +99,11 @@ impl Polynomial {
             Some(_) => None,
         }
     }
+}
+
+fn add(terms: &mut BTreeMap<Vec<String>, i64>, symbols: Vec<String>, more: i64) {
+    let coefficient = terms.entry(symbols).or_insert(0);
+    *coefficient = coefficient.saturating_add(more);
 }
 
 impl fmt::Display for Polynomial {

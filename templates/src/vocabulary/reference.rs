@@ -17,6 +17,9 @@ pub struct Kept {
     pub group: Option<Formula>,
 }
 
+/// What only the groups of fragments are over.
+pub const KEY_SYMBOLS: [&str; 2] = ["key", "depth_millionths"];
+
 /// An end of the order of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -184,11 +187,24 @@ impl Permits {
         ..Permits::RACE
     };
 
-    /// What either permits.
-    pub fn and(self, other: &Permits) -> Permits {
+    /// What either permits, where both show under the same conditions. `None`: they do not, and each keeps its own.
+    pub fn and(&self, other: &Permits) -> Option<Permits> {
+        let is_alike = self.needs_race == other.needs_race && self.where_counted == other.where_counted;
+        let conditions =
+            Permits { where_counted: self.where_counted.clone(), needs_race: self.needs_race, ..Permits::NOTHING };
+        is_alike.then(|| conditions.with(self).with(other))
+    }
+
+    /// What these permit together where the conditions of all are met: it has none itself.
+    pub fn together<'a>(met: impl Iterator<Item = &'a Permits>) -> Permits {
+        met.fold(Permits::NOTHING, Permits::with)
+    }
+
+    /// The same conditions, and what either permits.
+    fn with(self, other: &Permits) -> Permits {
         Permits {
-            needs_race: self.needs_race || other.needs_race,
-            where_counted: self.where_counted.or_else(|| other.where_counted.clone()),
+            needs_race: self.needs_race,
+            where_counted: self.where_counted,
             lost: self.lost || other.lost,
             duplicate: self.duplicate || other.duplicate,
             torn: self.torn.max(other.torn),
@@ -210,5 +226,27 @@ impl Permits {
     /// Whether pictures can show it, as counters do not count for that.
     pub fn shows(&self) -> bool {
         Permits { uncounted: false, counted_twice: false, ..self.clone() }.is_something()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn permits_join_under_the_same_conditions_alone() {
+        let both = Permits { torn: Torn::Any, ..Permits::LOST };
+        assert_eq!(Permits::LOST.and(&Permits::TORN), Some(both));
+        for (one, other) in [
+            (Permits::TORN, Permits::UNSETTLED),
+            (Permits::UNSETTLED, Permits::TORN),
+            (Permits::TORN, Permits::ONE_OF_EQUAL_KEYS),
+            (Permits::ONE_OF_EQUAL_KEYS, Permits::UNCOUNTED),
+        ] {
+            assert_eq!(one.and(&other), None, "{one:?} {other:?}");
+        }
+        let all = Permits::together([Permits::UNSETTLED, Permits::STALE, Permits::ONE_OF_EQUAL_KEYS].iter());
+        assert!(all.stale && all.lost && all.one_of == Alike::Keys);
+        assert_eq!((all.needs_race, all.where_counted), (false, None));
     }
 }

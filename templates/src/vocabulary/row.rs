@@ -60,7 +60,7 @@ pub struct Row {
     pub least: Vec<(Text, Formula)>,
     /// Symbols of formulas that it gives a value.
     pub defines: Vec<Definition>,
-    /// Which fragments stay, where no fact that it offers says so.
+    /// Which fragments stay, said more closely than by a fact that it offers; `None`: by a fact, or not at all.
     pub keeps: Option<Kept>,
     /// How entries become one.
     pub merges: Option<Merges>,
@@ -72,6 +72,40 @@ pub struct Row {
     pub order: Option<Order>,
     /// The function that the host calls, for a row of the axis `host`.
     pub host: Option<HostFunction>,
+    /// For a row in a user's file: where its names and formulas stand.
+    pub places: Vec<Place>,
+}
+
+/// What a row in a user's file writes somewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// The name of a buffer.
+    Resource,
+    /// The length of an extent.
+    Length,
+    /// The words that a host step reads: the first, or how many.
+    Read,
+    /// The constant of a parameter.
+    Constant,
+    /// The default of a parameter.
+    Default,
+    /// The formula of a definition.
+    Definition,
+}
+
+/// Where a row in a user's file writes a name or a formula. Lines and columns count from 1, columns in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// What it is.
+    pub what: Written,
+    /// The name or formula.
+    pub text: Text,
+    /// Its line.
+    pub line: u32,
+    /// Its first column.
+    pub column: u32,
+    /// Its length in characters.
+    pub length: u32,
 }
 
 /// A whole WGSL file.
@@ -235,6 +269,7 @@ impl Row {
             soundness: Soundness::Atomics,
             order: None,
             host: None,
+            places: Vec::new(),
         }
     }
 }

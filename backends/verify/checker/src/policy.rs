@@ -83,8 +83,7 @@ impl Policy {
             known.any(|((known, ..), count)| *known == name && *count > 0)
         };
         let hazards = self.hazards.iter();
-        let there = hazards.filter(|hazard| hazard.where_counted.as_ref().is_none_or(|name| is_counted(name)));
-        there.fold(Permits::NOTHING, Permits::and)
+        Permits::together(hazards.filter(|hazard| hazard.where_counted.as_ref().is_none_or(|name| is_counted(name))))
     }
 
     /// What is wrong whatever the rows state: fragments were given up, or found no room, or were hidden, that should not.

@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Spanned, codes};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Condition, Hazard, Kept, Permits, Side, Soundness};
+use fragbuf_templates::vocabulary::{Condition, Hazard, KEY_SYMBOLS, Kept, Permits, Side, Soundness};
 
 use super::line::Line;
 use super::reader::Read;
@@ -43,8 +43,8 @@ impl Statements {
         self.reader.formula(&at(most), &["k"])?;
         if let Some(group) = group {
             let constants = self.own.row.parameters.iter().map(|parameter| parameter.constant.to_string());
-            let symbols: Vec<String> =
-                ["k", "key", "depth_millionths"].map(str::to_owned).into_iter().chain(constants).collect();
+            let symbols = ["k"].into_iter().chain(KEY_SYMBOLS).map(str::to_owned);
+            let symbols: Vec<String> = symbols.chain(constants).collect();
             let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
             self.reader.formula(&at(group), &symbols)?;
         }
@@ -56,35 +56,53 @@ impl Statements {
     /// `hazard name permits name, name unless fact -- what`
     pub(super) fn hazard(&mut self, line: &mut Line<'_>) -> Read<()> {
         let name = self.reader.word(line, "the hazard's name", "`hazard torn -- what happens`")?;
-        let mut permits = self.permits_of(&name);
-        if line.exactly("permits") {
-            permits = Permits::NOTHING;
-            loop {
-                let word = self.reader.word(line, "what it permits", "`hazard mixed permits torn, stale`")?;
-                permits = permits.and(&self.reader.permits(&word)?);
-                if !line.sign(',') {
-                    break;
-                }
-            }
-        }
+        let own = self.permits_of(&name)?;
+        let permits = if line.exactly("permits") { self.permitted(line)? } else { vec![own] };
         let unless = if line.exactly("unless") { Some(self.reader.fact(line)?) } else { None };
         if unless.is_some() && matches!(Shorthand::of(&name.value), Some(Shorthand::Keeps(_) | Shorthand::Merges(_))) {
             let message = format!("`{}` says what the row does with fragments, whatever other rows offer", name.value);
             return self.reader.stop(codes::ROW, &name.origin, message, "leave `unless` and its fact out");
         }
-        self.own.row.hazards.push(Hazard { name: name.value.into(), what: summary(line).into(), permits, unless });
+        let (what, is_one) = (summary(line), permits.len() == 1);
+        for permits in permits {
+            let what = if is_one { what.clone() } else { format!("{what}, {}", when(&permits)) };
+            self.own.row.hazards.push(Hazard { name: name.value.clone().into(), what: what.into(), permits, unless });
+        }
         Ok(())
     }
 
-    /// What a hazard's name permits by itself; some names say what the row keeps or merges.
-    fn permits_of(&mut self, name: &Spanned<String>) -> Permits {
+    /// `name, name`: what is permitted, apart where the conditions are.
+    fn permitted(&mut self, line: &mut Line<'_>) -> Read<Vec<Permits>> {
+        let mut all: Vec<Permits> = Vec::new();
+        loop {
+            let word = self.reader.word(line, "what it permits", "`hazard mixed permits torn, stale`")?;
+            let more = self.reader.permits(&word)?;
+            match all.iter_mut().find_map(|permits| permits.and(&more).map(|joined| (permits, joined))) {
+                Some((permits, joined)) => *permits = joined,
+                None => all.push(more),
+            }
+            if !line.sign(',') {
+                return Ok(all);
+            }
+        }
+    }
+
+    /// What a hazard's name permits by itself; some names say what the row keeps or merges, which a row says once.
+    fn permits_of(&mut self, name: &Spanned<String>) -> Read<Permits> {
+        const HINT: &str = "which fragments stay, and how they merge, is said once: leave one of the lines out";
         match Shorthand::of(&name.value) {
-            Some(Shorthand::Permits(permits)) => return permits,
-            Some(Shorthand::Keeps(kept)) => self.own.row.keeps = Some(kept),
-            Some(Shorthand::Merges(merges)) => self.own.row.merges = Some(merges),
+            Some(Shorthand::Permits(permits)) => return Ok(permits),
+            Some(Shorthand::Keeps(kept)) => {
+                self.once("keeps", &name.origin, HINT)?;
+                self.own.row.keeps = Some(kept);
+            }
+            Some(Shorthand::Merges(merges)) => {
+                self.once("merged", &name.origin, HINT)?;
+                self.own.row.merges = Some(merges);
+            }
             None => {}
         }
-        Permits::NOTHING
+        Ok(Permits::NOTHING)
     }
 
     pub(super) fn soundness(&mut self, line: &mut Line<'_>) -> Read<()> {
@@ -93,5 +111,14 @@ impl Statements {
         let known: Vec<(&str, Soundness)> = known.iter().map(|(word, soundness)| (word.as_str(), *soundness)).collect();
         self.own.row.soundness = self.reader.one_of(&word, &known, "no soundness")?;
         Ok(())
+    }
+}
+
+/// When permits show, in words.
+fn when(permits: &Permits) -> String {
+    match &permits.where_counted {
+        Some(counter) => format!("where `{counter}` is counted"),
+        None if permits.needs_race => "in a race".to_owned(),
+        None => "whatever the order".to_owned(),
     }
 }

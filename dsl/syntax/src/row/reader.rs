@@ -2,7 +2,7 @@
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits};
+use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits, Place, Written};
 
 use super::line::Line;
 use crate::near;
@@ -12,23 +12,14 @@ pub(super) struct Stop;
 
 pub(super) type Read<T> = Result<T, Stop>;
 
-/// Words that were facts before conditions had formulas, and the formula of each.
-const RETIRED: [(&str, &str); 10] = [
-    ("limited", "limited"),
-    ("limited-to-one", "keep == 1"),
-    ("sample-count", "keep == 2 || keep == 4 || keep == 8"),
-    ("depth-key", "depth_key"),
-    ("color", "color"),
-    ("one-word-beside-depth", "payload_words <= 2"),
-    ("word-per-target", "payload_words <= 8"),
-    ("one-word-beside-key", "entry_words <= 2"),
-    ("keeps-best", "limited"),
-    ("keeps-all", "limited == 0"),
-];
+/// The operators of formulas, in the words of a message.
+const OPERATORS: &str = "`+ - * /`, `== != < <= > >=`, `&& ||`";
 
 /// The mistakes so far.
 pub(super) struct Reader {
     pub(super) faults: Diagnostics,
+    /// Names and formulas that are right as far as the row goes, for what only a description can tell.
+    pub(super) places: Vec<Place>,
 }
 
 impl Reader {
@@ -96,12 +87,8 @@ impl Reader {
     /// A formula over what the description gives.
     pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
         let text = line.until(&[]);
-        if let Some((_, now)) = RETIRED.iter().find(|(word, now)| *word == text.value && word != now) {
-            let message = format!("`{}` is no condition", text.value);
-            return self.stop(codes::ROW, &text.origin, message, format!("write `{now}`"));
-        }
         let symbols: Vec<&str> = Given::symbols().map(|symbol| symbol.name).collect();
-        self.formula_of(&text, &symbols, "`== != < <= > >= && ||`, `+ - * /`")?;
+        self.formula(&text, &symbols)?;
         Ok(text.value.into())
     }
 
@@ -109,11 +96,6 @@ impl Reader {
     fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
         if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
             return Ok(*fact);
-        }
-        if let Some((_, formula)) = RETIRED.iter().find(|(retired, _)| *retired == word.value) {
-            let message = format!("`{}` is a condition on the description, not a fact", word.value);
-            let hint = format!("write it on a line of its own: `//: when {formula} -- how to meet it`");
-            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
         }
         if Capability::ALL.iter().any(|capability| capability.word() == word.value) {
             let message = format!("`{}` is a capability, which targets offer and rows require", word.value);
@@ -146,23 +128,26 @@ impl Reader {
         self.stop(codes::ROW, &word.origin, format!("`{}` is {what}", word.value), near::hint(&word.value, &known))
     }
 
-    /// Reports a formula that cannot be read, or that depends on what it may not.
+    /// Reports a formula that cannot be read, that depends on what it may not, or that has no value whatever that is.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
-        self.formula_of(formula, &symbols, "`+ - * /`")
+        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
+        let known = || {
+            let symbols = symbols.join(", ");
+            format!("the formula may use {symbols}, {OPERATORS}, min, max, ceil_div, pow2 and log2_ceil")
+        };
+        let (problem, hint) = match &error {
+            FormulaError::Unbound(symbol) => (format!("`{symbol}` is no name that a formula may use here"), known()),
+            FormulaError::Malformed { text, .. } => (format!("`{text}` is no formula"), known()),
+            other => (other.to_string(), other.hint().to_owned()),
+        };
+        self.stop(codes::ROW, &formula.origin, problem, hint)
     }
 
-    fn formula_of(&mut self, formula: &Spanned<String>, symbols: &[&str], signs: &str) -> Read<()> {
-        let value = |symbol: &str| symbols.contains(&symbol).then_some(1);
-        let problem = match Formula::from(formula.value.clone()).evaluate(&value) {
-            // With every symbol at 1 a difference may be below zero: that is no mistake of the text.
-            Ok(_) | Err(FormulaError::Overflow(_)) => return Ok(()),
-            Err(FormulaError::Unbound(symbol)) => format!("`{symbol}` is no name that a formula may use here"),
-            Err(FormulaError::Malformed { text, .. }) => format!("`{text}` is no formula"),
-        };
-        let hint =
-            format!("the formula may use {}, {signs}, min, max, ceil_div, pow2 and log2_ceil", symbols.join(", "));
-        self.stop(codes::ROW, &formula.origin, problem, hint)
+    /// Keeps the place of a name or a formula.
+    pub(super) fn stands(&mut self, what: Written, text: &Spanned<String>) {
+        let Origin { line, column, length, .. } = text.origin;
+        self.places.push(Place { what, text: text.value.clone().into(), line, column, length });
     }
 
     pub(super) fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {
@@ -179,4 +164,14 @@ impl Reader {
     pub(super) fn fault(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) {
         self.faults.push(Diagnostic::new(code, at, message, hint));
     }
+}
+
+/// Whether a formula can be read, is over these symbols, and has a value for some of theirs.
+fn readable(formula: &Formula, symbols: &[&str]) -> Result<(), FormulaError> {
+    let expression = formula.read()?;
+    if let Some(symbol) = expression.symbols().into_iter().find(|symbol| !symbols.contains(symbol)) {
+        return Err(FormulaError::Unbound(symbol.to_owned()));
+    }
+    expression.folded(&|_| None)?.polynomial(&|_| None)?;
+    Ok(())
 }

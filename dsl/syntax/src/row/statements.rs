@@ -1,9 +1,9 @@
 //! What each line of a row says.
 
-use fragbuf_model::{Diagnostic, Diagnostics, OwnRow, Spanned, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, Origin, OwnRow, Spanned, codes};
 use fragbuf_templates::vocabulary::{
     Access, Definition, Element, Host, Init, Life, Loads, Parameter, Pass, Resource, SYMBOLS, SetBy, Step, Takes, Use,
-    When,
+    When, Written, is_word_of_formulas,
 };
 
 use super::line::Line;
@@ -65,12 +65,23 @@ pub(super) struct Statements {
     declared: Vec<String>,
     /// The buffers that lines refer to.
     used: Vec<Spanned<String>>,
+    /// What a row says once, and where it has: a kind of line, or a name.
+    said: Vec<(String, Origin)>,
     pub(super) reader: Reader,
 }
 
+/// Lines of which a row has one: what a second said would take the place of what the first did.
+const SINGLE: [&str; 6] = ["paper", "offers", "requires", "uses", "keeps", "soundness"];
+
 impl Statements {
     pub(super) fn new(own: OwnRow, faults: Diagnostics) -> Self {
-        Statements { own, declared: Vec::new(), used: Vec::new(), reader: Reader { faults } }
+        Statements {
+            own,
+            declared: Vec::new(),
+            used: Vec::new(),
+            said: Vec::new(),
+            reader: Reader { faults, places: Vec::new() },
+        }
     }
 
     /// The whole row, or every mistake.
@@ -83,6 +94,7 @@ impl Statements {
             };
             self.reader.fault(codes::UNKNOWN_RESOURCE, &used.origin, message, hint);
         }
+        self.own.row.places = self.reader.places;
         self.reader.faults.gate(self.own)
     }
 
@@ -97,6 +109,9 @@ impl Statements {
 
     fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
         let word = self.reader.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
+        if SINGLE.contains(&word.value.as_str()) {
+            self.once(&word.value, &word.origin, "join the two lines, or leave one of them out")?;
+        }
         let row = &mut self.own.row;
         match word.value.as_str() {
             "paper" => row.paper = line.until(&[]).value.into(),
@@ -122,6 +137,17 @@ impl Statements {
             }
         }
         Ok(())
+    }
+
+    /// Reports what a row has said already.
+    pub(super) fn once(&mut self, what: &str, at: &Origin, hint: &str) -> Read<()> {
+        let Some((_, first)) = self.said.iter().find(|(said, _)| said == what) else {
+            self.said.push((what.to_owned(), at.clone()));
+            return Ok(());
+        };
+        let diagnostic = Diagnostic::new(codes::DUPLICATE, at, format!("the row says `{what}` twice"), hint);
+        self.reader.faults.push(diagnostic.label(first, "the first is here"));
+        Err(Stop)
     }
 
     /// `buffer name[index < length]…: element, clear 0, host, persistent -- summary`
@@ -155,6 +181,7 @@ impl Statements {
             self.reader.faults.push(diagnostic.label(&self.own.places.resources[first], "the first is here"));
             return Err(Stop);
         }
+        self.reader.stands(Written::Resource, &name);
         self.own.row.resources.push(resource);
         self.own.places.resources.push(name.origin);
         Ok(())
@@ -174,6 +201,7 @@ impl Statements {
         self.reader.sign(line, ']', SHAPE)?;
         let symbols = self.symbols();
         self.reader.formula(&length, &symbols)?;
+        self.reader.stands(Written::Length, &length);
         Ok(resource.by(&index.value, length.value))
     }
 
@@ -246,7 +274,9 @@ impl Statements {
         let (first, count) = words.value.split_once(" for ").unwrap_or((&words.value, "1"));
         let symbols = self.symbols();
         for formula in [first, count] {
-            self.reader.formula(&Spanned::new(formula.trim().to_owned(), words.origin.clone()), &symbols)?;
+            let formula = Spanned::new(formula.trim().to_owned(), words.origin.clone());
+            self.reader.formula(&formula, &symbols)?;
+            self.reader.stands(Written::Read, &formula);
         }
         Ok(host.reads_some(&name.value, first.trim().to_owned(), count.trim().to_owned()))
     }
@@ -289,6 +319,7 @@ impl Statements {
         loop {
             let axis = self.reader.word(line, "an axis", "`suits cull early`")?;
             let value = self.reader.word(line, "a value", "`suits cull early`")?;
+            self.once(&format!("suits {}", axis.value), &axis.origin, "leave one of them out")?;
             self.own.row.defaults.push((axis.value.into(), value.value.into()));
             self.own.places.defaults.push(value.origin);
             if !line.sign(',') {
@@ -301,12 +332,14 @@ impl Statements {
     fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
         let name = self.reader.word(line, "the option's name", SHAPE)?;
-        let constant = self.reader.name(line, "a generated constant", SHAPE)?;
+        self.once(&format!("parameter {}", name.value), &name.origin, "give one of the options another name")?;
+        let constant = self.constant(line, SHAPE)?;
         self.reader.sign(line, '=', SHAPE)?;
         let default = line.until(&[',']);
         let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= When::Generation);
         let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
         self.reader.formula(&default, &generation)?;
+        self.reader.stands(Written::Default, &default);
         if !line.sign(',') || !line.exactly("from") {
             return self.reader.unexpected(line, "`, from`", SHAPE);
         }
@@ -332,14 +365,28 @@ impl Statements {
         Ok(())
     }
 
+    /// The constant of a parameter, which formulas name beside the symbols that every row has.
+    fn constant(&mut self, line: &mut Line<'_>, shape: &str) -> Read<Spanned<String>> {
+        let constant = self.reader.name(line, "a generated constant", shape)?;
+        if !is_word_of_formulas(&constant.value) {
+            self.reader.stands(Written::Constant, &constant);
+            return Ok(constant);
+        }
+        let message = format!("`{}` means something else in every formula", constant.value);
+        let hint = format!("choose another name, such as `OWN_{}`", constant.value.to_ascii_uppercase());
+        self.reader.stop(codes::ROW, &constant.origin, message, hint)
+    }
+
     /// `defines pixels = ceil_div(width, 4) * 4 * height`
     fn defines(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`defines pixels = ceil_div(width, 4) * 4 * height`";
-        let symbol = self.reader.word(line, "a symbol", SHAPE)?;
-        let symbol = self.reader.one_of(&symbol, &[("pixels", "pixels")], "no symbol that a row defines")?;
+        let name = self.reader.word(line, "a symbol", SHAPE)?;
+        let symbol = self.reader.one_of(&name, &[("pixels", "pixels")], "no symbol that a row defines")?;
+        self.once(&format!("defines {symbol}"), &name.origin, "leave one of them out")?;
         self.reader.sign(line, '=', SHAPE)?;
         let value = line.until(&[]);
         self.reader.formula(&value, &["width", "height"])?;
+        self.reader.stands(Written::Definition, &value);
         self.own.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
         Ok(())
     }
