@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fragbuf::File;
 
@@ -58,7 +59,9 @@ fn accepted(file: &File) -> Result<(), String> {
     if passed.exists() {
         return Ok(());
     }
-    let work: PathBuf = folder.join(format!("work-{:016x}", hasher.finish()));
+    // Two tests may ask about one text at once: each has a folder of its own.
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let work: PathBuf = folder.join(format!("work-{:016x}-{}", hasher.finish(), COUNT.fetch_add(1, Ordering::Relaxed)));
     std::fs::create_dir_all(&work).unwrap();
     let name = format!("file.{}", suffix(file));
     std::fs::write(work.join(&name), &file.bytes).unwrap();

@@ -9,6 +9,7 @@
 //! the orders over packed fragments, and the accessors of buffers.
 
 mod contract;
+mod definitions;
 mod emit;
 mod frame;
 mod layout;

@@ -233,10 +233,18 @@ fn written_factor(factor: &Formula, is_first: bool) -> Result<String, FormulaErr
 /// it would be divided too.
 fn is_closed(factor: &Expression, is_first: bool) -> bool {
     match factor {
-        Expression::Apply("*", parts) => is_closed(&parts[0], is_first),
-        Expression::Apply("/", _) => is_first,
+        Expression::Apply("*" | "/", _) => is_first || !begins_with_quotient(factor),
         Expression::Apply(operator, _) => operator.starts_with(|sign: char| sign.is_ascii_alphabetic()),
         _ => true,
+    }
+}
+
+/// Sums that are multiplied stand in parentheses already.
+fn begins_with_quotient(factor: &Expression) -> bool {
+    match factor {
+        Expression::Apply("*", parts) => begins_with_quotient(&parts[0]),
+        Expression::Apply(operator, _) => *operator == "/",
+        _ => false,
     }
 }
 

@@ -9,6 +9,8 @@ use fragbuf_templates::vocabulary::{
     Expression, Formula, FormulaError, SYMBOLS, SetBy, Symbol, Text, When, apply, is_word_of_formulas,
 };
 
+use crate::definitions::{Misdefined, Misdefinition};
+
 /// A symbol of a plan: the place in its [`SymbolTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SymbolId(u16);
@@ -107,9 +109,10 @@ pub enum PlanValue {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
     text: Formula,
-    term: Term,
+    /// The whole formula.
+    whole: Term,
     /// The same with every part computed that has a value when code is generated.
-    folded: Term,
+    term: Term,
 }
 
 /// Whether an operator says that something holds, which texts do by a type of its own.
@@ -128,56 +131,9 @@ pub enum Term {
     Apply(&'static str, Vec<Term>),
 }
 
-/// A definition of a row that gives its symbol no value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Misdefined {
-    /// What is defined.
-    pub(crate) symbol: String,
-    /// As what.
-    pub(crate) formula: Formula,
-    /// What is wrong.
-    pub(crate) problem: Misdefinition,
-}
-
-/// What is wrong with a definition.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Misdefinition {
-    /// There is no such symbol.
-    Unknown,
-    /// The description, or another row, gives the symbol its value.
-    Twice,
-    /// It rests on itself.
-    Circular,
-    /// The formula cannot be read, or can have no value.
-    NoFormula(FormulaError),
-}
-
 /// The name of a parameter's constant has another meaning in formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NameTaken;
-
-impl fmt::Display for Misdefined {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let symbol = &self.symbol;
-        match &self.problem {
-            Misdefinition::Unknown => write!(f, "there is no symbol `{symbol}` to define"),
-            Misdefinition::Twice => write!(f, "`{symbol}` has a value already"),
-            Misdefinition::Circular => write!(f, "the value of `{symbol}` rests on itself"),
-            Misdefinition::NoFormula(error) => error.fmt(f),
-        }
-    }
-}
-
-impl Misdefined {
-    /// The way out, as an instruction.
-    pub(crate) fn hint(&self) -> &'static str {
-        match &self.problem {
-            Misdefinition::Unknown | Misdefinition::Twice => "leave the definition out",
-            Misdefinition::Circular => "define it over `width` and `height` alone",
-            Misdefinition::NoFormula(error) => error.hint(),
-        }
-    }
-}
 
 impl SymbolTable {
     /// The table of a plan: `number` gives the values of generation time, `defined` the formulas that rows give instead of a
@@ -300,15 +256,15 @@ impl SymbolTable {
     /// no value in any frame.
     pub fn compile(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
         let expression = formula.read()?;
-        let term = self.term(&expression)?;
-        let folded = self.term(&expression.folded(&|name| self.number_of(name))?)?;
-        Ok(Quantity { text: formula.clone(), term, folded })
+        let whole = self.term(&expression)?;
+        let term = self.term(&expression.folded(&|name| self.number_of(name))?)?;
+        Ok(Quantity { text: formula.clone(), whole, term })
     }
 
     /// The same for a length, which shaders compute in words of 32 bits.
     pub fn length(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
         let length = self.compile(formula)?;
-        match length.folded.greatest_number() {
+        match length.term.greatest_number() {
             Some(number) if number > u64::from(u32::MAX) => Err(FormulaError::Word(number)),
             _ => Ok(length),
         }
@@ -338,7 +294,7 @@ impl SymbolTable {
 
     /// The value of a formula where a frame has `given` symbols these values.
     pub fn evaluate(&self, of: &Quantity, given: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
-        self.evaluate_term(&of.term, given)
+        self.evaluate_term(&of.whole, given)
     }
 
     fn evaluate_term(&self, term: &Term, given: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
@@ -385,7 +341,7 @@ impl Quantity {
 
     /// The formula as texts say it: resolved, and every part computed that has a value when code is generated.
     pub fn term(&self) -> &Term {
-        &self.folded
+        &self.term
     }
 
     /// Whether the formula itself names the symbol.
@@ -403,7 +359,7 @@ impl Quantity {
             }
         }
         let mut symbols = Vec::new();
-        collect(&self.term, &mut symbols);
+        collect(&self.whole, &mut symbols);
         symbols
     }
 }

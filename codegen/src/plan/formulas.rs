@@ -8,7 +8,7 @@ use fragbuf_templates::vocabulary::{Formula, FormulaError, Parameter, Row, Step,
 
 use super::summary::normal_form;
 use super::{bucket, size};
-use crate::symbols::Misdefined;
+use crate::definitions::Misdefined;
 use crate::{Layout, SymbolTable};
 
 /// The symbols of a plan: numbers of generation time, what rows define, the parameters of the rows. Also: the generated
@@ -32,7 +32,7 @@ pub(super) fn symbols(
         for parameter in &selected.row.parameters {
             match constant(selected, parameter, &mut table, variant) {
                 Ok(value) => constants.push((parameter.constant.to_string(), value)),
-                Err(fault) => faults.push(fault),
+                Err(fault) => faults.extend(fault),
             }
         }
     }
@@ -46,7 +46,7 @@ fn misdefined(fault: &Misdefined, variant: &Variant, selection: &Selection) -> D
         defines.any(|defined| defined.symbol == fault.symbol && defined.value == fault.formula)
     };
     let at = Place { row: rows.rfind(is_its), variant };
-    at.fault(Written::Definition, &fault.formula.0, fault.to_string(), fault.hint().to_owned()).into()
+    at.fault(Written::Definition, &fault.formula.0, fault.to_string(), fault.hint().to_owned())
 }
 
 /// Adds a parameter to the symbols: what the description sets, else its default.
@@ -55,7 +55,7 @@ fn constant(
     parameter: &Parameter,
     table: &mut SymbolTable,
     variant: &Variant,
-) -> Result<u32, Diagnostic> {
+) -> Result<u32, Diagnostics> {
     let at = Place { row: Some(&selected.row), variant };
     let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
     let value = set.map_or_else(|| default(selected, parameter, table, at), Ok)?;
@@ -67,7 +67,7 @@ fn constant(
 }
 
 /// The default of a parameter, which must be a value that a description could set too.
-fn default(selected: &Selected, parameter: &Parameter, table: &SymbolTable, at: Place<'_>) -> Result<u32, Diagnostic> {
+fn default(selected: &Selected, parameter: &Parameter, table: &SymbolTable, at: Place<'_>) -> Result<u32, Diagnostics> {
     let text = &parameter.default;
     let value = table.compile(text).and_then(|default| table.evaluate(&default, &|_| None));
     let value =
@@ -78,10 +78,7 @@ fn default(selected: &Selected, parameter: &Parameter, table: &SymbolTable, at: 
         let (name, axis) = (&parameter.name, &selected.row.axis);
         let message = format!("the default of `{name}` is {value} here, not from {least} to {greatest}");
         let hint = format!("set it in the description, `{axis}: … {{ {name}: {least} }}`, or write another default");
-        Diagnostic {
-            code: at.code_or(Written::Default, &text.0, codes::BAD_OPTION),
-            ..at.fault(Written::Default, &text.0, message, hint)
-        }
+        at.fault_or(codes::BAD_OPTION, Written::Default, &text.0, message, hint)
     })
 }
 
@@ -93,7 +90,7 @@ pub(super) fn check(variant: &Variant, selection: &Selection, symbols: &SymbolTa
         let at = Place { row: Some(row), variant };
         let mut report = |what, text: &str, result: Result<(), FormulaError>| {
             if let Err(error) = result {
-                faults.push(at.fault(what, text, error.to_string(), error.hint().to_owned()));
+                faults.extend(at.fault(what, text, error.to_string(), error.hint().to_owned()));
             }
         };
         for resource in &row.resources {
@@ -145,16 +142,17 @@ impl Place<'_> {
         Some(Origin::new(file, place.line, place.column).with_length(place.length))
     }
 
-    fn code_or(self, what: Written, text: &str, other: Code) -> Code {
-        if self.origin(what, text).is_some() { codes::ROW } else { other }
+    /// What is wrong with a name or formula. Rows that no file says are a program's, or fragbuf's own.
+    fn fault(self, what: Written, text: &str, message: String, hint: String) -> Diagnostics {
+        self.fault_or(codes::INTERNAL, what, text, message, hint)
     }
 
-    /// What is wrong with a name or formula. Rows that no file says are a program's, or fragbuf's own.
-    fn fault(self, what: Written, text: &str, message: String, hint: String) -> Diagnostic {
+    /// The same, where the row is no file's with this code at the description.
+    fn fault_or(self, code: Code, what: Written, text: &str, message: String, hint: String) -> Diagnostics {
         if let Some(origin) = self.origin(what, text) {
-            return Diagnostic::new(codes::ROW, &origin, message, hint);
+            return Diagnostic::new(codes::ROW, &origin, message, hint).into();
         }
         let row = self.row.map(|row| format!("`{}: {}`: ", row.axis, row.key)).unwrap_or_default();
-        Diagnostic::new(codes::INTERNAL, &self.variant.name.origin, format!("{row}{message}"), hint)
+        Diagnostic::new(code, &self.variant.name.origin, format!("{row}{message}"), hint).into()
     }
 }

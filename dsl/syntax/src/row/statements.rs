@@ -110,7 +110,8 @@ impl Statements {
     fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
         let word = self.reader.word(line, "a statement", "`buffer`, `pass`, `offers`")?;
         if SINGLE.contains(&word.value.as_str()) {
-            self.once(&word.value, &word.origin, "join the two lines, or leave one of them out")?;
+            // What else is wrong with the line is said too.
+            let _ = self.once(&word.value, &word.origin, "join the two lines, or leave one of them out");
         }
         let row = &mut self.own.row;
         match word.value.as_str() {
