@@ -1,4 +1,4 @@
-//! A study: one buffer, built in a loop over criteria and sizes, and what a mistake in a closure looks like.
+//! A study: builds one buffer in a loop over criteria and sizes, and prints the diagnostic of an error in a closure.
 //!
 //! `cargo run --example builder`
 
@@ -7,8 +7,8 @@ use std::io::Write;
 use fragbuf::builder::{Buffer, Closure, Format, UniformType, value};
 use fragbuf::{Registry, closure, function};
 
-/// Everything that the variants of the study have in common.
-fn described(k: u32, criterion: Closure) -> Buffer {
+/// Returns the parts that all variants of the study share.
+fn study(k: u32, criterion: Closure) -> Buffer {
     Buffer::named("Study")
         .from("kplus_array")
         .attribute("color", Format::Rgba8)
@@ -21,7 +21,7 @@ fn described(k: u32, criterion: Closure) -> Buffer {
             }
         ))
         .keep_least(k, criterion)
-        .admit(closure!(|f| f.color.w > 0.0))
+        .constraint(closure!(|f| f.color.w > 0.0))
         .choose("sync", value("interlock").or_else("spin_lock").option("limit", 4096))
         .resolve(closure!(|fragments, u| {
             let mut sum = Vec4::ZERO;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     report(&mut std::io::stdout())
 }
 
-/// Everything that the example prints.
+/// Prints the output of the example.
 pub fn report(out: &mut impl Write) -> Result<(), Box<dyn std::error::Error>> {
     let criteria = [
         ("nearest", closure!(|f| f.depth)),
@@ -46,21 +46,21 @@ pub fn report(out: &mut impl Write) -> Result<(), Box<dyn std::error::Error>> {
     ];
     for (name, criterion) in criteria {
         for k in [2, 8] {
-            let draft = described(k, criterion.clone()).draft().map_err(|faults| faults.to_string())?;
+            let draft = study(k, criterion.clone()).draft().map_err(|errors| errors.to_string())?;
             let criterion = draft.keep.and_then(|keep| keep.criterion).ok_or("no criterion")?;
             let shader = criterion.wgsl.lines().nth(1).unwrap_or_default().trim().to_owned();
             writeln!(out, "{name}, k = {k}: {shader}")?;
         }
     }
-    // Criteria that a program makes: every weight of a sweep.
+    // Criteria that a program writes as text: the weights of a sweep.
     for weight in [0.125, 0.25] {
         let criterion = Closure::text(format!("|f| f.depth - {weight} * f.color.w"));
-        let variant = described(4, criterion).variant(&Registry::builtin()).map_err(|faults| faults.to_string())?;
+        let variant = study(4, criterion).variant(&Registry::builtin()).map_err(|errors| errors.to_string())?;
         writeln!(out, "weight {weight}: keeps {:?}", variant.keep)?;
     }
-    let mistaken = described(4, closure!(|f| f.depth - f.colour.w));
-    if let Err(faults) = mistaken.variant(&Registry::builtin()) {
-        writeln!(out, "\n{faults}")?;
+    let mistaken = study(4, closure!(|f| f.depth - f.colour.w));
+    if let Err(errors) = mistaken.variant(&Registry::builtin()) {
+        writeln!(out, "\n{errors}")?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The least there is to do: a description in, the store pass in WGSL out.
+//! The smallest program: generates the passes of a description and prints the store pass in WGSL.
 //!
 //! `cargo run --example minimal`
 
@@ -9,11 +9,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parsed = parse(text, "nearest.fragbuf");
     let draft = parsed.draft.filter(|_| parsed.diagnostics.is_empty()).ok_or_else(|| parsed.diagnostics.to_string())?;
     let registry = Registry::builtin();
-    let variant = check(&draft, &registry).map_err(|faults| faults.to_string())?;
+    let variant = check(&draft, &registry).map_err(|errors| errors.to_string())?;
 
     let wgsl = target("wgsl").ok_or("no such target")?;
     let request = Request { targets: &[wgsl], form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(&variant, &request, &registry).map_err(|faults| faults.to_string())?;
+    let generation = generate(&variant, &request, &registry).map_err(|errors| errors.to_string())?;
     for file in generation.files.iter().filter(|file| file.pass == "store") {
         std::io::Write::write_all(&mut std::io::stdout(), &file.bytes)?;
     }

@@ -1,4 +1,4 @@
-//! Two buffers described in one crate: what they keep, on the CPU and as passes.
+//! Describes two buffers in one crate, calls their closures on the CPU and generates their passes.
 //!
 //! `cargo run --example two_buffers`
 
@@ -18,7 +18,7 @@ fragment_buffer! {
 }
 
 fragment_buffer! {
-    /// How much matter a ray goes through: entries and exits alternate.
+    /// The thickness of matter along a ray: entry and exit fragments alternate.
     buffer Thickness from ab_ll {
         fragment { depth: f32 }
         uniform { density: f32 }
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     report(&mut std::io::stdout())
 }
 
-/// Everything that the example prints.
+/// Prints the output of the example.
 pub fn report(out: &mut impl Write) -> Result<(), Box<dyn std::error::Error>> {
     let uniforms = glass::Uniforms { far: 0.9, ..Default::default() };
     for (alpha, depth) in [(1.0, 0.5), (0.25, 0.4), (0.5, 0.95)] {
@@ -54,18 +54,18 @@ pub fn report(out: &mut impl Write) -> Result<(), Box<dyn std::error::Error>> {
     writeln!(out, "thickness: a ray through two bodies keeps {:.4} of its light", through.x)?;
 
     for (prefix, variant) in [("glass_", glass::variant()), ("thickness_", thickness::variant())] {
-        let variant = variant.map_err(|faults| faults.to_string())?;
+        let variant = variant.map_err(|errors| errors.to_string())?;
         passes(&variant, prefix, out)?;
     }
     writeln!(out, "uniform blocks: {} and {} bytes", glass::Uniforms::SIZE, thickness::Uniforms::SIZE)?;
     Ok(())
 }
 
-/// Names apart by prefix, so that one shader may hold both.
+/// Prints the passes of a buffer. The prefix keeps its names distinct, so that one shader may contain both buffers.
 fn passes(variant: &Variant, prefix: &str, out: &mut impl Write) -> Result<(), Box<dyn std::error::Error>> {
     let wgsl = target("wgsl").ok_or("no such target")?;
     let request = Request { targets: &[wgsl], form: Form::Program, prefix, group: 0 };
-    let generation = generate(variant, &request, &Registry::builtin()).map_err(|faults| faults.to_string())?;
+    let generation = generate(variant, &request, &Registry::builtin()).map_err(|errors| errors.to_string())?;
     for file in &generation.files {
         let lines = file.bytes.iter().filter(|byte| **byte == b'\n').count();
         writeln!(out, "{}: pass {}, {lines} lines of WGSL", variant.name.value, file.pass)?;

@@ -1,14 +1,14 @@
-//! The guide. Read it in this order; each chapter stands alone.
+//! The guide. Read it in this order; each chapter can also be read alone.
 //!
 //! 1. [`describe`]: payload, criterion, constraints, choices, effect; in a file, in Rust, by a program.
-//! 2. [`axes`]: every choice with its values, and [`language`]: what closures can say.
+//! 2. [`axes`]: every choice with its values, and [`language`]: the reference of the closure language.
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
-//! 5. [`run`]: pictures and figures from the command line.
-//! 6. [`embed`]: frames in an engine of yours.
-//! 7. [`extend`]: a storage of your own, snapshots.
-//! 8. [`check`]: every order in which fragments of a pixel can come, tried.
-//! 9. [`refusals`]: what goes wrong, and how to read it.
+//! 5. [`run`]: images and statistics from the command line.
+//! 6. [`embed`]: frames in your own engine.
+//! 7. [`extend`]: your own storage, snapshots.
+//! 8. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
+//! 9. [`diagnostics`]: error messages, and how to read them.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -29,5 +29,5 @@ pub mod embed {}
 pub mod extend {}
 #[doc = include_str!("guide/check.md")]
 pub mod check {}
-#[doc = include_str!("guide/refusals.md")]
-pub mod refusals {}
+#[doc = include_str!("guide/diagnostics.md")]
+pub mod diagnostics {}

@@ -1,8 +1,8 @@
-//! fragbuf: one description of a per-pixel *fragment buffer* becomes complete GPU passes.
+//! Generates complete GPU passes from one description of a per-pixel *fragment buffer*.
 //!
-//! A fragment buffer keeps more than one fragment per pixel: a k-buffer, an A-buffer, peeled layers. The description says
-//! what a fragment carries, how many stay, which one is worst, where they are stored, how writers of the same pixel are
-//! kept apart and what is made of them:
+//! A fragment buffer keeps several fragments per pixel: a k-buffer, an A-buffer, peeled layers. The description declares the
+//! attributes of a fragment, how many fragments a pixel keeps and which one is worst. It also chooses where they are stored,
+//! how writers of the same pixel are synchronised, and the effect:
 //!
 //! ```
 //! # use fragbuf::{Registry, check, parse};
@@ -17,15 +17,15 @@
 //! assert_eq!(variant.map(|variant| variant.keep), Some(Some(4)));
 //! ```
 //!
-//! From there [`generate`] makes files for every target, and [`manifest`] says how an engine runs them.
+//! [`generate`] then writes files for every target, and [`manifest`] specifies how an engine runs them.
 //!
-//! The same description can stand in Rust, as a module with structs and callable closures ([`fragment_buffer!`]), or be put
-//! together by a program ([`builder`]).
+//! A description can also be written in Rust, as a module with structs and callable closures ([`fragment_buffer!`]), or built
+//! by a program ([`builder`]).
 //!
-//! The [`guide`] goes through all of it.
+//! The [`guide`] covers all of this.
 //!
-//! This crate is the facade: it re-exports the stages and adds [`load`], which turns a technique's key or a file's text
-//! into a variant with the rows of the user's own files ([`own`]), and [`report`], which draws diagnostics with their
+//! This crate is the facade. It re-exports the stages and adds [`load`], which turns the key of a technique or the text of a
+//! file into a variant with the rows of user files ([`user_file`]), and [`report`], which formats diagnostics with their
 //! source lines. [`build`] generates inside a `build.rs`, [`snapshot`] inside tests.
 
 #![allow(clippy::test_attr_in_doctest, reason = "the guide shows tests that readers write")]
@@ -33,15 +33,41 @@
 pub mod build;
 pub mod guide;
 pub mod load;
-pub mod own;
 pub mod report;
 pub mod snapshot;
+pub mod user_file;
 
+pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
+pub use fragbuf_dsl::{CapturedTokens, Fragments, UniformValue, builder, closure, function, glam};
+pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, SourceSpan, Variant, check};
+pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
     Checked, File, Generation, Request, SCHEMA, TARGETS, TIERS, Target, generate, manifest, plan_json, target, tier,
 };
-pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
-pub use fragbuf_dsl::{builder, closure, fragment_buffer, function, glam};
-pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Selection, Variant, check};
-pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_templates::{Registry, vocabulary};
+
+#[doc(hidden)]
+pub use fragbuf_bindings as binding_macros;
+#[doc(hidden)]
+pub use fragbuf_dsl::{as_written, macros};
+
+/// Describes a fragment buffer in Rust, with the grammar of `.fragbuf` files; a visibility and documentation may come first.
+///
+/// It emits a module named after the buffer (`MostVisible`: `most_visible`), as [`fragbuf_dsl::fragment_buffer!`] does:
+///
+/// * `Fragment` and `Uniforms`, the closures as functions, `draft()` and `variant()`;
+///
+/// and in addition
+///
+/// * `bindings`: the binding numbers of uniform blocks and buffers in the bind group, if they are the same on every target.
+#[macro_export]
+macro_rules! fragment_buffer {
+    ($($description:tt)*) => { $crate::macros::fragment_buffer! { [$crate] $($description)* } };
+}
+
+/// Emits the module `bindings` of a description.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! bindings {
+    ($($description:tt)*) => { $crate::binding_macros::bindings! { $($description)* } };
+}

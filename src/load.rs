@@ -1,21 +1,21 @@
-//! A technique's key or a description's text, with changes from outside and the files that it names, becomes a variant.
+//! Loads a description: the key of a technique or the text of a file, with changes from outside and the files that it names.
 
 use std::path::Path;
 
-use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Variant, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, codes};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_templates::Registry;
 
-use crate::own;
+use crate::user_file;
 
 /// A description to load.
 #[derive(Clone, Debug)]
 pub enum Description {
     /// A technique of the registry.
     Technique(String),
-    /// A file's name, as messages give it, and its text. Files that it names lie beside it.
+    /// The text of a file. Paths in it are relative to the file.
     Text {
-        /// The name.
+        /// The name of the file in messages.
         file: String,
         /// The text.
         text: String,
@@ -23,12 +23,12 @@ pub enum Description {
 }
 
 impl Description {
-    /// The file at `path`, which messages call by this path.
+    /// Reads the file at `path`. Messages name it by this path.
     pub fn read(path: &Path) -> std::io::Result<Self> {
         Ok(Description::Text { file: path.display().to_string(), text: std::fs::read_to_string(path)? })
     }
 
-    /// What messages call it.
+    /// Returns the name in messages.
     pub fn name(&self) -> &str {
         match self {
             Description::Technique(key) => key,
@@ -37,30 +37,32 @@ impl Description {
     }
 }
 
-/// A description and what it led to.
+/// A loaded description.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// The variant, or everything that is wrong.
+    /// The variant, or every error.
     pub variant: Result<Variant, Diagnostics>,
-    /// Every text that was read, by its name in messages; the description's is the first.
+    /// Every source that was read, by its name in messages. The first is the description.
     pub sources: Vec<(String, String)>,
-    /// The changes as texts with a line for each, by their names in messages. They are no files.
+    /// The changes from outside as sources of one line per change, by their names in messages. They are not files.
     pub changes: Vec<(String, String)>,
 }
 
 impl Loaded {
-    /// Every text that messages may point to, by its name there.
-    pub fn texts(&self) -> Vec<(String, String)> {
+    /// Returns every source that messages may quote, by its name in messages.
+    pub fn all_sources(&self) -> Vec<(String, String)> {
         self.sources.iter().chain(&self.changes).cloned().collect()
     }
 }
 
-/// Checks a description after the changes `set`, each a name and a value as in `--set name=value`, and with the choices
-/// `unless_said` on axes of which neither the description nor `set` says anything. The files that it names are read.
+/// Loads and checks a description, and reads the files that it names.
+///
+/// `set` changes it: each is a name and a value, as in `--set name=value`. `defaults` are choices on axes on which neither the
+/// description nor `set` chooses.
 pub fn load(
     description: &Description,
     set: &[(String, String)],
-    unless_said: &[(&str, &str)],
+    defaults: &[(&str, &str)],
     registry: &Registry,
 ) -> Loaded {
     let text = match description {
@@ -68,26 +70,26 @@ pub fn load(
         Description::Text { text, .. } => text,
     };
     let mut sources = vec![(description.name().to_owned(), text.clone())];
-    let variant = drafted(description).and_then(|(mut draft, mut diagnostics)| {
-        change(&mut draft, set, unless_said, &mut diagnostics);
-        let own = own::read(&draft, registry);
-        sources.extend(own.sources);
-        if !own.diagnostics.is_empty() {
-            // Without its row nothing is known of what a choice offers: every fact would look unmet.
-            diagnostics.extend(own.diagnostics);
+    let variant = draft(description).and_then(|(mut draft, mut diagnostics)| {
+        change(&mut draft, set, defaults, &mut diagnostics);
+        let user = user_file::read(&draft, registry);
+        sources.extend(user.sources);
+        if !user.diagnostics.is_empty() {
+            // Without the row of a file, its capabilities are unknown: the check would report all of them as missing.
+            diagnostics.extend(user.diagnostics);
             return Err(diagnostics);
         }
-        Parsed { draft: Some(draft), diagnostics }.check(&own.registry)
+        Parsed { draft: Some(draft), diagnostics }.check(&user.registry)
     });
     let lines = |changes: &mut dyn Iterator<Item = (&str, &str)>| -> String {
         changes.map(|(name, value)| format!("{name}={value}\n")).collect()
     };
     let set = lines(&mut set.iter().map(|(name, value)| (name.as_str(), value.as_str())));
-    let changes = vec![(SET.to_owned(), set), (UNLESS_SAID.to_owned(), lines(&mut unless_said.iter().copied()))];
+    let changes = vec![(SET.to_owned(), set), (DEFAULTS.to_owned(), lines(&mut defaults.iter().copied()))];
     Loaded { variant, sources, changes }
 }
 
-/// The variant alone, after the changes `set`.
+/// Loads a description and returns the variant alone.
 pub fn variant(
     description: &Description,
     set: &[(String, String)],
@@ -96,10 +98,10 @@ pub fn variant(
     load(description, set, &[], registry).variant
 }
 
-fn drafted(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {
+fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {
     match description {
         Description::Technique(key) => {
-            Ok((Draft::from_technique(key, &Origin::new(key.as_str(), 1, 1)), Diagnostics::new()))
+            Ok((Draft::from_technique(key, &SourceSpan::new(key.as_str(), 1, 1)), Diagnostics::new()))
         }
         Description::Text { file, text } => {
             let parsed = parse(text, file);
@@ -108,33 +110,34 @@ fn drafted(description: &Description) -> Result<(Draft, Diagnostics), Diagnostic
     }
 }
 
-/// What stands for a file where a change from outside is at fault: a line for each.
+/// The source name of changes from outside in messages.
 const SET: &str = "--set";
 
-/// The same for what a command chooses where nobody does.
-const UNLESS_SAID: &str = "chosen by the command";
+/// The source name of `defaults` in messages.
+const DEFAULTS: &str = "chosen by the command";
 
-fn change(draft: &mut Draft, set: &[(String, String)], unless_said: &[(&str, &str)], diagnostics: &mut Diagnostics) {
-    let whole = |name: &str, value: &str| name.chars().count() as u32 + 1 + value.chars().count() as u32;
+/// Applies `set`, then `defaults`.
+fn change(draft: &mut Draft, set: &[(String, String)], defaults: &[(&str, &str)], diagnostics: &mut Diagnostics) {
+    let length = |name: &str, value: &str| name.chars().count() as u32 + 1 + value.chars().count() as u32;
     for (line, (name, value)) in (1..).zip(set) {
-        let origin = Origin::new(SET, line, 1).with_length(whole(name, value));
-        if let Err(wanted) = draft.set(name, value, &origin) {
+        let span = SourceSpan::new(SET, line, 1).with_length(length(name, value));
+        if let Err(expected) = draft.set(name, value, &span) {
             diagnostics.push(Diagnostic::new(
-                codes::BAD_OPTION,
-                &origin,
-                format!("`{value}` is no value for `{name}`"),
-                format!("give {wanted}"),
+                codes::INVALID_OPTION,
+                &span,
+                format!("invalid value `{value}` for `{name}`"),
+                format!("give {expected}"),
             ));
         }
     }
-    for (line, (name, value)) in (1..).zip(unless_said) {
-        let said = match name.split_once('.') {
+    for (line, (name, value)) in (1..).zip(defaults) {
+        let is_chosen = match name.split_once('.') {
             Some(("fragment", _)) => !draft.attributes.is_empty(),
             _ => draft.choices.iter().any(|choice| choice.axis.value == *name),
         };
-        if !said {
-            // A choice on an axis takes any text; the rules judge it.
-            let _ = draft.set(name, value, &Origin::new(UNLESS_SAID, line, 1).with_length(whole(name, value)));
+        if !is_chosen {
+            // A choice on an axis accepts any text here; `check` validates it.
+            let _ = draft.set(name, value, &SourceSpan::new(DEFAULTS, line, 1).with_length(length(name, value)));
         }
     }
 }

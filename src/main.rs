@@ -1,4 +1,4 @@
-//! The command line: `fragbuf list | show | generate`.
+//! The `fragbuf` command line.
 
 mod cli;
 

@@ -1,19 +1,19 @@
-//! Snapshots for a caller's tests: one line keeps a description's plan and its text for every target under review.
+//! Snapshots for a caller's tests: one line keeps the plan of a description and its generated text under review.
 //!
-//! In: a description's path, relative to the package, or a technique's key. Out: named texts, or the report that the
-//! command line prints. [`assert_variant_snapshot!`](crate::assert_variant_snapshot) hands them to the caller's own
+//! Input: the path of a description, relative to the package, or the key of a technique. Output: named texts, or the report
+//! that the command line prints. [`assert_variant_snapshot!`](crate::assert_variant_snapshot) passes them to the caller's
 //! `insta`; this crate does not depend on it.
 
 use std::path::Path;
 
-use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_codegen::Form;
+use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_templates::Registry;
 
 use crate::load::{Description, load};
 use crate::report::render;
 
-/// Asserts an `insta` snapshot of a description's plan and of its text for each target: `NAME.plan`, `NAME.wgsl`, …
+/// Asserts an `insta` snapshot of a description's plan and of its generated text for each target: `NAME.plan`, `NAME.wgsl`, …
 ///
 /// ```
 /// #[test]
@@ -22,8 +22,8 @@ use crate::report::render;
 /// }
 /// ```
 ///
-/// The path is relative to the package; a technique's key does as well. Without `targets` it is `wgsl` alone. A description
-/// with mistakes fails the test with the report that the command line prints.
+/// The description is a path relative to the package, or the key of a technique. The default of `targets` is `wgsl`. A
+/// description with errors fails the test with the report that the command line prints.
 #[macro_export]
 macro_rules! assert_variant_snapshot {
     ($description:expr $(,)?) => {
@@ -41,9 +41,9 @@ macro_rules! assert_variant_snapshot {
     };
 }
 
-/// The texts of a description by the names of their snapshots: its plans, then each target. `Err`: the report.
+/// Returns the texts of a description by the names of their snapshots: its plans, then each target. `Err`: the report.
 pub fn texts(description: &str, targets: &[&str]) -> Result<Vec<(String, String)>, String> {
-    let targets: Vec<&'static Target> = targets.iter().map(|name| textual(name)).collect::<Result<_, _>>()?;
+    let targets: Vec<&'static Target> = targets.iter().map(|name| text_target(name)).collect::<Result<_, _>>()?;
     let registry = Registry::builtin();
     let path = Path::new(description);
     let read = match registry.technique(description) {
@@ -51,16 +51,16 @@ pub fn texts(description: &str, targets: &[&str]) -> Result<Vec<(String, String)
         None => Description::read(path).map_err(|error| format!("{description}: {error}"))?,
     };
     let loaded = load(&read, &[], &[], &registry);
-    let texts = loaded.texts();
-    let report = |faults| render(&faults, &texts);
+    let sources = loaded.all_sources();
+    let report = |errors| render(&errors, &sources);
     let variant = loaded.variant.map_err(report)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     let (mut plans, mut files) = (Vec::new(), Vec::new());
     for target in targets {
         let request = Request { targets: &[target], form: Form::Program, prefix: "", group: 0 };
         let generation = generate(&variant, &request, &registry).map_err(report)?;
-        if let Some((target, refusal)) = generation.refusals.first() {
-            return Err(format!("the target `{}` cannot express {description}: {refusal}", target.name));
+        if let Some((target, missing)) = generation.unsupported.first() {
+            return Err(format!("the target `{}` does not support {description}: {missing}", target.name));
         }
         for planned in &generation.plans {
             let plan = planned.plan.to_string();
@@ -75,7 +75,7 @@ pub fn texts(description: &str, targets: &[&str]) -> Result<Vec<(String, String)
     Ok(texts)
 }
 
-/// Every text file of a generation once, under its path.
+/// Returns every file of a generation once, under its path.
 pub fn joined(generation: &Generation) -> String {
     let mut text = String::new();
     let mut seen: Vec<&str> = Vec::new();
@@ -88,10 +88,10 @@ pub fn joined(generation: &Generation) -> String {
     text
 }
 
-/// A target whose files are text.
-fn textual(name: &str) -> Result<&'static Target, String> {
-    // Binary files have no readable snapshot; what they are made from has.
+/// Returns the target of this name, if its files are text.
+fn text_target(name: &str) -> Result<&'static Target, String> {
+    // Binary files have no readable snapshot; the text from which they are compiled has one.
     let known: Vec<&str> = TARGETS.iter().map(|target| target.name).filter(|name| *name != "spirv").collect();
     let found = target(name).filter(|target| known.contains(&target.name));
-    found.ok_or_else(|| format!("`{name}` is no target of texts: those are {}", known.join(", ")))
+    found.ok_or_else(|| format!("`{name}` is not a target with text files: those are {}", known.join(", ")))
 }

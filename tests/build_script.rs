@@ -1,5 +1,5 @@
-//! `fragbuf::build` in a build script: a small crate of its own builds and runs, does no work twice, and fails where its
-//! description does. Layouts are compared with naga's reading of the generated text.
+//! Tests `fragbuf::build` in a build script: a small crate builds and runs, repeats no work, and fails on an invalid description.
+//! Layouts are compared with those that naga computes from the generated source.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -40,13 +40,13 @@ const MAIN: &str = r##"
 #![deny(warnings)]
 include!(concat!(env!("OUT_DIR"), "/fragbuf.rs"));
 
-/// A size that is known when the program is built.
+/// A size known at compile time.
 const KEYS: u64 = glass::plan::buffers::keys::bytes(640, 480, 8);
 
 fn main() {
     // 4 bytes, k slots of every pixel.
     assert_eq!(KEYS, 4 * 8 * 640 * 480);
-    // Colour and identity stand beside the key.
+    // The value words are colour and id.
     assert_eq!(glass::plan::buffers::entries::bytes(640, 480, 8), 4 * 2 * 8 * 640 * 480);
     assert_eq!(ab_sb::plan::buffers::offsets::bytes(3, 5), 4 * 16);
     assert_eq!(ab_sb::plan::buffers::block_sums::bytes(1024, 2), 4 * 2);
@@ -78,18 +78,18 @@ impl Crate {
         let this = Path::new(env!("CARGO_MANIFEST_DIR"));
         let root = temporary.join("glass");
         let _ = std::fs::remove_dir_all(&root);
-        let made = Crate { root, target: temporary.parent().unwrap().to_owned() };
-        made.write("Cargo.toml", &MANIFEST.replace("ROOT", &this.display().to_string()));
-        made.write("build.rs", SCRIPT);
-        made.write("src/main.rs", MAIN);
-        made.write("shaders/glass.fragbuf", GLASS);
+        let created = Crate { root, target: temporary.parent().unwrap().to_owned() };
+        created.write("Cargo.toml", &MANIFEST.replace("ROOT", &this.display().to_string()));
+        created.write("build.rs", SCRIPT);
+        created.write("src/main.rs", MAIN);
+        created.write("shaders/glass.fragbuf", GLASS);
         for name in ["first_k.fragbuf", "first_k.wgsl"] {
-            let text = std::fs::read_to_string(this.join("examples/own_storage").join(name)).unwrap();
-            made.write(&format!("shaders/{name}"), &text);
+            let text = std::fs::read_to_string(this.join("examples/user_storage").join(name)).unwrap();
+            created.write(&format!("shaders/{name}"), &text);
         }
-        // The versions that this workspace was built with: no network is needed.
-        std::fs::copy(this.join("Cargo.lock"), made.root.join("Cargo.lock")).unwrap();
-        made
+        // Uses the dependency versions of this workspace, so no network is needed.
+        std::fs::copy(this.join("Cargo.lock"), created.root.join("Cargo.lock")).unwrap();
+        created
     }
 
     fn write(&self, path: &str, text: &str) {
@@ -104,6 +104,7 @@ impl Crate {
         self.write(path, &text.replace(from, to));
     }
 
+    /// Runs cargo and returns its output and stderr.
     fn cargo(&self, arguments: &[&str]) -> (Output, String) {
         let output = Command::new(env!("CARGO"))
             .args(arguments)
@@ -112,19 +113,20 @@ impl Crate {
             .env("CARGO_TARGET_DIR", &self.target)
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        (output, said)
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output, stderr)
     }
 
-    /// Builds, and says whether the build script ran.
+    /// Builds the crate and returns whether the build script ran.
     fn ran_script(&self) -> bool {
-        let (output, said) = self.cargo(&["build", "--verbose"]);
-        assert!(output.status.success(), "{said}");
-        said.lines()
+        let (output, stderr) = self.cargo(&["build", "--verbose"]);
+        assert!(output.status.success(), "{stderr}");
+        stderr
+            .lines()
             .any(|line| line.contains("Running") && line.contains("build-script-build") && line.contains("glass"))
     }
 
-    /// What was written, by path, with the time of writing.
+    /// Returns the generated files with their modification times.
     fn written(&self) -> BTreeMap<PathBuf, std::time::SystemTime> {
         let mut found = BTreeMap::new();
         let mut waiting = vec![self.target.join("debug/build")];
@@ -148,18 +150,18 @@ impl Crate {
 }
 
 #[test]
-fn a_crate_with_a_build_script_builds_runs_and_does_nothing_twice() {
-    let made = Crate::new();
-    let (output, said) = made.cargo(&["run"]);
-    assert!(output.status.success() && output.stdout == b"ran\n", "{said}");
-    let first = made.written();
+fn a_crate_with_a_build_script_builds_runs_and_repeats_no_work() {
+    let glass = Crate::new();
+    let (output, stderr) = glass.cargo(&["run"]);
+    assert!(output.status.success() && output.stdout == b"ran\n", "{stderr}");
+    let first = glass.written();
     assert!(first.len() > 20, "{first:?}");
-    assert!(!made.ran_script(), "nothing has changed");
+    assert!(!glass.ran_script(), "nothing has changed");
 
-    // Another value in the description: the script runs, and writes what is different.
-    made.edit("shaders/glass.fragbuf", "f.depth > u.cut", "f.depth >= u.cut");
-    assert!(made.ran_script());
-    let second = made.written();
+    // The description changes: the script runs and writes only files that differ.
+    glass.edit("shaders/glass.fragbuf", "f.depth > u.cut", "f.depth >= u.cut");
+    assert!(glass.ran_script());
+    let second = glass.written();
     let touched: Vec<&PathBuf> =
         second.iter().filter(|(path, time)| first.get(*path) != Some(time)).map(|(path, _)| path).collect();
     assert!(!touched.is_empty());
@@ -170,24 +172,24 @@ fn a_crate_with_a_build_script_builds_runs_and_does_nothing_twice() {
         "{touched:?}"
     );
 
-    // The user's own WGSL file is watched too.
-    made.edit("shaders/first_k.wgsl", "// The first k fragments", "// The k first fragments");
-    assert!(made.ran_script());
-    assert!(!made.ran_script(), "nothing has changed");
+    // The user's WGSL file is a dependency too.
+    glass.edit("shaders/first_k.wgsl", "// The first k fragments", "// The k first fragments");
+    assert!(glass.ran_script());
+    assert!(!glass.ran_script(), "nothing has changed");
 
-    // A mistake fails the build with its place.
-    made.edit("shaders/glass.fragbuf", "u.cut", "u.cutt");
-    let (output, said) = made.cargo(&["build"]);
+    // An error fails the build and is reported with its span.
+    glass.edit("shaders/glass.fragbuf", "u.cut", "u.cutt");
+    let (output, stderr) = glass.cargo(&["build"]);
     assert!(!output.status.success());
-    assert!(said.contains("error[unknown-field]") && said.contains("shaders/glass.fragbuf:4:31"), "{said}");
-    made.edit("shaders/glass.fragbuf", "u.cutt", "u.cut");
-    made.edit("shaders/first_k.wgsl", "//: offers", "//: ofers");
-    let (output, said) = made.cargo(&["build"]);
+    assert!(stderr.contains("error[unknown-field]") && stderr.contains("shaders/glass.fragbuf:4:31"), "{stderr}");
+    glass.edit("shaders/glass.fragbuf", "u.cutt", "u.cut");
+    glass.edit("shaders/first_k.wgsl", "//: provides", "//: ofers");
+    let (output, stderr) = glass.cargo(&["build"]);
     assert!(!output.status.success());
-    assert!(said.contains("error[row]") && said.contains("shaders/first_k.wgsl:11:5"), "{said}");
+    assert!(stderr.contains("error[invalid-row]") && stderr.contains("shaders/first_k.wgsl:11:5"), "{stderr}");
 }
 
-/// Offsets of fields and sizes of blocks, for every named case, against the layout that naga computes from the text.
+/// Compares offsets of fields and sizes of blocks with the layout that naga computes from the source, for every named case.
 #[test]
 fn layouts_are_those_that_naga_computes() {
     let mut compared = 0;
@@ -199,7 +201,7 @@ fn layouts_are_those_that_naga_computes() {
         let bound = bindings("variant", name, &generation, 4, "files");
         for file in &generation.files {
             let module = naga::front::wgsl::parse_str(&String::from_utf8(file.bytes.clone()).unwrap());
-            // Coherent buffers need options of naga's that this test is not about.
+            // Coherent buffers need naga options that this test does not set.
             let Ok(module) = module else { continue };
             for (_, variable) in module.global_variables.iter() {
                 let Some(binding) = &variable.binding else { continue };
@@ -210,10 +212,10 @@ fn layouts_are_those_that_naga_computes() {
                 if let naga::TypeInner::Struct { members, .. } = &module.types[variable.ty].inner {
                     for member in members.iter().filter(|_| block != "camera") {
                         let field = member.name.as_deref().unwrap().to_uppercase();
-                        // Words that WGSL keeps for itself have one underscore more there.
+                        // WGSL keywords get one more underscore in the source.
                         let line = |field: &str| format!("{field}_OFFSET: u64 = {};", member.offset);
-                        let (own, bare) = (line(&field), line(field.trim_end_matches('_')));
-                        assert!(text.contains(&own) || text.contains(&bare), "{name}: no `{own}` in {text}");
+                        let (exact, bare) = (line(&field), line(field.trim_end_matches('_')));
+                        assert!(text.contains(&exact) || text.contains(&bare), "{name}: no `{exact}` in {text}");
                         compared += 1;
                     }
                 }
@@ -223,7 +225,7 @@ fn layouts_are_those_that_naga_computes() {
     assert!(compared > 100, "{compared}");
 }
 
-/// The module of this name.
+/// Returns the text of the module of this name.
 fn part<'a>(text: &'a str, name: &str) -> &'a str {
     let start = text.find(&format!("pub mod {name} {{")).unwrap_or_else(|| panic!("no `{name}` in {text}"));
     let rest = &text[start + 8..];
@@ -231,22 +233,24 @@ fn part<'a>(text: &'a str, name: &str) -> &'a str {
 }
 
 #[test]
-fn a_build_script_that_asks_for_what_there_is_not_is_told() {
+fn invalid_builds_have_error_messages() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bindings");
-    let said = |build: Build| build.out_dir(&out).emit().unwrap_err().to_string();
-    assert!(said(Build::new().technique("kb").targets(&["wgls"])).contains("no target `wgls`"));
-    assert!(said(Build::new().technique("kb").technique("kb")).contains("module `kb`"));
-    assert!(said(Build::new().technique("kbb")).contains("did you mean `kb`?"));
-    assert!(said(Build::new().technique("kplus_array").set("sync", "interlock")).contains("error[target]"));
-    assert!(said(Build::new().file("no/such.fragbuf")).contains("no/such.fragbuf"));
+    let error = |build: Build| build.out_dir(&out).emit().unwrap_err().to_string();
+    assert!(error(Build::new().technique("kb").targets(&["wgls"])).contains("no target `wgls`"));
+    assert!(error(Build::new().technique("kb").technique("kb")).contains("module `kb`"));
+    assert!(error(Build::new().technique("kbb")).contains("did you mean `kb`?"));
+    assert!(
+        error(Build::new().technique("kplus_array").set("sync", "interlock")).contains("error[unsupported-target]")
+    );
+    assert!(error(Build::new().file("no/such.fragbuf")).contains("no/such.fragbuf"));
 }
 
-/// Rust's names fold cases and have keywords that descriptions do not know of.
+/// Names of a description may differ only by case. Their Rust constants must be distinct.
 #[test]
-fn names_that_differ_by_case_alone_stay_apart() {
+fn names_that_differ_only_by_case_stay_distinct() {
     let text = "buffer B from ab_ll { fragment { color: rgba8, depth: f32, Color: f32, position: f32 }
         uniform { cut: f32, Cut: u32 } where |f, u| f.Color + f.position > u.cut && u.Cut > 0; }";
-    let variant = checked(&crate::cases::text(text), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+    let variant = checked(&crate::cases::text(text), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
     let generation = generate(&variant, &request, &Registry::builtin()).unwrap();
     let bound = bindings("variant", "case", &generation, 0, "files");
@@ -257,9 +261,9 @@ fn names_that_differ_by_case_alone_stay_apart() {
     }
 }
 
-/// Targets that follow different plans have bindings of their own plan each.
+/// Targets with different plans have the bindings of their plan.
 #[test]
-fn an_alternative_has_a_plan_of_its_own() {
+fn an_alternative_has_its_own_plan() {
     let (_, description, set) = named().into_iter().find(|(name, ..)| *name == "interlock_else_lock").unwrap();
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };

@@ -7,7 +7,7 @@ use fragbuf::load::{Description, variant};
 use fragbuf::vocabulary::Row;
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, Variant, generate};
 
-/// Every attribute format, two constraints, a criterion, uniforms, options and a closure.
+/// A description with every attribute format, two constraints, a criterion, uniforms, options and a closure.
 pub const CUSTOM: &str = "
 buffer Custom from kplus_array {
     fragment { color: rgba8, depth: f32, id: u32, normal: octahedral, velocity: vec3, uv: vec2, glow: vec4, heat: f32, tint: rgba16 }
@@ -29,7 +29,7 @@ buffer Custom from kplus_array {
     }
 }";
 
-/// Depth and nothing else: no words beside the key.
+/// A description of depth only, without value words.
 pub const DEPTH_ONLY: &str = "
 buffer Thickness from kplus_array {
     fragment { depth: f32 }
@@ -41,7 +41,7 @@ buffer Thickness from kplus_array {
     }
 }";
 
-/// Attributes whose names are keywords or generated names somewhere.
+/// A description with attributes whose names are keywords or generated names in some language.
 pub const RESERVED: &str = "
 buffer Reserved from ab_ll {
     fragment { color: vec4, depth: f32, key: u32, sample: f32, position: vec2, buffer: f32, main: u32, mix: f32 }
@@ -49,21 +49,21 @@ buffer Reserved from ab_ll {
     where |f, u| f.sample + f.buffer + f.mix > u.texture && f.main + f.key != u.discard;
 }";
 
-/// Name, description, and changes to it.
+/// Name, description, and values set on it.
 pub type Case = (&'static str, Description, Vec<(&'static str, &'static str)>);
 
-/// The cases of snapshots, by name: together they have every value of every axis in them.
+/// Returns the snapshot cases. Together they use every value of every axis.
 pub fn named() -> Vec<Case> {
     static UNNAMED: LazyLock<Vec<Case>> = LazyLock::new(unnamed);
     written().into_iter().chain(UNNAMED.iter().cloned()).collect()
 }
 
-/// A case for every row that no written case has: with the first technique that takes it, a storage by itself.
+/// Returns a case for every row that no written case uses: a storage by itself, any other row with the first technique that allows it.
 fn unnamed() -> Vec<Case> {
     let registry = Registry::builtin();
     let mut seen: BTreeSet<(String, String)> = BTreeSet::new();
     for (_, description, set) in written() {
-        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{faults}"));
+        let variant = checked(&description, &set).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives).map(|selected| &selected.row);
         seen.extend(rows.map(|row| (row.axis.clone(), row.key.clone())));
     }
@@ -75,7 +75,7 @@ fn unnamed() -> Vec<Case> {
 fn case_of(row: &Row, registry: &Registry) -> Case {
     let (axis, key): (&'static str, &'static str) = (row.axis.clone().leak(), row.key.clone().leak());
     let alone =
-        ["keep 8;", "keep 1;", ""].map(|keep| (text(&format!("buffer Tried {{ storage: {key}; {keep} }}")), vec![]));
+        ["keep 8;", "keep 1;", ""].map(|keep| (text(&format!("buffer Single {{ storage: {key}; {keep} }}")), vec![]));
     let techniques = registry.techniques().iter().flat_map(|technique| {
         let with = |more: Option<(&'static str, &'static str)>| {
             let set = std::iter::once((axis, key)).chain(more).collect();
@@ -86,7 +86,7 @@ fn case_of(row: &Row, registry: &Registry) -> Case {
     let candidates: Vec<(Description, Vec<(&'static str, &'static str)>)> =
         if axis == "storage" { alone.to_vec() } else { techniques.collect() };
     let legal = candidates.into_iter().find(|(description, set)| checked(description, set).is_ok());
-    let (description, set) = legal.unwrap_or_else(|| panic!("no description takes `{axis}: {key}`"));
+    let (description, set) = legal.unwrap_or_else(|| panic!("no description allows `{axis}: {key}`"));
     (key, description, set)
 }
 
@@ -120,7 +120,7 @@ fn written() -> Vec<Case> {
         ("occupancy_early", technique("kb_ps"), vec![("cull", "occupancy_early else occupancy")]),
         ("occupancy_custom", text(CUSTOM), vec![("cull", "occupancy"), ("cull.words", "2"), ("counters", "all")]),
         ("opaque_in_shader", technique("kplus_ab_sb"), vec![("opaque", "in_shader"), ("counters", "all")]),
-        ("opaque_early", technique("mdt32_coplanar"), vec![("opaque", "early else in_shader")]),
+        ("opaque_early", technique("mdt32_coplanar"), vec![("opaque", "early_depth else in_shader")]),
         ("custom", text(CUSTOM), vec![]),
         ("depth_only", text(DEPTH_ONLY), vec![]),
         ("reserved", text(RESERVED), vec![]),
@@ -187,14 +187,14 @@ pub fn checked(description: &Description, set: &[(&str, &str)]) -> Result<Varian
     variant(description, &set, &Registry::builtin())
 }
 
-/// Every target, program form.
+/// Generates every target in program form.
 pub fn generated(variant: &Variant) -> Generation {
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
-    generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+    generate(variant, &request, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
-/// A seeded generator (SplitMix64): tests that draw numbers draw the same ones every time.
+/// A seeded random number generator (SplitMix64).
 pub struct Random(pub u64);
 
 impl Random {

@@ -1,15 +1,14 @@
-//! Every technique of the papers with the words per pixel and the draws of the scene that they count, beside what its plan
-//! computes. Where the two differ, the reason stands here.
+//! Compares memory and draws of every technique with the papers. Every difference has its reason here.
 
 use fragbuf::{Registry, TARGETS};
 use fragbuf_codegen::plan;
 use fragbuf_model::Selection;
-use fragbuf_templates::vocabulary::Capability;
+use fragbuf_templates::vocabulary::Feature;
 
 use crate::cases::{checked, text};
 
-/// Technique, words by the papers (K15 Table 1, D13 Table 1, B06), draws of the scene, and where ours are others: what they
-/// are, and why.
+/// Technique, words per pixel in the papers (K15 Table 1, D13 Table 1, B06), draws of the scene, and fragbuf's words per pixel with the
+/// reason where they differ.
 type Entry = (&'static str, &'static str, &'static str, Option<(&'static str, &'static str)>);
 
 const CATALOGUE: [Entry; 24] = [
@@ -49,7 +48,7 @@ const CATALOGUE: [Entry; 24] = [
     ("depth_partition", "2k", "1", None),
 ];
 
-/// With an interlock where there is one: a lock is one word more, which the papers count apart.
+/// Plans a technique with an interlock if it allows one: the papers do not count the word of a lock.
 fn planned(key: &str) -> (String, String) {
     let registry = Registry::builtin();
     let interlocked = checked(&text(&format!("buffer B from {key} {{ sync: interlock; }}")), &[]);
@@ -59,10 +58,10 @@ fn planned(key: &str) -> (String, String) {
 }
 
 #[test]
-fn words_and_draws_are_the_papers_or_say_why_not() {
+fn words_and_draws_equal_the_papers_or_have_a_reason() {
     for (key, words, draws, deviation) in CATALOGUE {
         let wanted = deviation.map_or(words, |(ours, _)| ours);
-        // A survey of the scene is a draw that D13 leaves out: it takes the range from the scene's box.
+        // The pre-pass is a draw that D13 does not have: it takes the range from the bounding box of the scene.
         let draws = if key == "ab_ll_bun" { "2" } else { draws };
         assert_eq!(planned(key), (wanted.to_owned(), draws.to_owned()), "{key}");
     }
@@ -72,7 +71,7 @@ fn words_and_draws_are_the_papers_or_say_why_not() {
     assert_eq!(known.len(), CATALOGUE.len());
 }
 
-/// A spin lock is a word.
+/// A spin lock adds one word.
 #[test]
 fn a_lock_costs_one_word() {
     for (key, words) in
@@ -84,28 +83,28 @@ fn a_lock_costs_one_word() {
     }
 }
 
-/// Every target takes a technique, or says which fact it lacks; and some target takes each.
+/// Every target supports a technique or names the feature that it lacks, and every technique has a target.
 #[test]
-fn every_target_takes_it_or_says_what_it_lacks() {
-    let mut refused = Vec::new();
+fn every_target_supports_it_or_names_the_missing_feature() {
+    let mut rejected = Vec::new();
     for (key, ..) in CATALOGUE {
         let variant = checked(&text(&format!("buffer B from {key} {{ }}")), &[]).unwrap();
-        let refusals = TARGETS.iter().filter_map(|target| {
-            let refusal = variant.select(&[target.offers, &[Capability::OwnEntryPoints]].concat()).err()?;
-            Some((key, target.name, refusal.capability))
+        let unsupported = TARGETS.iter().filter_map(|target| {
+            let missing = variant.select(&[target.provides, &[Feature::OwnEntryPoints]].concat()).err()?;
+            Some((key, target.name, missing.feature))
         });
-        let of_key: Vec<_> = refusals.collect();
+        let of_key: Vec<_> = unsupported.collect();
         assert!(of_key.len() < TARGETS.len(), "{key}");
-        refused.extend(of_key);
+        rejected.extend(of_key);
     }
     let expected = [
-        ("kb_mdt64", "wgsl", Capability::U64Atomics),
-        ("kb_mdt64", "glsl-es", Capability::U64Atomics),
-        ("kb_mdt64", "hlsl", Capability::U64Atomics),
-        ("kb_mdt64", "msl", Capability::U64Atomics),
-        ("kb_sr", "glsl-es", Capability::SampleMask),
-        ("kb_sr", "msl", Capability::SampleMask),
+        ("kb_mdt64", "wgsl", Feature::U64Atomics),
+        ("kb_mdt64", "glsl-es", Feature::U64Atomics),
+        ("kb_mdt64", "hlsl", Feature::U64Atomics),
+        ("kb_mdt64", "msl", Feature::U64Atomics),
+        ("kb_sr", "glsl-es", Feature::SampleMask),
+        ("kb_sr", "msl", Feature::SampleMask),
     ];
-    refused.sort_by_key(|(key, target, _)| expected.iter().position(|(k, t, _)| k == key && t == target));
-    assert_eq!(refused, expected);
+    rejected.sort_by_key(|(key, target, _)| expected.iter().position(|(k, t, _)| k == key && t == target));
+    assert_eq!(rejected, expected);
 }

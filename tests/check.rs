@@ -1,4 +1,4 @@
-//! `fragbuf check` as scripts and readers meet it: exit codes, JSON, and every block of the guide.
+//! Tests `fragbuf check` as scripts and readers use it: exit codes, JSON, and every block of the guide.
 
 use std::process::{Command, Output};
 
@@ -16,9 +16,9 @@ fn text(output: &[u8]) -> String {
     String::from_utf8(output.to_vec()).unwrap()
 }
 
-/// A command is followed by what it prints; the one that is not stands for a page of JSON.
+/// Every command in the guide is followed by its output, except the one that prints a page of JSON.
 #[test]
-fn the_guide_shows_what_is_printed() {
+fn the_guide_shows_the_output_of_its_commands() {
     let guide = std::fs::read_to_string("src/guide/check.md").unwrap();
     let (mut shown, mut real) = (0, guide.split("```sh\n").next().unwrap().to_owned());
     for part in guide.split("```sh\n").skip(1) {
@@ -37,7 +37,7 @@ fn the_guide_shows_what_is_printed() {
     if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         std::fs::write("src/guide/check.md", &real).unwrap();
     }
-    assert_eq!(guide, real, "the guide is out of date: INSTA_UPDATE=always writes it anew");
+    assert_eq!(guide, real, "the guide is out of date: INSTA_UPDATE=always updates it");
     let shader = std::fs::read_to_string("examples/checked/slots.wgsl").unwrap();
     assert!(guide.contains(&format!("```wgsl\n{shader}```")));
 }
@@ -63,19 +63,21 @@ fn the_exit_code_is_the_verdict() {
 }
 
 #[test]
-fn programs_read_the_verdict_as_json() {
+fn the_verdict_is_printed_as_json() {
     let holds: Value = serde_json::from_slice(&fragbuf(&["check", "ab_sb", "--json"]).stdout).unwrap();
-    assert_eq!((&holds["holds"], &holds["every_order"]), (&Value::Bool(true), &Value::Bool(true)));
+    assert_eq!((&holds["holds"], &holds["exhaustive"]), (&Value::Bool(true), &Value::Bool(true)));
     let fails: Value = serde_json::from_slice(&fragbuf(&["check", "kb", "--json"]).stdout).unwrap();
-    assert_eq!((&fails["holds"], &fails["as_stated"]), (&Value::Bool(false), &Value::Bool(true)));
-    let step = &fails["failure"]["steps"][0];
-    assert!(step["place"].as_str().unwrap().starts_with("storage/sorted_array.wgsl:"), "{step}");
+    assert_eq!((&fails["holds"], &fails["declared_hazard"]), (&Value::Bool(false), &Value::Bool(true)));
+    let failure = &fails["failure"];
+    assert!(failure["violation"].is_string() && failure["initial_fragments"].is_array(), "{failure}");
+    let step = &failure["steps"][0];
+    assert!(step["location"].as_str().unwrap().starts_with("storage/sorted_array.wgsl:"), "{step}");
 }
 
-/// A description's own criterion and closures are part of what runs.
+/// The programs that the checker runs include the closures of the description.
 #[test]
 fn a_description_with_closures_is_checked() {
     let output = fragbuf(&["check", "examples/most_visible.fragbuf", "--fragments", "2"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).contains("no failure in every order"));
+    assert!(text(&output.stdout).contains("no failure in any interleaving"));
 }

@@ -1,4 +1,4 @@
-//! The command line as scripts call it: arguments, exit codes, files, and what stands on stdout and stderr.
+//! Tests the command line as scripts call it: arguments, exit codes, files, stdout and stderr.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -38,8 +38,8 @@ fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-fn generate(what: &[&str], out: &Path) -> Output {
-    fragbuf(&[&["generate"], what, &["--target", "all", "--out", out.to_str().unwrap()]].concat())
+fn generate(inputs: &[&str], out: &Path) -> Output {
+    fragbuf(&[&["generate"], inputs, &["--target", "all", "--out", out.to_str().unwrap()]].concat())
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn list_is_an_array_of_techniques() {
     let output = fragbuf(&["list", "--json"]);
     let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
     let row = |key: &str| rows.iter().find(|row| row["key"] == key).unwrap();
-    // The catalogue's formulas, K15 Table 1.
+    // The formulas of the catalogue, K15 Table 1.
     for (key, words, passes) in
         [("kb", "2k", 1), ("kplus_array", "2k+2", 1), ("ab_ll", "3f+1", 1), ("ab_sb", "2f+2", 2)]
     {
@@ -111,7 +111,12 @@ fn list_is_an_array_of_techniques() {
     );
     assert_eq!(row("ab_ll")["targets"]["wgsl"], "T1");
     let table = fragbuf(&["list"]);
-    assert!(table.status.success() && String::from_utf8_lossy(&table.stdout).contains("kplus_array"));
+    let text = String::from_utf8_lossy(&table.stdout);
+    assert!(table.status.success() && text.contains("kplus_array"));
+    let headings = text.lines().next().unwrap();
+    for heading in ["deterministic", "order-independent", "features", "summary"] {
+        assert!(headings.contains(heading), "{headings}");
+    }
 }
 
 #[test]
@@ -141,7 +146,7 @@ fn a_file_of_fifteen_lines_generates_everywhere() {
 }
 
 #[test]
-fn exit_codes_say_whose_fault_it_is() {
+fn exit_codes_classify_failures() {
     let out = folder("exit");
     let out = out.to_str().unwrap();
     let blocked = folder("blocked");
@@ -168,17 +173,59 @@ fn exit_codes_say_whose_fault_it_is() {
 }
 
 #[test]
-fn bad_files_say_code_place_and_way_out() {
+fn diagnostics_of_bad_files_have_code_span_and_help() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("dsl/syntax/tests/bad");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let output = fragbuf(&["show", path.to_str().unwrap()]);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{}: {said}", path.display());
-        assert!(said.contains("error[") && said.contains("help: "), "{said}");
-        assert!(said.contains(&format!("{}:", path.display())), "{said}");
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{}: {stderr}", path.display());
+        assert!(stderr.contains("error[") && stderr.contains("help: "), "{stderr}");
+        assert!(stderr.contains(&format!("{}:", path.display())), "{stderr}");
         count += 1;
     }
     assert!(count >= 40, "{count}");
+}
+
+/// Renamed flags and values: the command with the present spelling, with the former one, and the former one as help would
+/// print it.
+const FORMER: [(&[&str], &[&str], &str); 4] = [
+    (
+        &["check", "ab_ll", "--k", "1", "--fragments", "1"],
+        &["check", "ab_ll", "--entries", "1", "--fragments", "1"],
+        "--entries",
+    ),
+    (
+        &["check", "ab_ll", "--fragments", "2", "--random-schedules", "1"],
+        &["check", "ab_ll", "--fragments", "2", "--random", "1"],
+        "--random ",
+    ),
+    (
+        &["check", "ab_ll", "--fragments", "1", "--model", "relaxed"],
+        &["check", "ab_ll", "--fragments", "1", "--model", "late"],
+        "late:",
+    ),
+    (
+        &["render", "ab_ll", "--shading", "unlit", "--scene", "builtin:cubes", "--size", "8x8", "--device", "cpu"],
+        &["render", "ab_ll", "--shading", "flat", "--scene", "builtin:cubes", "--size", "8x8", "--device", "cpu"],
+        "flat",
+    ),
+];
+
+#[test]
+fn former_flags_and_values_work_and_are_hidden() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("former.png");
+    for (present, former, hidden) in FORMER {
+        let run = |arguments: &[&str]| {
+            let file: &[&str] = if arguments[0] == "render" { &["--out", out.to_str().unwrap()] } else { &[] };
+            let output = fragbuf(&[arguments, file].concat());
+            assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+            (output.stdout, std::fs::read(&out).ok())
+        };
+        assert!(run(present) == run(former), "{former:?}");
+        let help = fragbuf(&[present[0], "--help"]);
+        let help = String::from_utf8_lossy(&help.stdout);
+        assert!(help.contains("--") && !help.contains(hidden), "{hidden}: {help}");
+    }
 }

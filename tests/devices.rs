@@ -1,4 +1,4 @@
-//! The CPU device beside a software driver on whole scenes, its orders, and a machine without any driver.
+//! Compares the CPU device with a software driver on whole scenes, and tests its orders and a machine without any driver.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -11,9 +11,10 @@ use crate::render::{folder, fragbuf, read, stderr};
 
 const SIZE: (u32, u32) = (256, 192);
 
-/// From one pixel that is looked at to the next.
-const SOME: usize = 331;
+/// The distance between sampled pixels.
+const STRIDE: usize = 331;
 
+/// Renders an image and returns its pixels.
 fn picture(out: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
     let size = format!("{}x{}", SIZE.0, SIZE.1);
     let common = ["--linear", "--size", &size, "--out", out.to_str().unwrap()];
@@ -39,8 +40,8 @@ fn projected(scene: &Scene) -> Vec<Projected> {
     scene.objects.iter().flat_map(|object| object.triangles.iter().map(move |triangle| of(object, triangle))).collect()
 }
 
-/// Why two rasterisers may differ here: an edge runs through the pixel's middle, as exactly as 256ths of a pixel tell; or two depths are
-/// closer than their roundings: two ulp of a depth near one, for each of the two devices.
+/// Returns whether two rasterisers may differ in a pixel: an edge passes within 1.5/256 of a pixel from its centre, or two depths differ
+/// by less than their rounding, which is two ulp of a depth near one for each of the two devices.
 fn is_explained(triangles: &[Projected], x: f64, y: f64) -> bool {
     const NEAR: f64 = 1.5 / 256.0;
     const TIE: f64 = 4.0 / 16_777_216.0;
@@ -64,39 +65,42 @@ fn is_explained(triangles: &[Projected], x: f64, y: f64) -> bool {
 }
 
 #[test]
-fn pictures_differ_from_the_drivers_at_edges_and_ties_alone() {
+fn images_differ_from_the_drivers_only_at_edges_and_ties() {
     let folder = folder("devices");
     let pixels = (SIZE.0 * SIZE.1) as usize;
     for scene in ["builtin:cubes", "builtin:slabs,n=24", "builtin:marbles"] {
         let triangles = projected(&fragbuf_scene::open(scene, [0.15, 0.45, 0.35, 0.4]).unwrap());
-        // What explains everything explains nothing: of some pixels from all over, few may differ.
-        let some: Vec<usize> = (0..pixels).step_by(SOME).collect();
+        // The explanation is valid only if it applies to few pixels: tests a sample of all pixels.
+        let sample: Vec<usize> = (0..pixels).step_by(STRIDE).collect();
         let may = |at: &usize| {
             is_explained(&triangles, (at % SIZE.0 as usize) as f64 + 0.5, (at / SIZE.0 as usize) as f64 + 0.5)
         };
-        let explained = some.iter().filter(|at| may(at)).count();
-        println!("{scene}: {explained} of {} pixels may differ", some.len());
-        assert!(4 * explained < some.len(), "{scene}: {explained} of {} pixels may differ", some.len());
+        let explained = sample.iter().filter(|at| may(at)).count();
+        println!("{scene}: {explained} of {} pixels may differ", sample.len());
+        assert!(4 * explained < sample.len(), "{scene}: {explained} of {} pixels may differ", sample.len());
         for key in ["kplus_array", "ab_ll"] {
-            let [own, driver] = ["cpu", "llvmpipe"].map(|device| {
+            let [cpu, driver] = ["cpu", "llvmpipe"].map(|device| {
                 picture(&folder.join(format!("{device}.png")), &[key, "--scene", scene, "--device", device])
             });
-            let apart = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
-            let different: Vec<usize> = (0..pixels).filter(|pixel| apart((&own[*pixel], &driver[*pixel]))).collect();
+            let differ = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+            let different: Vec<usize> = (0..pixels).filter(|pixel| differ((&cpu[*pixel], &driver[*pixel]))).collect();
             assert!(1000 * different.len() <= pixels, "{key}, {scene}: {} pixels differ", different.len());
             for pixel in different {
                 let (x, y) = (pixel % SIZE.0 as usize, pixel / SIZE.0 as usize);
-                println!("{key}, {scene}: pixel {x}, {y} is {:?}, and {:?} on the driver", own[pixel], driver[pixel]);
+                println!(
+                    "{key}, {scene}: pixel {x}, {y} is {:?} on the CPU device and {:?} on the driver",
+                    cpu[pixel], driver[pixel]
+                );
                 let why = is_explained(&triangles, x as f64 + 0.5, y as f64 + 0.5);
-                assert!(why, "{key}, {scene}: nothing explains {:?} and {:?} at {x}, {y}", own[pixel], driver[pixel]);
+                assert!(why, "{key}, {scene}: nothing explains {:?} and {:?} at {x}, {y}", cpu[pixel], driver[pixel]);
             }
         }
     }
 }
 
-/// The hazards of B06, Fig. 3, as a picture; and none where writers take turns or need not.
+/// Interleaving shows the hazards of B06, Fig. 3, in the image of `kb`. It changes no image of a technique without hazards.
 #[test]
-fn interleaved_fragments_change_a_racy_picture_alone() {
+fn interleaving_changes_only_racy_images() {
     let folder = folder("orders");
     let registry = Registry::builtin();
     for technique in registry.techniques() {
@@ -105,7 +109,7 @@ fn interleaved_fragments_change_a_racy_picture_alone() {
             let out = folder.join(format!("{key}.png"));
             picture(&out, &[key, "--scene", "builtin:marbles", "--device", "cpu", "--order", order])
         };
-        let draft = fragbuf::Draft::from_technique(key, &fragbuf::Origin::new(key, 1, 1));
+        let draft = fragbuf::Draft::from_technique(key, &fragbuf::SourceSpan::new(key, 1, 1));
         let plan = fragbuf_cpu::Code::of(&check(&draft, &registry).unwrap(), &registry).unwrap().plan;
         let clean = draw("submission");
         for seed in ["shuffle:1", "shuffle:2"] {
@@ -114,13 +118,13 @@ fn interleaved_fragments_change_a_racy_picture_alone() {
             if key == "kb" {
                 let different = clean.iter().zip(&shuffled).filter(|(a, b)| a != b).count();
                 assert!(different > 1000, "{key}, {seed}: {different} pixels show a hazard");
-                assert!(shuffled == draw(seed), "the same seed is the same picture");
+                assert!(shuffled == draw(seed), "the same seed renders the same image");
             }
         }
     }
 }
 
-/// The gallery shows what its command draws.
+/// The images of the gallery are the output of their commands.
 #[test]
 fn the_gallery_shows_the_hazards() {
     let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gallery");
@@ -129,8 +133,8 @@ fn the_gallery_shows_the_hazards() {
     let different = |order: &str, shown: &str| {
         let output = fragbuf(&[&["render", "kb", "--order", order], &common[..]].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let apart = |(a, b): &([u8; 4], [u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
-        read(&out).2.into_iter().zip(read(&gallery.join(shown)).2).filter(apart).count()
+        let differ = |(a, b): &([u8; 4], [u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+        read(&out).2.into_iter().zip(read(&gallery.join(shown)).2).filter(differ).count()
     };
     assert_eq!(different("shuffle:1", "kb_hazards.png"), 0);
     assert_eq!(different("submission", "kb.png"), 0);
@@ -138,24 +142,24 @@ fn the_gallery_shows_the_hazards() {
 }
 
 #[test]
-fn an_order_is_the_cpu_devices() {
-    let folder = folder("order-refused");
+fn order_works_only_on_the_cpu_device() {
+    let folder = folder("order-rejected");
     let out = folder.join("o.png");
     let run = |order: &str, device: &str| {
         let common = ["--scene", "builtin:cubes", "--size", "8x8", "--out", out.to_str().unwrap()];
         fragbuf(&[&["render", "kb", "--order", order, "--device", device], &common[..]].concat())
     };
-    let refused = run("shuffle:1", "llvmpipe");
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("--device cpu"), "{}", stderr(&refused));
+    let rejected = run("shuffle:1", "llvmpipe");
+    assert_eq!(rejected.status.code(), Some(2));
+    assert!(stderr(&rejected).contains("--device cpu"), "{}", stderr(&rejected));
     assert!(!out.exists());
     assert_eq!(run("shuffle:one", "cpu").status.code(), Some(2));
     assert_eq!(run("shuffle:1", "cpu").status.code(), Some(0));
 }
 
-/// What the README's first picture needs on a machine without a driver: nothing.
+/// The first command of the README works on a machine without a driver.
 #[test]
-fn without_any_driver_the_cpu_device_draws() {
+fn the_cpu_device_renders_without_a_driver() {
     let folder = folder("no-driver");
     let out = folder.join("o.png");
     let run = |arguments: &[&str]| -> Output {
@@ -174,11 +178,11 @@ fn without_any_driver_the_cpu_device_draws() {
     let common = ["--scene", "builtin:cubes", "--size", "32x24", "--json", "--out", out.to_str().unwrap()];
     let output = run(&[&["render", "kplus_array"], &common[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&figures["device"], &figures["backend"]), (&"cpu".into(), &"interpreter".into()), "{figures}");
+    let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&statistics["device"], &statistics["backend"]), (&"cpu".into(), &"interpreter".into()), "{statistics}");
     assert!(
-        figures["fragments"]["generated"].as_u64().unwrap() > 100 && figures["ms"]["store"].is_number(),
-        "{figures}"
+        statistics["fragments"]["generated"].as_u64().unwrap() > 100 && statistics["ms"]["store"].is_number(),
+        "{statistics}"
     );
     assert_eq!(read(&out).0, 32);
 }

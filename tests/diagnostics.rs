@@ -1,5 +1,5 @@
-//! What a user is told: every kind of mistake in a whole description, drawn with its source line. The mistakes of the
-//! grammar and the closures are `dsl/syntax`'s own tests.
+//! Tests every kind of error in a complete description, rendered with its source line. `dsl/syntax` tests errors of the grammar and of
+//! closures.
 
 use std::collections::BTreeSet;
 
@@ -8,14 +8,14 @@ use fragbuf_model::codes;
 
 use crate::cases::{checked, text};
 
-/// Code, line, column, and a part of the way out.
+/// Code, line, column, and a part of the help.
 type Expected = (&'static str, u32, u32, &'static str);
 
-/// A description, and what must be said of it: code and place of each mistake, and a part of the way out.
+/// Descriptions with their expected diagnostics.
 const CASES: &[(&str, &[Expected])] = &[
     (
         "buffer B from kplus_array {\n    storage: linked_list;\n    sync: slot_counter;\n    keep 6;\n}",
-        &[("unmet", 1, 15, ""), ("keep-mismatch", 4, 10, "another choice than `cull: early`")],
+        &[("missing-capability", 1, 15, ""), ("keep-mismatch", 4, 10, "another choice than `cull: early`")],
     ),
     ("buffer B from kplus_aray { }", &[("unknown-technique", 1, 15, "did you mean `kplus_array`?")]),
     ("buffer B {\n    keep 8;\n}", &[("missing-storage", 1, 8, "from kplus_array")]),
@@ -26,129 +26,144 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from kplus_array {\n    sync: spin_lock { limt: 9 };\n}",
         &[("unknown-option", 2, 23, "did you mean `limit`?")],
     ),
-    ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("bad-option", 2, 30, "4096")]),
-    ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("bad-option", 2, 30, "tries")]),
-    ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "drop the braces")]),
-    ("buffer B from kplus_array {\n    ties: attribute { by: id };\n}", &[("bad-option", 2, 27, "decides")]),
-    ("buffer B from kplus_array {\n    ties: attribute { by: 1 };\n}", &[("bad-option", 2, 27, "decides")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("invalid-option", 2, 30, "4096")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("invalid-option", 2, 30, "tries")]),
+    ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "remove the braces")]),
+    ("buffer B from kplus_array {\n    ties: attribute { by: id };\n}", &[("invalid-option", 2, 27, "decides")]),
+    ("buffer B from kplus_array {\n    ties: attribute { by: 1 };\n}", &[("invalid-option", 2, 27, "decides")]),
     (
         "buffer B from kplus_array {\n    ties: submission;\n}",
-        &[("unmet", 2, 11, "`ties: payload`"), ("unmet", 2, 11, "`ties: payload`")],
+        &[("missing-capability", 2, 11, "`ties: payload`"), ("missing-capability", 2, 11, "`ties: payload`")],
     ),
-    ("buffer B from kplus_array {\n    keep 0;\n}", &[("capacity", 2, 10, "from 1 to 1024")]),
-    ("buffer B from kplus_array {\n    keep 5000;\n}", &[("capacity", 2, 10, "keep all")]),
+    ("buffer B from kplus_array {\n    keep 0;\n}", &[("k-out-of-range", 2, 10, "from 1 to 1024")]),
+    ("buffer B from kplus_array {\n    keep 5000;\n}", &[("k-out-of-range", 2, 10, "keep all")]),
     ("buffer B from kplus_array {\n    keep all;\n}", &[("keep-mismatch", 2, 10, "keep 8")]),
     ("buffer B from ab_ll {\n    keep 8;\n}", &[("keep-mismatch", 2, 10, "keep all")]),
     ("buffer B from ab_ll {\n    keep all least |f| f.depth;\n}", &[("keep-mismatch", 2, 20, "where")]),
-    ("buffer B from kplus_array {\n    sync: none;\n}", &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")]),
+    (
+        "buffer B from kplus_array {\n    sync: none;\n}",
+        &[("missing-capability", 1, 15, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
+    ),
     (
         "buffer B from kplus_array {\n    sync: slot_counter;\n}",
-        &[("unmet", 1, 15, ""), ("unmet", 2, 11, "`sync: spin_lock`")],
+        &[("missing-capability", 1, 15, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
     ),
-    ("buffer B from ab_ll {\n    cull: early;\n}", &[("unmet", 2, 11, "`cull: none`")]),
-    ("buffer B from ab_ll {\n    sort: none;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
-    ("buffer B from kb {\n    keep 8 least |f| f.depth - f.color.w;\n}", &[("unmet", 1, 15, "`sort: insertion`")]),
-    ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("unmet", 1, 15, "`color: rgba8`")]),
+    ("buffer B from ab_ll {\n    cull: early;\n}", &[("missing-capability", 2, 11, "`cull: none`")]),
+    ("buffer B from ab_ll {\n    sort: none;\n}", &[("missing-capability", 1, 15, "`sort: insertion`")]),
+    (
+        "buffer B from kb {\n    keep 8 least |f| f.depth - f.color.w;\n}",
+        &[("missing-capability", 1, 15, "`sort: insertion`")],
+    ),
+    ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("missing-capability", 1, 15, "`color: rgba8`")]),
     ("buffer B from ab_ll {\n    fragment { color: rgba8, z: f32 }\n}", &[("missing-depth", 2, 16, "`depth: f32`")]),
     (
         "buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}",
         &[("missing-depth", 2, 37, "`depth: f32`")],
     ),
-    // What follows from a format that is unknown is not said.
+    // Consequences of an unknown format are not reported.
     (
         "buffer B from ab_ll {\n    fragment { color: rgb8, depth: f23 }\n}",
         &[("unknown-format", 2, 23, "did you mean `rgba8`?"), ("unknown-format", 2, 36, "`f32`")],
     ),
     (
         "buffer B from ab_ll {\n    resolve: over;\n    resolve |fragments, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
-        &[("duplicate", 3, 5, "leave one of them out")],
+        &[("duplicate", 3, 5, "remove one")],
     ),
     (
         "buffer B from kplus_heap {\n    cull: occupancy { words: 1 };\n}",
-        &[("bad-option", 2, 30, "`words: 2` or more")],
+        &[("invalid-option", 2, 30, "`words: 2` or more")],
     ),
-    ("buffer B from ab_ll {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`cull: none`")]),
-    ("buffer B from kb_ab_sb {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`storage: linked_list`")]),
-    ("buffer B from depth_partition {\n    cull: occupancy;\n}", &[("unmet", 2, 11, "`storage: sorted_array`")]),
+    ("buffer B from ab_ll {\n    cull: occupancy;\n}", &[("missing-capability", 2, 11, "`cull: none`")]),
+    ("buffer B from kb_ab_sb {\n    cull: occupancy;\n}", &[("missing-capability", 2, 11, "`storage: linked_list`")]),
+    (
+        "buffer B from depth_partition {\n    cull: occupancy;\n}",
+        &[("missing-capability", 2, 11, "`storage: sorted_array`")],
+    ),
     (
         "buffer B from kplus_array {\n    keep 8 least |f| f.depth - f.color.w;\n    cull: occupancy_early;\n}",
-        &[("unmet", 3, 11, "`cull: occupancy`")],
+        &[("missing-capability", 3, 11, "`cull: occupancy`")],
     ),
-    ("buffer B from z_buffer {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
-    ("buffer B from kb_sr {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
-    ("buffer B from kb_stream {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`samples: one`")]),
+    ("buffer B from z_buffer {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
+    ("buffer B from kb_sr {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
+    ("buffer B from kb_stream {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
     // The mask is a third word.
-    ("buffer B from kb_mdt64 {\n    samples: coverage;\n}", &[("unmet", 1, 15, "`storage: cascade`")]),
-    ("buffer B from ab_ll {\n    samples: coverage { count: 3 };\n}", &[("bad-option", 2, 32, "every device")]),
+    ("buffer B from kb_mdt64 {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`storage: cascade`")]),
+    ("buffer B from ab_ll {\n    samples: coverage { count: 3 };\n}", &[("invalid-option", 2, 32, "every device")]),
     (
         "buffer B from kplus_array {\n    samples: coverage;\n    cull: occupancy_early;\n}",
-        &[("unmet", 3, 11, "`cull: occupancy`")],
+        &[("missing-capability", 3, 11, "`cull: occupancy`")],
     ),
     (
-        "buffer B from ab_ll {\n    opaque: early;\n    samples: coverage;\n}",
-        &[("unmet", 2, 13, "`opaque: in_shader`")],
+        "buffer B from ab_ll {\n    opaque: early_depth;\n    samples: coverage;\n}",
+        &[("missing-capability", 2, 13, "`opaque: in_shader`")],
     ),
     // Depth test and stencil are taken: by the storage, by the cull.
-    ("buffer B from z_buffer {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: in_shader`")]),
-    ("buffer B from kb_sr {\n    opaque: early;\n}", &[("unmet", 2, 13, "`opaque: none`")]),
+    ("buffer B from z_buffer {\n    opaque: early_depth;\n}", &[("missing-capability", 2, 13, "`opaque: in_shader`")]),
+    ("buffer B from kb_sr {\n    opaque: early_depth;\n}", &[("missing-capability", 2, 13, "`opaque: none`")]),
     (
-        "buffer B from kplus_array {\n    cull: occupancy_early;\n    opaque: early;\n}",
-        &[("unmet", 3, 13, "`cull: occupancy`")],
+        "buffer B from kplus_array {\n    cull: occupancy_early;\n    opaque: early_depth;\n}",
+        &[("missing-capability", 3, 13, "`cull: occupancy`")],
     ),
-    ("buffer B from ab_ll {\n    opaque: late;\n}", &[("unknown-value", 2, 13, "none, in_shader, early")]),
-    // What the cull turns away cannot be blended or merged.
-    ("buffer B from kplus_array {\n    overflow: tail_blend;\n}", &[("unmet", 2, 15, "`cull: none`")]),
-    ("buffer B from kplus_array {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`cull: none`")]),
+    ("buffer B from ab_ll {\n    opaque: late;\n}", &[("unknown-value", 2, 13, "none, in_shader, early_depth")]),
+    // Culled fragments cannot be blended or merged.
+    ("buffer B from kplus_array {\n    overflow: tail_blend;\n}", &[("missing-capability", 2, 15, "`cull: none`")]),
+    ("buffer B from kplus_array {\n    overflow: merge_last;\n}", &[("missing-capability", 2, 15, "`cull: none`")]),
     (
         "buffer B from kplus_array {\n    overflow: merge_last;\n    cull: occupancy;\n}",
-        &[("unmet", 2, 15, "`cull: none`")],
+        &[("missing-capability", 2, 15, "`cull: none`")],
     ),
     // Nor what no critical section keeps apart.
-    ("buffer B from kb {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`sync: spin_lock`")]),
+    ("buffer B from kb {\n    overflow: merge_last;\n}", &[("missing-capability", 2, 15, "`sync: spin_lock`")]),
     (
         "buffer B from kb_ab_ll {\n    overflow: tail_blend;\n}",
-        &[("unmet", 2, 15, "weighted_tail"), ("unmet", 2, 15, "weighted_tail")],
+        &[("missing-capability", 2, 15, "weighted_tail"), ("missing-capability", 2, 15, "weighted_tail")],
     ),
     // The farthest must be the worst, and the slots in the order of depth.
     (
         "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_last;\n    keep 8 least |f| f.color.x;\n}",
-        &[("unmet", 3, 15, "`overflow: tail_blend`")],
+        &[("missing-capability", 3, 15, "`overflow: tail_blend`")],
     ),
     (
         "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_closest;\n}",
-        &[("unmet", 3, 15, "`storage: sorted_array`")],
+        &[("missing-capability", 3, 15, "`storage: sorted_array`")],
     ),
-    ("buffer B from depth_partition {\n    overflow: merge_last;\n}", &[("unmet", 2, 15, "`storage: sorted_array`")]),
+    (
+        "buffer B from depth_partition {\n    overflow: merge_last;\n}",
+        &[("missing-capability", 2, 15, "`storage: sorted_array`")],
+    ),
     (
         "buffer B from kplus_array {\n    fragment { depth: f32 }\n    cull: none;\n    overflow: merge_last;\n    resolve |f, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
-        &[("unmet", 4, 15, "`color: rgba8`")],
+        &[("missing-capability", 4, 15, "`color: rgba8`")],
     ),
     (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",
-        &[("unknown-value", 3, 11, "none"), ("capacity", 4, 10, "from 1")],
+        &[("unknown-value", 3, 11, "none"), ("k-out-of-range", 4, 10, "from 1")],
     ),
 ];
 
 #[test]
-fn every_mistake_has_its_code_place_and_way_out() {
+fn every_error_has_its_code_span_and_help() {
     for (source, expected) in CASES {
-        let faults = checked(&text(source), &[]).err().unwrap_or_else(|| panic!("accepted: {source}"));
-        let found: Vec<_> =
-            faults.iter().map(|fault| (fault.code.name, fault.origin.line, fault.origin.column)).collect();
+        let diagnostics = checked(&text(source), &[]).err().unwrap_or_else(|| panic!("accepted: {source}"));
+        let found: Vec<_> = diagnostics
+            .iter()
+            .map(|diagnostic| (diagnostic.code.name, diagnostic.span.line, diagnostic.span.column))
+            .collect();
         let wanted: Vec<_> = expected.iter().map(|(code, line, column, _)| (*code, *line, *column)).collect();
-        assert_eq!(found, wanted, "{source}\n{faults}");
-        for (fault, (.., way_out)) in faults.iter().zip(*expected) {
-            assert!(!fault.hint.is_empty() && fault.hint.contains(way_out), "{source}\n{faults}");
+        assert_eq!(found, wanted, "{source}\n{diagnostics}");
+        for (diagnostic, (.., help)) in diagnostics.iter().zip(*expected) {
+            assert!(!diagnostic.help.is_empty() && diagnostic.help.contains(help), "{source}\n{diagnostics}");
         }
     }
 }
 
 #[test]
 fn every_code_of_whole_descriptions_is_covered() {
-    let covered: BTreeSet<&str> = CASES.iter().flat_map(|(_, faults)| faults.iter().map(|(code, ..)| *code)).collect();
+    let covered: BTreeSet<&str> =
+        CASES.iter().flat_map(|(_, diagnostics)| diagnostics.iter().map(|(code, ..)| *code)).collect();
     let first = codes::ALL.iter().position(|code| *code == codes::UNKNOWN_TECHNIQUE).unwrap();
     // `target` needs a target without atomics, `internal` a defect.
-    for code in codes::ALL[first..].iter().filter(|code| ![codes::TARGET, codes::INTERNAL].contains(code)) {
+    for code in codes::ALL[first..].iter().filter(|code| ![codes::UNSUPPORTED_TARGET, codes::INTERNAL].contains(code)) {
         assert!(covered.contains(code.name), "no case for {}", code.name);
     }
 }
@@ -156,16 +171,16 @@ fn every_code_of_whole_descriptions_is_covered() {
 #[test]
 fn a_hint_is_a_change_that_works() {
     let source = "buffer B from kplus_array {\n    sync: none;\n}";
-    let faults = checked(&text(source), &[]).unwrap_err();
-    assert!(faults.iter().all(|fault| fault.hint.contains("`sync: spin_lock`")), "{faults}");
+    let diagnostics = checked(&text(source), &[]).unwrap_err();
+    assert!(diagnostics.iter().all(|diagnostic| diagnostic.help.contains("`sync: spin_lock`")), "{diagnostics}");
     assert!(checked(&text(&source.replace("none", "spin_lock")), &[]).is_ok());
 }
 
 #[test]
-fn mistakes_are_drawn_with_their_line() {
+fn errors_are_rendered_with_their_line() {
     let source = "buffer B from kplus_array {\n    keep 8 least |f| f.deph;\n    sort: insertoin;\n}";
-    let faults = checked(&text(source), &[]).unwrap_err();
-    let drawn = render(&faults, &[("case.fragbuf".to_owned(), source.to_owned())]);
+    let diagnostics = checked(&text(source), &[]).unwrap_err();
+    let drawn = render(&diagnostics, &[("case.fragbuf".to_owned(), source.to_owned())]);
     insta::assert_snapshot!("drawn", drawn);
 }
 
@@ -173,14 +188,18 @@ fn mistakes_are_drawn_with_their_line() {
 fn set_from_outside_is_checked_like_the_text() {
     let key = fragbuf::load::Description::Technique("kplus_array".to_owned());
     for (name, value, code) in [
-        ("k", "many", "bad-option"),
+        ("k", "many", "invalid-option"),
         ("sort", "x", "unknown-value"),
-        ("sync.limit", "0", "bad-option"),
+        ("sync.limit", "0", "invalid-option"),
         ("nope", "1", "unknown-axis"),
-        ("k", "0", "capacity"),
+        ("k", "0", "k-out-of-range"),
     ] {
-        let faults = checked(&key, &[(name, value)]).err().unwrap_or_else(|| panic!("accepted: {name}={value}"));
-        assert_eq!(faults.iter().map(|fault| fault.code.name).collect::<Vec<_>>(), [code], "{name}={value}");
+        let diagnostics = checked(&key, &[(name, value)]).err().unwrap_or_else(|| panic!("accepted: {name}={value}"));
+        assert_eq!(
+            diagnostics.iter().map(|diagnostic| diagnostic.code.name).collect::<Vec<_>>(),
+            [code],
+            "{name}={value}"
+        );
     }
     let variant = checked(&key, &[("k", "3"), ("sync.limit", "9"), ("sort", "insertion")]).unwrap();
     assert_eq!(variant.keep, Some(3));

@@ -1,8 +1,9 @@
-//! Random drafts and random texts: checking never panics, and what it accepts generates.
+//! Random drafts and descriptions: checking never panics, and accepted ones generate.
 
 use fragbuf::{Registry, check};
 use fragbuf_model::{
-    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, Origin, Spanned, Uniform, UniformType,
+    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, SourceSpan, Spanned, Uniform,
+    UniformType,
 };
 
 use crate::cases::{CUSTOM, Random, generated};
@@ -11,17 +12,17 @@ const WORDS: [&str; 14] =
     ["color", "depth", "id", "key", "sample", "position", "x", "while", "vec3", "_a", "a_", "limit", "layers", "übel"];
 
 fn spanned<T>(value: T) -> Spanned<T> {
-    Spanned::new(value, Origin::new("fuzz", 1, 1))
+    Spanned::new(value, SourceSpan::new("fuzz", 1, 1))
 }
 
 fn word(random: &mut Random) -> Spanned<String> {
     spanned((*random.pick(&WORDS)).to_owned())
 }
 
-/// A draft whose words are mostly real ones. Names are a door's to check, so attributes and uniforms have good ones.
+/// Returns a draft whose names mostly exist. Front ends check attribute and uniform names, so those are valid.
 fn draft(random: &mut Random, registry: &Registry) -> Draft {
     let techniques: Vec<&str> = registry.techniques().iter().map(|technique| technique.key.as_str()).collect();
-    let mut draft = Draft::from_technique(techniques[random.below(techniques.len())], &Origin::new("fuzz", 1, 1));
+    let mut draft = Draft::from_technique(techniques[random.below(techniques.len())], &SourceSpan::new("fuzz", 1, 1));
     if random.below(4) == 0 {
         draft.preset = None;
     }
@@ -73,10 +74,10 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
 }
 
 #[test]
-fn what_is_accepted_generates() {
+fn accepted_drafts_generate() {
     let registry = Registry::builtin();
     let mut random = Random(2015);
-    let (mut accepted, mut refused) = (0, 0);
+    let (mut accepted, mut rejected) = (0, 0);
     for _ in 0..3000 {
         let draft = draft(&mut random, &registry);
         match check(&draft, &registry) {
@@ -84,23 +85,23 @@ fn what_is_accepted_generates() {
                 accepted += 1;
                 generated(&variant);
             }
-            Err(faults) => {
-                refused += 1;
-                assert!(faults.iter().all(|fault| !fault.hint.is_empty()));
+            Err(diagnostics) => {
+                rejected += 1;
+                assert!(diagnostics.iter().all(|diagnostic| !diagnostic.help.is_empty()));
             }
         }
     }
-    println!("fuzz: {accepted} drafts accepted, {refused} refused");
-    assert!(accepted > 100 && refused > 100);
+    println!("fuzz: {accepted} drafts accepted, {rejected} rejected");
+    assert!(accepted > 100 && rejected > 100);
 }
 
-/// Whole descriptions with words and signs moved about: whatever the parser and the rules let through, naga takes.
+/// Mutates a description by moving tokens: naga accepts whatever the parser and the rules accept.
 #[test]
-fn mangled_texts_are_refused_or_generate() {
+fn mangled_texts_are_rejected_or_generate() {
     let registry = Registry::builtin();
     let mut random = Random(2013);
     let pieces: Vec<&str> = CUSTOM.split_inclusive([' ', ';', '(', ')', '.', ',']).collect();
-    let (mut accepted, mut refused) = (0, 0);
+    let (mut accepted, mut rejected) = (0, 0);
     for _ in 0..3000 {
         let mut pieces = pieces.clone();
         for _ in 0..1 + random.below(3) {
@@ -118,9 +119,9 @@ fn mangled_texts_are_refused_or_generate() {
                 accepted += 1;
                 generated(&variant);
             }
-            _ => refused += 1,
+            _ => rejected += 1,
         }
     }
-    println!("fuzz: {accepted} texts accepted, {refused} refused");
-    assert!(accepted > 20 && refused > 100);
+    println!("fuzz: {accepted} texts accepted, {rejected} rejected");
+    assert!(accepted > 20 && rejected > 100);
 }

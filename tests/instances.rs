@@ -1,17 +1,17 @@
-//! Two of a kind: two instances of one template in one program, two buffers in one shader.
+//! Tests two instances of one template in a program, and two buffers in a shader.
 
 use fragbuf::vocabulary::{Access, Blend, KeepDefault, Pass, Row, Step, Technique, Template};
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, check, generate};
-use fragbuf_model::{Draft, Origin};
+use fragbuf_model::{Draft, SourceSpan};
 
 use crate::validators;
 
-/// Even fragments go to one list, odd ones to another.
+/// Stores even fragments in one list and odd ones in another.
 const STORE_TWO: &str = "
 @fragment
-fn store_two(varyings: Varyings) {
-    let entry = fragment_pack(varyings_fragment(varyings));
-    let pixel = pixel_index(varyings.position.xy);
+fn store_two(inputs: FragmentInput) {
+    let entry = fragment_pack(fragment_from_inputs(inputs));
+    let pixel = pixel_index(inputs.position.xy);
     if (entry.key & 1u) == 0u {
         front_insert(pixel, entry);
     } else {
@@ -41,12 +41,13 @@ fn two_lists() -> Registry {
         calls,
         ..Row::new("pass", key, "", "")
     };
-    let both = |pass: Pass| pass.role("front", "linked_list", "front").role("back", "linked_list", "back");
+    let both =
+        |pass: Pass| pass.implementation("front", "linked_list", "front").implementation("back", "linked_list", "back");
     let registry = Registry::builtin();
     let list = registry.row("storage", "linked_list").unwrap().clone();
     let storage = Row {
         steps: vec![
-            Step::Pass(Pass { anchor: "store".to_owned(), ..both(Pass::geometry("store", "store_two")) }),
+            Step::Pass(Pass { name: "store".to_owned(), ..both(Pass::geometry("store", "store_two")) }),
             Step::Pass(both(Pass::fullscreen("resolve", "resolve_two")).target("output", Blend::Over)),
         ],
         resources: vec![],
@@ -69,18 +70,18 @@ fn two_lists() -> Registry {
 }
 
 fn generation(registry: &Registry, key: &str, form: Form, prefix: &str, group: u32) -> Generation {
-    let draft = Draft::from_technique(key, &Origin::new(key, 1, 1));
-    let variant = check(&draft, registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let draft = Draft::from_technique(key, &SourceSpan::new(key, 1, 1));
+    let variant = check(&draft, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form, prefix, group };
-    generate(&variant, &request, registry).unwrap_or_else(|faults| panic!("{faults}"))
+    generate(&variant, &request, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
 #[test]
-fn two_lists_live_in_one_program() {
+fn a_program_has_two_lists() {
     let generation = generation(&two_lists(), "two_lists", Form::Program, "", 0);
     let plan = &generation.plans[0].plan;
-    // Two heads per pixel, and each of the two pools has room for every fragment.
+    // Two heads per pixel, and two pools that each fit every fragment.
     assert_eq!(plan.words_per_pixel, "6f+2");
     for name in ["front_heads", "front_nodes", "back_heads", "back_links", "back_pool"] {
         assert!(plan.resource(name).is_some(), "{name}");
@@ -116,7 +117,7 @@ fn two_buffers_share_a_shader() {
 }
 
 #[test]
-fn glsl_modules_are_called_from_a_shader_of_ones_own() {
+fn glsl_modules_are_called_from_the_callers_shader() {
     let registry = Registry::builtin();
     let near = generation(&registry, "kplus_array", Form::Module, "near", 1);
     let all = generation(&registry, "ab_ll", Form::Module, "all", 2);
@@ -146,11 +147,11 @@ fn glsl_modules_are_called_from_a_shader_of_ones_own() {
 }
 
 #[test]
-fn targets_without_linkable_functions_refuse_modules() {
+fn targets_without_linkable_functions_reject_modules() {
     let generation = generation(&Registry::builtin(), "kplus_array", Form::Module, "", 0);
-    let refused: Vec<&str> = generation.refusals.iter().map(|(target, _)| target.name).collect();
-    assert_eq!(refused, ["spirv", "msl"]);
-    for (_, refusal) in &generation.refusals {
-        assert!(refusal.to_string().contains("functions that a caller's own shader can call"), "{refusal}");
+    let rejected: Vec<&str> = generation.unsupported.iter().map(|(target, _)| target.name).collect();
+    assert_eq!(rejected, ["spirv", "msl"]);
+    for (_, missing) in &generation.unsupported {
+        assert!(missing.to_string().contains("functions that the caller's shader can call"), "{missing}");
     }
 }

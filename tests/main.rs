@@ -1,13 +1,14 @@
-//! What fragbuf promises, a module per kind of promise. External validators must be installed: nothing is skipped.
+//! Tests of fragbuf's promises, one module per kind. External validators must be installed: nothing is skipped.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    reason = "a test fails by panicking, and prints what it counted"
+    reason = "a test fails by panicking, and prints its counts"
 )]
 
+mod bindings;
 mod build_script;
 mod cases;
 mod catalogue;
@@ -23,11 +24,11 @@ mod names;
 mod no_op_rows;
 mod opaque;
 mod oracle;
-mod own;
 mod product;
 mod quads;
 mod render;
 mod snapshots;
 mod tidy;
+mod user_files;
 mod validators;
 mod vocabulary;

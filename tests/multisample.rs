@@ -1,4 +1,4 @@
-//! What several samples per pixel cost, and who can say them.
+//! Tests the memory of several samples per pixel, and the targets that support them.
 
 use fragbuf::{Registry, TARGETS};
 use fragbuf_codegen::plan;
@@ -6,7 +6,7 @@ use fragbuf_model::{Selection, Variant};
 
 use crate::cases::{checked, text};
 
-/// Every technique with an item, that the rules accept.
+/// Returns the techniques that the rules accept with an item.
 fn with(item: &str) -> impl Iterator<Item = (String, Variant)> {
     let registry = Registry::builtin();
     let keys: Vec<String> = registry.techniques().iter().map(|technique| technique.key.clone()).collect();
@@ -31,16 +31,16 @@ fn a_mask_costs_what_an_attribute_of_one_word_costs() {
     assert!(masked.contains(&("kplus_array".to_owned(), "3k+2".to_owned())), "{masked:?}");
 }
 
-/// OpenGL ES 3.1 has no input that says which samples are covered.
+/// OpenGL ES 3.1 has no input for the mask of covered samples.
 #[test]
 fn targets_without_a_mask_refuse_with_the_reason() {
     for (key, variant) in with("samples: coverage;") {
         for target in TARGETS {
-            let refused = variant.select(target.offers).err();
-            let by_samples = refused.as_ref().is_some_and(|refusal| refusal.axis == "samples");
+            let rejected = variant.select(target.provides).err();
+            let by_samples = rejected.as_ref().is_some_and(|missing| missing.axis == "samples");
             match target.name {
-                "glsl-es" => assert!(refused.is_some(), "{key}"),
-                name => assert!(!by_samples, "{key} on {name}: {refused:?}"),
+                "glsl-es" => assert!(rejected.is_some(), "{key}"),
+                name => assert!(!by_samples, "{key} on {name}: {rejected:?}"),
             }
         }
     }

@@ -1,27 +1,27 @@
-//! Names that a user may choose and a target may not: the mangling table against naga's own lists.
+//! Tests names that users may choose and targets reserve: the mangling table against naga's lists.
 
 use fragbuf::Registry;
-use fragbuf_model::{Attribute, Draft, Format, Origin, Spanned, mangled};
+use fragbuf_model::{Attribute, Draft, Format, SourceSpan, Spanned, mangled};
 
 use crate::cases::generated;
 use crate::validators::validate;
 
 fn attribute(name: &str, format: Format) -> Attribute {
-    let origin = Origin::new("names", 1, 1);
-    Attribute { name: Spanned::new(name.to_owned(), origin.clone()), format: Spanned::new(format, origin) }
+    let span = SourceSpan::new("names", 1, 1);
+    Attribute { name: Spanned::new(name.to_owned(), span.clone()), format: Spanned::new(format, span) }
 }
 
-/// A payload of these attributes, through every target and validator.
+/// Generates a payload of these attributes for every target and validates it.
 fn generates(names: &[&str]) {
-    let mut draft = Draft::from_technique("kplus_array", &Origin::new("names", 1, 1));
+    let mut draft = Draft::from_technique("kplus_array", &SourceSpan::new("names", 1, 1));
     draft.attributes = vec![attribute("color", Format::Rgba8), attribute("depth", Format::F32)];
     draft.attributes.extend(names.iter().map(|name| attribute(name, Format::U32)));
-    let variant = fragbuf::check(&draft, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    let variant = fragbuf::check(&draft, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     validate(generated(&variant).files.iter());
 }
 
 #[test]
-fn every_word_that_wgsl_reserves_is_mangled() {
+fn every_reserved_name_of_wgsl_is_mangled() {
     use naga::keywords::wgsl::{BUILTIN_IDENTIFIERS, RESERVED};
     assert!(RESERVED.len() > 150 && BUILTIN_IDENTIFIERS.len() > 150);
     for word in RESERVED.iter().chain(BUILTIN_IDENTIFIERS) {
@@ -29,9 +29,9 @@ fn every_word_that_wgsl_reserves_is_mangled() {
     }
 }
 
-/// Keywords of GLSL, HLSL and Metal are WGSL names like any other; each printer has to find its way around them.
+/// Keywords of GLSL, HLSL and Metal are valid WGSL names, which each printer must replace.
 #[test]
-fn words_of_every_target_can_be_attributes() {
+fn keywords_of_every_target_can_be_attributes() {
     let words = [
         "sample",
         "buffer",

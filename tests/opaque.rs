@@ -1,5 +1,4 @@
-//! `fragbuf render --opaque`: one scene behind and between the layers of another, against an oracle of quads that cover whole
-//! pixels, on both devices.
+//! Tests `fragbuf render --opaque` on both devices against an oracle of quads that cover whole pixels.
 
 use std::path::{Path, PathBuf};
 
@@ -17,13 +16,13 @@ fn covers(quad: &Quad, x: usize, y: usize) -> bool {
     (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y)
 }
 
-/// The nearest opaque quad of a pixel.
+/// Returns the nearest opaque quad of a pixel.
 fn nearest(opaque: &[Quad], x: usize, y: usize) -> Option<&Quad> {
     let here = opaque.iter().filter(|quad| covers(quad, x, y));
     here.min_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
-/// The layers of a pixel that nothing opaque hides, the nearest first.
+/// Returns the layers of a pixel that no opaque quad hides, nearest first.
 fn seen<'q>(quads: &'q [Quad], opaque: &[Quad], x: usize, y: usize) -> Vec<&'q Quad> {
     let limit = nearest(opaque, x, y).map_or(1.0, |quad| quad.depth);
     let mut seen: Vec<&Quad> = quads.iter().filter(|quad| covers(quad, x, y) && quad.depth <= limit).collect();
@@ -35,7 +34,7 @@ fn expected(quads: &[Quad], opaque: &[Quad], k: usize, (x, y): (usize, usize)) -
     let layers = seen(quads, opaque, x, y).into_iter().take(k);
     let layers: Vec<(f32, [f32; 4])> =
         layers.map(|quad| (quad.depth as f32, quad.color.map(|channel| channel as f32))).collect();
-    let front = over(&layers).map(f64::from);
+    let front = over(&layers);
     let color = |quad: &Quad| -> [f64; 3] { std::array::from_fn(|channel| quad.color[channel]) };
     let behind = nearest(opaque, x, y).map_or(BACKGROUND, color);
     std::array::from_fn(|channel| front[channel] + (1.0 - front[3]) * behind[channel])
@@ -51,12 +50,12 @@ fn arguments<'a>(key: &'a str, scene: &'a Path, opaque: &'a Path, out: &'a Path,
 }
 
 fn scenes(name: &str) -> (PathBuf, Vec<Quad>, Vec<Quad>) {
-    // Depths in 31sts and in 6ths: none is equal. What is opaque has alphas that count for nothing.
+    // Depths are multiples of 1/31 and 1/6, so none are equal. The alphas of opaque quads are ignored.
     (folder(name), quads(30, 6, Colors::Bytes), quads(5, 21, Colors::Bytes))
 }
 
 #[test]
-fn a_scene_is_seen_before_what_is_opaque_and_not_behind_it() {
+fn fragments_in_front_of_opaque_surfaces_are_visible_and_those_behind_are_not() {
     let (folder, transparent, opaque) = scenes("opaque");
     let (behind, between) = (folder.join("behind"), folder.join("between"));
     [&behind, &between].into_iter().for_each(|folder| std::fs::create_dir_all(folder).unwrap());
@@ -69,7 +68,7 @@ fn a_scene_is_seen_before_what_is_opaque_and_not_behind_it() {
             ("kplus_array", 4, &[][..]),
             ("ab_sb", usize::MAX, &[]),
             ("z_buffer", 1, &[]),
-            ("kplus_array", 4, &["--set", "opaque=early"]),
+            ("kplus_array", 4, &["--set", "opaque=early_depth"]),
         ] {
             let keep = format!("k={k}");
             let keep = if k > 1 && k < 100 { vec!["--set", &keep] } else { vec![] };
@@ -96,7 +95,7 @@ fn a_scene_is_seen_before_what_is_opaque_and_not_behind_it() {
 }
 
 #[test]
-fn depths_that_nobody_leaves_behind_are_asked_for() {
+fn a_missing_opaque_depth_buffer_is_reported() {
     let (folder, transparent, _) = scenes("opaque-asked");
     let (scene, out) = (write(&folder, &transparent), folder.join("o.png"));
     for device in DEVICES {
@@ -114,7 +113,7 @@ fn depths_that_nobody_leaves_behind_are_asked_for() {
 }
 
 #[test]
-fn pictures_behind_opaque_surfaces_are_compared() {
+fn images_with_opaque_surfaces_are_compared() {
     let (folder, transparent, opaque) = scenes("opaque-compared");
     let behind = folder.join("behind");
     std::fs::create_dir_all(&behind).unwrap();
@@ -131,9 +130,9 @@ fn pictures_behind_opaque_surfaces_are_compared() {
     assert!(compared(&["--set-second", "opaque=none"]) > 0);
 }
 
-/// A description that says `opaque: none` is drawn over all of it.
+/// A description with `opaque: none` is drawn over all opaque surfaces.
 #[test]
-fn who_says_otherwise_is_drawn_over_what_is_opaque() {
+fn without_the_axis_opaque_all_fragments_are_visible() {
     let (folder, transparent, opaque) = scenes("opaque-none");
     let behind = folder.join("behind");
     std::fs::create_dir_all(&behind).unwrap();
@@ -141,7 +140,7 @@ fn who_says_otherwise_is_drawn_over_what_is_opaque() {
     let all = [arguments("ab_ll", &scene, &surfaces, &out, "cpu"), vec!["--set", "opaque=none"]].concat();
     let output = fragbuf(&all);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("seen through them"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("fragments behind opaque surfaces are visible"), "{}", stderr(&output));
     for (index, pixel) in read(&out).2.iter().enumerate() {
         let (x, y) = (index % SIZE, index / SIZE);
         let front = expected(&transparent, &[], usize::MAX, (x, y));

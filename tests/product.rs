@@ -1,41 +1,47 @@
-//! Every combination of rows: what the rules accept goes through naga and every printer, what they refuse says why. Rows of an
-//! axis that state the same facts and conditions are interchangeable to the rules, so one combination of each kind is decided, and of
-//! some kinds another, drawn by chance. A covering set goes through glslang and spirv-val too. naga refusing what the rules accept is our defect by
-//! definition.
+//! Tests every combination of rows. An accepted combination passes naga and every emitter; a rejected one has a diagnostic with help.
+//! Rows of an axis with equal capabilities and conditions are equivalent under the rules, so one combination per equivalence class is
+//! checked, and for some classes a random one in addition. A covering set also passes glslang and spirv-val. If naga rejects what the
+//! rules accept, fragbuf has a defect.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fragbuf::vocabulary::{Capability, Fact, Row, Template};
+use fragbuf::vocabulary::{Capability, Feature, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
 use fragbuf_codegen::{Linking, Profile, link, plan, verify};
-use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Origin, Selection, Spanned};
+use fragbuf_model::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, Selection, SourceSpan, Spanned};
 
 use crate::cases::{CUSTOM, DEPTH_ONLY, RESERVED, Random, checked, generated, named, text};
 use crate::validators::validate;
 
-/// Payloads, constraints and closures that every combination of rows is tried with.
+/// Returns the payloads, constraints and closures that every combination is checked with.
 fn descriptions() -> Vec<Draft> {
     let parsed = |source: &str| fragbuf::parse(source, "case.fragbuf").draft.unwrap();
-    vec![Draft::from_technique("kb", &Origin::new("case", 1, 1)), parsed(CUSTOM), parsed(DEPTH_ONLY), parsed(RESERVED)]
+    vec![
+        Draft::from_technique("kb", &SourceSpan::new("case", 1, 1)),
+        parsed(CUSTOM),
+        parsed(DEPTH_ONLY),
+        parsed(RESERVED),
+    ]
 }
 
-/// What callers are told of a technique. No row requires it.
-const TOLD: [Fact; 2] = [Fact::CountsEvents, Fact::LeavesDepth];
+/// Capabilities that inform callers. No row requires them.
+const INFORMATIVE: [Capability; 2] = [Capability::CountsEvents, Capability::LeavesDepth];
 
-/// The rows of an axis, those together that state the same facts and conditions: the rules see nothing else of a row.
+/// Returns the rows of an axis in equivalence classes of equal capabilities and conditions: the rules depend on nothing else.
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
-    let facts = |row: &Row| {
+    let capabilities = |row: &Row| {
         let conditions = row.conditions.iter().map(|condition| condition.formula.clone()).collect::<Vec<_>>();
         let requires = (row.requires.clone(), row.needs.clone(), row.least.clone());
-        let offers: Vec<Fact> = row.offers.iter().copied().filter(|fact| !TOLD.contains(fact)).collect();
-        (offers, row.implies.clone(), requires, conditions, row.carries.len())
+        let provides: Vec<Capability> =
+            row.provides.iter().copied().filter(|capability| !INFORMATIVE.contains(capability)).collect();
+        (provides, row.implies.clone(), requires, conditions, row.extra_words.len())
     };
     let mut classes: Vec<Vec<&Row>> = Vec::new();
     for row in registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
-        match classes.iter_mut().find(|class| facts(class[0]) == facts(row)) {
+        match classes.iter_mut().find(|class| capabilities(class[0]) == capabilities(row)) {
             Some(class) => class.push(row),
             None => classes.push(vec![row]),
         }
@@ -45,27 +51,27 @@ fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
 
 /// A class per axis.
 struct Combination {
-    /// The first row of each.
+    /// The first row of each class.
     choices: Vec<(String, String)>,
-    /// For some, one of each drawn by chance: so that every two rows meet that may.
-    drawn: Option<Vec<(String, String)>>,
-    /// Every combination of the same classes: the rules decide on all of them alike.
-    alike: usize,
+    /// For some combinations, a random row of each class, so that every two compatible rows are combined.
+    random_choices: Option<Vec<(String, String)>>,
+    /// The number of combinations of the same classes, on which the rules decide equally.
+    equivalent: usize,
     outlook: Outlook,
 }
 
-/// What is known of a combination before the rules are asked.
+/// Whether a combination can be legal, before the rules are applied.
 #[derive(Clone, Copy, PartialEq)]
 enum Outlook {
     Open,
-    /// Some row requires what no row of a later axis offers: whatever is chosen there, it is refused.
-    Hopeless,
+    /// A row requires a capability that no row of a later axis provides.
+    Illegal,
 }
 
-/// One combination in so many is tried with rows drawn by chance too.
-const DRAWN_OF: usize = 12;
+/// One combination in this many is also checked with random rows.
+const RANDOM_ONE_IN: usize = 12;
 
-/// Choices of one class per axis: all, but for those that begin with what nothing later can make legal. Of them there is one.
+/// Returns the choices of one class per axis. A prefix that no later choice can make legal is completed once.
 fn combinations(registry: &Registry) -> Vec<Combination> {
     let axes = registry.axes().iter().filter(|axis| axis.chosen && axis.key != Registry::CLOSURE_AXIS);
     let axes: Vec<(&str, Vec<Vec<&Row>>)> = axes.map(|axis| (axis.key, classes(registry, axis.key))).collect();
@@ -96,33 +102,33 @@ fn complete<'a>(
     let named = |rows: Vec<&Row>| -> Vec<(String, String)> {
         axes.iter().zip(rows).map(|((axis, _), row)| ((*axis).to_owned(), row.key.clone())).collect()
     };
-    let is_drawn = outlook == Outlook::Open && random.below(DRAWN_OF) == 0;
+    let is_random = outlook == Outlook::Open && random.below(RANDOM_ONE_IN) == 0;
     let rows_of = |(_, classes): &Classes<'_>| classes.iter().map(Vec::len).sum::<usize>();
     found.push(Combination {
         choices: named(all.iter().map(|class| class[0]).collect()),
-        drawn: is_drawn.then(|| named(all.iter().map(|class| *random.pick(class)).collect())),
-        alike: begin.iter().map(|class| class.len()).chain(later.iter().map(rows_of)).product(),
+        random_choices: is_random.then(|| named(all.iter().map(|class| *random.pick(class)).collect())),
+        equivalent: begin.iter().map(|class| class.len()).chain(later.iter().map(rows_of)).product(),
         outlook,
     });
 }
 
-/// Whether the rows chosen so far may become legal, whatever the description gives.
+/// Tests whether the rows chosen so far can become legal.
 fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
     let rows = || begin.iter().map(|class| class[0]);
-    let may_be = |fact: Fact| {
+    let may_be = |capability: Capability| {
         let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
-        rows().chain(later()).any(|row| row.may_offer(fact))
+        rows().chain(later()).any(|row| row.may_provide(capability))
     };
-    let all = rows().all(|row| row.requires.iter().all(|fact| may_be(*fact)));
-    if all { Outlook::Open } else { Outlook::Hopeless }
+    let all = rows().all(|row| row.requires.iter().all(|capability| may_be(*capability)));
+    if all { Outlook::Open } else { Outlook::Illegal }
 }
 
 fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft {
-    let spanned = |text: &str| Spanned::new(text.to_owned(), Origin::new("case", 1, 1));
+    let spanned = |text: &str| Spanned::new(text.to_owned(), SourceSpan::new("case", 1, 1));
     let mut draft = draft.clone();
     draft.preset = None;
     let criterion = draft.keep.take().and_then(|keep| keep.criterion).filter(|_| keep != KeepCount::All);
-    draft.keep = Some(Keep { count: Spanned::new(keep, Origin::new("case", 1, 1)), criterion });
+    draft.keep = Some(Keep { count: Spanned::new(keep, SourceSpan::new("case", 1, 1)), criterion });
     draft.choices = choices
         .iter()
         .map(|(axis, value)| Choice {
@@ -134,27 +140,28 @@ fn chosen(draft: &Draft, choices: &[(String, String)], keep: KeepCount) -> Draft
 }
 
 #[test]
-fn every_combination_generates_or_is_refused_with_a_way_out() {
+fn every_combination_generates_or_is_rejected_with_help() {
     let registry = Registry::builtin();
-    assert!(registry.rows().iter().all(|row| row.requires.iter().all(|fact| !TOLD.contains(fact))));
+    assert!(registry.rows().iter().all(|row| row.requires.iter().all(|capability| !INFORMATIVE.contains(capability))));
     let combinations = combinations(&registry);
     let descriptions = descriptions();
     let decided = decided(&registry, &descriptions, &combinations);
-    let number = |decided: &[(usize, Option<Accepted<'_>>)]| decided.iter().map(|(alike, _)| alike).sum::<usize>();
-    let (accepted, refused): (Vec<_>, Vec<_>) = decided.into_iter().partition(|(_, variant)| variant.is_some());
-    let counts = (number(&accepted), number(&refused));
+    let number =
+        |decided: &[(usize, Option<Accepted<'_>>)]| decided.iter().map(|(equivalent, _)| equivalent).sum::<usize>();
+    let (accepted, rejected): (Vec<_>, Vec<_>) = decided.into_iter().partition(|(_, variant)| variant.is_some());
+    let counts = (number(&accepted), number(&rejected));
     let accepted: Vec<Accepted<'_>> = accepted.into_iter().filter_map(|(_, variant)| variant).collect();
-    assert!(accepted.len() > 1000 && counts.1 > counts.0, "{counts:?} combinations accepted and refused");
+    assert!(accepted.len() > 1000 && counts.1 > counts.0, "{counts:?} combinations accepted and rejected");
     let (seen, planned) = (Mutex::new(BTreeSet::new()), Mutex::new(BTreeSet::new()));
     let made = AtomicUsize::new(0);
-    // All of the papers' payload; of the others enough that every two rows meet.
+    // All combinations of the papers' payload, and a covering set of the others.
     let (papers, others): (Vec<_>, Vec<_>) = accepted.iter().partition(|one| one.payload == 0);
     let others = covering(&others);
     let queue = Mutex::new(papers.iter().chain(&others));
     let work = || {
         while let Some(one) = { queue.lock().unwrap().next() } {
-            let texts = texts(one, &registry, &planned);
-            if texts.into_iter().fold(false, |new, text| seen.lock().unwrap().insert(text) | new) {
+            let hashes = pass_hashes(one, &registry, &planned);
+            if hashes.into_iter().fold(false, |new, hash| seen.lock().unwrap().insert(hash) | new) {
                 made.fetch_add(generated(&one.variant).files.len(), Ordering::Relaxed);
             }
         }
@@ -168,19 +175,20 @@ fn every_combination_generates_or_is_refused_with_a_way_out() {
     let external = validate(covering.iter());
     assert!(external > 100);
     println!(
-        "product: {} combinations, {} accepted, {} refused, in {} and {} kinds; {} distinct passes in {} files through \
+        "product: {} combinations, {} accepted, {} rejected, in {} and {} kinds; {} distinct passes in {} files through \
          naga and the printers; {external} of a covering set through glslang and spirv-val",
         counts.0 + counts.1,
         counts.0,
         counts.1,
         accepted.len(),
-        refused.len(),
+        rejected.len(),
         seen.into_inner().unwrap().len(),
         made.into_inner(),
     );
 }
 
-/// What the rules say of every combination with every description: how many are alike, and the variant if it is accepted.
+/// Applies the rules to every combination with every description. Returns the number of equivalent combinations, and the variant if it
+/// is accepted.
 fn decided<'a>(
     registry: &Registry,
     descriptions: &[Draft],
@@ -188,24 +196,28 @@ fn decided<'a>(
 ) -> Vec<(usize, Option<Accepted<'a>>)> {
     let decide = |combination: &'a Combination| {
         let mut decided = Vec::new();
-        let drawn = combination.drawn.iter().map(|choices| (0, choices));
-        let tried: Vec<_> = std::iter::once((combination.alike, &combination.choices)).chain(drawn).collect();
+        let random = combination.random_choices.iter().map(|choices| (0, choices));
+        let tried: Vec<_> = std::iter::once((combination.equivalent, &combination.choices)).chain(random).collect();
         let keeps = [KeepCount::AtMost(8), KeepCount::All];
         for (payload, description) in descriptions.iter().enumerate() {
-            for ((alike, choices), keep) in tried.iter().flat_map(|tried| keeps.map(|keep| (*tried, keep))) {
+            for ((equivalent, choices), keep) in tried.iter().flat_map(|tried| keeps.map(|keep| (*tried, keep))) {
                 let with = |keep: KeepCount| check(&chosen(description, choices, keep), registry);
-                // What keeps one alone says so, and is tried with one.
+                // A row that requires `keep 1` is checked with it.
                 let checked = match with(keep) {
-                    Err(faults) if faults.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
+                    Err(diagnostics) if diagnostics.to_string().contains("`keep 1`") => with(KeepCount::AtMost(1)),
                     checked => checked,
                 };
-                if let Err(faults) = &checked {
-                    assert!(faults.iter().all(|fault| !fault.hint.is_empty() && fault.code.name != "internal"));
+                if let Err(diagnostics) = &checked {
+                    assert!(
+                        diagnostics
+                            .iter()
+                            .all(|diagnostic| !diagnostic.help.is_empty() && diagnostic.code.name != "internal")
+                    );
                 }
                 let variant = checked.ok();
                 assert!(variant.is_none() || combination.outlook == Outlook::Open, "{choices:?} is legal after all");
                 let accepted = variant.map(|variant| Accepted { payload, choices, variant });
-                decided.push((alike, accepted));
+                decided.push((equivalent, accepted));
             }
         }
         decided
@@ -219,21 +231,20 @@ fn decided<'a>(
     })
 }
 
-/// What tells each pass of a variant from every other, on each profile: its text but for comments, and what printers are told
-/// of its uses. A pass that was printed before is printed alike; a plan of passes that were all planned before, with the
-/// same rows in their roles and the same memory, is not linked again.
-fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<u64>>) -> Vec<u64> {
+/// Returns a hash per pass and profile: its source without comments, and the uses that emitters depend on. Passes of equal hash are emitted
+/// equally. A plan whose passes were all planned before, with the same rows and memory, is not linked again.
+fn pass_hashes(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<u64>>) -> Vec<u64> {
     let variant = &accepted.variant;
     let mut known: Vec<(Profile, Selection)> = Vec::new();
     let mut texts = Vec::new();
     for target in TARGETS {
-        let offers = [target.offers, &[Capability::OwnEntryPoints]].concat();
-        let Ok(selection) = variant.select(&offers) else { continue };
+        let provides = [target.provides, &[Feature::OwnEntryPoints]].concat();
+        let Ok(selection) = variant.select(&provides) else { continue };
         let one = (target.profile, selection);
         if known.contains(&one) {
             continue;
         }
-        let plan = plan(variant, &one.1, registry).unwrap_or_else(|faults| panic!("{faults}"));
+        let plan = plan(variant, &one.1, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let order = one.1.rows.iter().find_map(|selected| selected.row.order);
         let around = format!("{:?}", (&plan.resources, &plan.fields, &plan.constants, order, variant.keep));
         let mut is_new = false;
@@ -247,29 +258,29 @@ fn texts(accepted: &Accepted<'_>, registry: &Registry, planned: &Mutex<BTreeSet<
             continue;
         }
         let linking = Linking { profile: one.0, form: Form::Program, prefix: String::new(), group: 0 };
-        let program = link(&plan, &linking, registry).unwrap_or_else(|faults| panic!("{faults}"));
+        let program = link(&plan, &linking, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         texts.extend(program.passes.iter().zip(&plan.passes).map(|(linked, pass)| {
             let mut hasher = DefaultHasher::new();
             let code = linked.text.lines().filter(|line| !line.trim_start().starts_with("//"));
             code.for_each(|line| line.hash(&mut hasher));
-            (target.profile, &pass.anchor, &plan.requires, format!("{:?}", pass.uses)).hash(&mut hasher);
+            (target.profile, &pass.name, &plan.requires, format!("{:?}", pass.uses)).hash(&mut hasher);
             hasher.finish()
         }));
         known.push(one);
     }
-    assert!(!known.is_empty(), "some target can express whatever is accepted");
+    assert!(!known.is_empty(), "no target supports an accepted variant");
     texts
 }
 
-/// A combination that the rules accept.
+/// An accepted combination.
 struct Accepted<'a> {
     payload: usize,
     choices: &'a [(String, String)],
     variant: Variant,
 }
 
-/// Few of them, in which every two values of two axes stand together with every payload that they are accepted with. They
-/// are gone through in a shuffled order: neighbours have almost everything in common.
+/// Returns a covering set: every pair of values of two axes with every payload that they are accepted with. The order is shuffled, because
+/// neighbouring combinations are almost equal.
 fn covering<'a, 'b>(accepted: &[&'b Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
     let mut order = accepted.to_vec();
     let mut random = Random(11);
@@ -293,7 +304,7 @@ fn covering<'a, 'b>(accepted: &[&'b Accepted<'a>]) -> Vec<&'b Accepted<'a>> {
 fn every_named_case_passes_every_validator() {
     let mut files = Vec::new();
     for (name, description, set) in named() {
-        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        let variant = checked(&description, &set).unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics}"));
         files.extend(generated(&variant).files);
     }
     println!("cases: {} files through glslang and spirv-val", validate(files.iter()));
@@ -305,15 +316,15 @@ fn every_capacity_generates() {
     let ks: Vec<u32> = (0..=10).map(|power| 1 << power).chain((0..5).map(|_| 1 + random.below(1024) as u32)).collect();
     for k in ks {
         let source = format!("buffer B from kplus_array {{ keep {k}; }}");
-        let variant = checked(&text(&source), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+        let variant = checked(&text(&source), &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let capacity = Some(u64::from(generated(&variant).plans[0].plan.capacity()));
         assert!(capacity.is_some_and(|capacity| capacity >= u64::from(k) && capacity.is_power_of_two()));
     }
 }
 
 fn attribute(name: &str, format: Format) -> Attribute {
-    let origin = Origin::new("case", 1, 1);
-    Attribute { name: Spanned::new(name.to_owned(), origin.clone()), format: Spanned::new(format, origin) }
+    let span = SourceSpan::new("case", 1, 1);
+    Attribute { name: Spanned::new(name.to_owned(), span.clone()), format: Spanned::new(format, span) }
 }
 
 /// Every construct and method of the closure language, as `dsl/syntax` lowers it, through naga and the printers.
@@ -336,7 +347,7 @@ fn every_construct_of_the_language_generates() {
             }
             let all = draft.keep.as_ref().is_some_and(|keep| keep.count.value == KeepCount::All);
             let preset = if all { "ab_ll" } else { "kplus_array" };
-            draft.preset = Some(Spanned::new(preset.to_owned(), draft.name.origin.clone()));
+            draft.preset = Some(Spanned::new(preset.to_owned(), draft.name.span.clone()));
             let has = |name: &str| draft.attributes.iter().any(|attribute| attribute.name.value == name);
             let (no_color, no_depth) = (!has("color"), !has("depth"));
             if !draft.attributes.is_empty() && draft.resolve.is_none() && no_color {
@@ -347,7 +358,7 @@ fn every_construct_of_the_language_generates() {
             }
             match check(&draft, &Registry::builtin()) {
                 Ok(variant) => files.extend(generated(&variant).files),
-                Err(faults) => panic!("{}: {faults}", path.display()),
+                Err(diagnostics) => panic!("{}: {diagnostics}", path.display()),
             }
             count += 1;
         }
@@ -356,7 +367,7 @@ fn every_construct_of_the_language_generates() {
     println!("language: {count} descriptions, {} files through glslang and spirv-val", validate(files.iter()));
 }
 
-/// Whoever checks interleavings must refuse it; everything else takes it.
+/// A checker of interleavings must reject it; all other validators accept it.
 #[test]
 fn an_algorithm_as_printed_passes_every_validator() {
     let text = include_str!("templates/revised_array_as_printed.wgsl");
@@ -364,15 +375,16 @@ fn an_algorithm_as_printed_passes_every_validator() {
     let row = builtin.row("storage", "revised_array").unwrap().clone();
     let registry = builtin.with(Row { template: Some(Template::new("revised_array_as_printed.wgsl", text)), ..row });
     assert_eq!(verify(&registry), Vec::<String>::new());
-    let variant = check(&Draft::from_technique("kplus_array_revised", &Origin::new("case", 1, 1)), &registry).unwrap();
+    let variant =
+        check(&Draft::from_technique("kplus_array_revised", &SourceSpan::new("case", 1, 1)), &registry).unwrap();
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(&variant, &request, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let generation = generate(&variant, &request, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     assert!(validate(generation.files.iter()) > 0);
 }
 
 #[test]
 fn templates_keep_their_contracts() {
-    let faults = verify(&Registry::builtin());
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    let diagnostics = verify(&Registry::builtin());
+    assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n"));
 }

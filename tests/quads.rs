@@ -1,10 +1,10 @@
-//! Scenes that need no rasteriser to be predicted: quads in clip space that cover whole pixels, each of a depth of its own.
+//! Scenes whose images can be computed without a rasteriser: quads in clip space that cover whole pixels, all of different depths.
 
 use std::path::{Path, PathBuf};
 
 pub const SIZE: usize = 32;
 
-/// Pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, `y` downwards; linear colour and straight alpha. No two have one depth.
+/// A quad over the pixels `x0 ≤ x < x1`, `y0 ≤ y < y1`, `y` downwards, with linear colour and straight alpha.
 #[derive(Clone, Copy, Debug)]
 pub struct Quad {
     pub x0: usize,
@@ -15,7 +15,7 @@ pub struct Quad {
     pub color: [f64; 4],
 }
 
-/// Numbers from a seed: xorshift64*.
+/// A seeded random number generator (xorshift64*).
 struct Numbers(u64);
 
 impl Numbers {
@@ -27,12 +27,12 @@ impl Numbers {
     }
 }
 
-/// What the channels of a scene's colours are.
+/// The channel values of a scene.
 #[derive(Clone, Copy, Debug)]
 pub enum Colors {
-    /// Whole 255ths, which the papers' payload holds.
+    /// Multiples of 1/255, which the papers' payload stores exactly.
     Bytes,
-    /// Anything, and thin: every layer would round, and all the same way.
+    /// Arbitrary values with low alpha, where every layer would round in the same direction.
     Thin,
 }
 
@@ -45,7 +45,7 @@ impl Colors {
     }
 }
 
-/// `count` quads of different depths.
+/// Returns `count` quads of different depths.
 pub fn quads(count: usize, seed: u64, colors: Colors) -> Vec<Quad> {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9) | 1);
     let mut depths: Vec<usize> = (1..=count).collect();
@@ -61,7 +61,7 @@ pub fn quads(count: usize, seed: u64, colors: Colors) -> Vec<Quad> {
     depths.into_iter().map(quad).collect()
 }
 
-/// Writes the quads as a model with a material each.
+/// Writes the quads to a model with one material each.
 pub fn write(folder: &Path, quads: &[Quad]) -> PathBuf {
     let (mut model, mut library) = ("mtllib T.mtl\n".to_owned(), String::new());
     for (index, quad) in quads.iter().enumerate() {
@@ -74,7 +74,7 @@ pub fn write(folder: &Path, quads: &[Quad]) -> PathBuf {
         for (x, y) in [(quad.x0, quad.y0), (quad.x0, quad.y1), (quad.x1, quad.y1), (quad.x1, quad.y0)] {
             model.push_str(&clip(x, y));
         }
-        // A quad in one, or in two triangles that refer backwards.
+        // One polygon, or two triangles with relative indices.
         let first = 4 * index + 1;
         let faces = if index % 2 == 0 {
             format!("f {first} {} {} {}\n", first + 1, first + 2, first + 3)

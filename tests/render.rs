@@ -1,10 +1,10 @@
-//! Pictures by the built command, against an oracle that needs no rasteriser: quads that cover whole pixels, in clip space.
+//! Compares images of the built command with an oracle that needs no rasteriser: quads that cover whole pixels, in clip space.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use fragbuf::Registry;
-use fragbuf::vocabulary::{Fact, KeepDefault, Technique};
+use fragbuf::vocabulary::{Capability, KeepDefault, Technique};
 use fragbuf_templates::COUNTERS;
 use serde_json::Value;
 
@@ -18,7 +18,7 @@ pub fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// The nearest `keep` fragments over an opaque background, by the oracle whose laws `oracle.rs` tests.
+/// Returns the nearest `keep` fragments over an opaque background, by the reference that `oracle` tests.
 fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [f64; 3]) -> [f64; 3] {
     let covers = |quad: &&Quad| (quad.x0..quad.x1).contains(&x) && (quad.y0..quad.y1).contains(&y);
     let mut fragments: Vec<&Quad> = quads.iter().filter(covers).collect();
@@ -26,7 +26,7 @@ fn oracle(quads: &[Quad], keep: Option<usize>, x: usize, y: usize, background: [
     let nearest = fragments.iter().take(keep.unwrap_or(usize::MAX));
     let layers: Vec<(f32, [f32; 4])> =
         nearest.map(|quad| (quad.depth as f32, quad.color.map(|channel| channel as f32))).collect();
-    let front = over(&layers).map(f64::from);
+    let front = over(&layers);
     std::array::from_fn(|channel| front[channel] + (1.0 - front[3]) * background[channel])
 }
 
@@ -42,7 +42,7 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Red, green, blue and alpha of every pixel.
+/// Reads a PNG: width, height, and red, green, blue and alpha of every pixel.
 pub fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();
@@ -52,22 +52,23 @@ pub fn read(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     (info.width, info.height, bytes.chunks_exact(4).map(|pixel| pixel.try_into().unwrap()).collect())
 }
 
-/// The device without a driver, and a driver without a GPU.
+/// The CPU device, and a software driver.
 const DEVICES: [&str; 2] = ["cpu", "llvmpipe"];
 
-/// The command of the README with these arguments, and its picture, which is the same within 1/255 on both devices.
+/// Renders an image with `fragbuf render`. Both devices must agree within 1/255.
 fn render(folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
-    let [own, driver] = DEVICES.map(|device| render_on(device, folder, arguments));
-    for (own, driver) in own.iter().zip(&driver) {
-        assert!(own.iter().zip(driver).all(|(a, b)| a.abs_diff(*b) <= 1), "{arguments:?}: {own:?}, and not {driver:?}");
+    let [cpu, driver] = DEVICES.map(|device| render_on(device, folder, arguments));
+    for (cpu, driver) in cpu.iter().zip(&driver) {
+        assert!(cpu.iter().zip(driver).all(|(a, b)| a.abs_diff(*b) <= 1), "{arguments:?}: {cpu:?}, not {driver:?}");
     }
-    own
+    cpu
 }
 
 fn render_on(device: &str, folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
     let out = folder.join("o.png");
     let size = format!("{SIZE}x{SIZE}");
-    let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", &size, "--out", out.to_str().unwrap()];
+    let common =
+        ["--camera", "clip", "--shading", "unlit", "--linear", "--size", &size, "--out", out.to_str().unwrap()];
     let output = fragbuf(&[&["render", "--device", device], arguments, &common].concat());
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
@@ -76,7 +77,7 @@ fn render_on(device: &str, folder: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
     pixels
 }
 
-/// Within 1/255 of the oracle, everywhere.
+/// Checks that every pixel is within 1/255 of the oracle.
 fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, background: [f64; 3]) {
     let folder = folder(&format!("{key}-{count}-{seed}-{colors:?}"));
     let quads = quads(count, seed, colors);
@@ -91,32 +92,33 @@ fn check(key: &str, k: Option<usize>, count: usize, seed: u64, colors: Colors, b
         let expected = oracle(&quads, k, x, y, background);
         assert_eq!(pixel[3], 255);
         for (seen, expected) in pixel.iter().zip(expected) {
-            let apart = (f64::from(*seen) - 255.0 * expected).abs();
+            let error = (f64::from(*seen) - 255.0 * expected).abs();
             assert!(
-                apart <= 1.0,
-                "{key}, {count} quads, seed {seed}: pixel {x}, {y} is {seen}, and not {}",
+                error <= 1.0,
+                "{key}, {count} quads, seed {seed}: pixel {x}, {y} is {seen}, not {}",
                 255.0 * expected
             );
         }
     }
 }
 
-/// The techniques that keep all, or the k best of all: what keeps neither is tested against an oracle of its own, in
-/// `backends/run/runtime/tests/losses.rs`. On a software driver, which runs the fragments of a pixel one after the
-/// other, those are exact too whose races lose fragments elsewhere. What keeps one alone is tried with one, below.
+/// Returns the techniques that keep all fragments, or the k best.
+///
+/// `backends/run/runtime/tests/losses.rs` tests the others against their own oracle, and a test below those that keep one
+/// fragment. A software driver runs the fragments of a pixel sequentially, so racy techniques are exact on it.
 fn techniques(keep: KeepDefault) -> Vec<String> {
     let registry = Registry::builtin();
-    let keeps = |technique: &Technique, fact: Fact| {
+    let keeps = |technique: &Technique, capability: Capability| {
         let storage = technique.choices.iter().find(|(axis, _)| *axis == "storage").unwrap().1;
-        registry.row("storage", storage).unwrap().offers.contains(&fact)
+        registry.row("storage", storage).unwrap().provides.contains(&capability)
     };
-    let alike = registry
+    let selected = registry
         .techniques()
         .iter()
         .filter(|technique| (technique.keep == KeepDefault::All) == (keep == KeepDefault::All))
-        .filter(|technique| keeps(technique, Fact::KeepsAll) || keeps(technique, Fact::KeepsBest))
+        .filter(|technique| keeps(technique, Capability::KeepsAll) || keeps(technique, Capability::KeepsBest))
         .filter(|technique| technique.keep != KeepDefault::Best(1));
-    alike.map(|technique| technique.key.clone()).collect()
+    selected.map(|technique| technique.key.clone()).collect()
 }
 
 #[test]
@@ -129,7 +131,7 @@ fn the_k_best_are_within_a_255th_of_the_oracle() {
     check("kplus_array", Some(8), 30, 99, Colors::Bytes, [0.2, 0.9, 0.5]);
 }
 
-/// The depth test.
+/// The depth test selects the nearest fragment.
 #[test]
 fn the_nearest_is_within_a_255th_of_the_oracle() {
     for (seed, count) in (1..).zip([1, 12, 60]) {
@@ -147,40 +149,40 @@ fn all_fragments_are_within_a_255th_of_the_oracle() {
     }
 }
 
-/// A storage of the user's own, with as much room as any pixel needs: the picture is everybody's.
+/// A user storage with sufficient capacity renders the exact image.
 #[test]
-fn a_storage_of_the_users_own_is_within_a_255th_of_the_oracle() {
+fn a_user_storage_is_within_a_255th_of_the_oracle() {
     for (seed, (k, count)) in (1..).zip([(8, 5), (40, 40), (60, 60)]) {
-        check("examples/own_storage/first_k.fragbuf", Some(k), count, seed, Colors::Bytes, [0.0, 0.3, 0.0]);
+        check("examples/user_storage/first_k.fragbuf", Some(k), count, seed, Colors::Bytes, [0.0, 0.3, 0.0]);
     }
 }
 
-/// Beyond its room it keeps what came first: a software driver runs the fragments of a pixel in the order of drawing.
+/// Beyond its capacity the storage keeps the first fragments: the CPU device runs the fragments of a pixel in draw order.
 #[test]
-fn a_storage_of_the_users_own_loses_what_its_file_says() {
-    let folder = folder("own-first");
+fn a_user_storage_loses_the_fragments_beyond_its_capacity() {
+    let folder = folder("user-storage");
     let mut quads = quads(5, 11, Colors::Bytes);
     for quad in &mut quads {
         (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE);
     }
     let model = write(&folder, &quads);
     let out = folder.join("o.png");
-    let first_k = "examples/own_storage/first_k.fragbuf";
-    let common = ["--camera", "clip", "--shading", "flat", "--linear", "--size", "32x32", "--device", "cpu", "--json"];
-    let what = ["render", first_k, "--set", "k=3", "--background", "0,0,0,1", "--scene", model.to_str().unwrap()];
-    let output = fragbuf(&[&what, &common[..], &["--out", out.to_str().unwrap()]].concat());
+    let first_k = "examples/user_storage/first_k.fragbuf";
+    let common = ["--camera", "clip", "--shading", "unlit", "--linear", "--size", "32x32", "--device", "cpu", "--json"];
+    let arguments = ["render", first_k, "--set", "k=3", "--background", "0,0,0,1", "--scene", model.to_str().unwrap()];
+    let output = fragbuf(&[&arguments, &common[..], &["--out", out.to_str().unwrap()]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(figures["lost"]["displaced"], 2 * SIZE * SIZE, "{figures}");
+    let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(statistics["lost"]["by_counter"]["displaced"], 2 * SIZE * SIZE, "{statistics}");
     let expected = oracle(&quads[..3], None, 0, 0, [0.0; 3]);
     for (seen, expected) in read(&out).2[0].iter().zip(expected) {
-        assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{seen}, and not {}", 255.0 * expected);
+        assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{seen}, not {}", 255.0 * expected);
     }
 }
 
-/// But for those whose slots have no room for more than the papers' payload: they are drawn with that.
+/// Techniques whose slots hold no more than the papers' payload are the exception: they use that payload.
 #[test]
-fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
+fn colors_that_are_not_255ths_are_not_rounded_layer_by_layer() {
     let registry = Registry::builtin();
     let narrow = |key: &String| {
         let storage = registry.technique(key).unwrap().choices.iter().find(|(axis, _)| *axis == "storage").unwrap().1;
@@ -203,7 +205,7 @@ fn colors_that_are_no_255ths_are_not_rounded_layer_by_layer() {
 }
 
 #[test]
-fn the_payload_is_the_papers_where_it_rounds_nothing_or_is_asked_for() {
+fn the_payload_is_that_of_the_papers_if_it_is_exact_or_requested() {
     let folder = folder("payload-choice");
     let format = |colors: Colors, more: &[&str]| {
         let model = write(&folder, &quads(3, 1, colors));
@@ -211,18 +213,18 @@ fn the_payload_is_the_papers_where_it_rounds_nothing_or_is_asked_for() {
         let common = ["--scene", model, "--size", "8x8", "--camera", "clip", "--device", "cpu", "--json", "--out"];
         let output = fragbuf(&[&["render", "kplus_array"], &common[..], &[out.to_str().unwrap()], more].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-        figures["fragment"]["color"].as_str().unwrap().to_owned()
+        let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+        statistics["fragment"]["color"].as_str().unwrap().to_owned()
     };
-    assert_eq!(format(Colors::Bytes, &["--shading", "flat"]), "rgba8");
-    assert_eq!(format(Colors::Thin, &["--shading", "flat"]), "rgba16");
-    assert_eq!(format(Colors::Thin, &["--shading", "flat", "--set", "fragment.color=rgba8"]), "rgba8");
+    assert_eq!(format(Colors::Bytes, &["--shading", "unlit"]), "rgba8");
+    assert_eq!(format(Colors::Thin, &["--shading", "unlit"]), "rgba16");
+    assert_eq!(format(Colors::Thin, &["--shading", "unlit", "--set", "fragment.color=rgba8"]), "rgba8");
     assert_eq!(format(Colors::Thin, &["--shading", "lit"]), "rgba8");
 }
 
 #[test]
-fn more_layers_than_there_was_room_for_are_not_lost() {
-    // More than eight per pixel, for which room is made, and more than 64, which a resolve pass holds.
+fn a_pool_overflow_loses_no_layers() {
+    // More than eight per pixel, the initial pool size, and more than 64, the layers that a resolve pass holds.
     for key in ["ab_ll", "ab_sb"] {
         let folder = folder(&format!("deep-{key}"));
         let mut quads = quads(150, 5, Colors::Bytes);
@@ -234,16 +236,16 @@ fn more_layers_than_there_was_room_for_are_not_lost() {
         let pixels = render(&folder, &[key, "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"]);
         let expected = oracle(&quads, None, 0, 0, [0.0; 3]);
         for (seen, expected) in pixels[0].iter().zip(expected) {
-            assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{key}: {:?}, and not {expected}", pixels[0]);
+            assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{key}: {:?}, not {expected}", pixels[0]);
         }
     }
 }
 
 #[test]
-fn a_picture_in_slices_is_the_picture() {
-    // 256² pixels of 1024 entries are 256 MiB: twice what a software driver binds.
+fn slices_do_not_change_the_image() {
+    // 256² pixels of 1024 entries need 256 MiB: twice the binding limit of a software driver.
     let folder = folder("slices");
-    let picture = |k: &str| {
+    let image = |k: &str| {
         let out = folder.join(format!("{k}.png"));
         let view = [
             "--scene",
@@ -259,14 +261,14 @@ fn a_picture_in_slices_is_the_picture() {
         let output =
             fragbuf(&[&["render", "kplus_array", "--set", k, "--out", out.to_str().unwrap()], &view[..]].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-        (read(&out).2, figures["fragments"].clone())
+        let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (read(&out).2, statistics["fragments"].clone())
     };
-    assert!(picture("k=64") == picture("k=1024"));
+    assert!(image("k=64") == image("k=1024"));
 }
 
 #[test]
-fn what_is_lost_all_the_same_is_said() {
+fn remaining_losses_are_reported() {
     let folder = folder("lost");
     let mut quads = quads(12, 3, Colors::Bytes);
     quads.iter_mut().for_each(|quad| (quad.x0, quad.y0, quad.x1, quad.y1) = (0, 0, SIZE, SIZE));
@@ -291,7 +293,7 @@ fn what_is_lost_all_the_same_is_said() {
 }
 
 #[test]
-fn figures_are_json_on_stdout_and_add_up() {
+fn statistics_are_json_on_stdout_and_add_up() {
     let folder = folder("json");
     let quads = quads(40, 8, Colors::Bytes);
     let (model, out) = (write(&folder, &quads), folder.join("o.png"));
@@ -313,34 +315,36 @@ fn figures_are_json_on_stdout_and_add_up() {
         "--json",
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let fragments =
-        ["generated", "stored", "culled", "dropped"].map(|name| figures["fragments"][name].as_u64().unwrap());
-    let [generated, stored, culled, dropped] = fragments;
+    let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let fragments = ["generated", "stored", "culled"].map(|name| statistics["fragments"][name].as_u64().unwrap());
+    let [generated, stored, culled] = fragments;
+    let lost = &statistics["lost"];
+    let losses = lost["by_counter"].as_object().unwrap().values();
+    assert_eq!(lost["total"], losses.map(|count| count.as_u64().unwrap()).sum::<u64>(), "{statistics}");
     assert_eq!(generated, covered as u64);
-    assert_eq!(generated, stored + culled + dropped);
+    assert_eq!(generated, stored + culled + lost["total"].as_u64().unwrap());
     let layers =
         |x: usize, y: usize| quads.iter().filter(|q| (q.x0..q.x1).contains(&x) && (q.y0..q.y1).contains(&y)).count();
     let kept: usize = (0..SIZE * SIZE).map(|pixel| layers(pixel % SIZE, pixel / SIZE).min(2)).sum();
     assert_eq!(stored, kept as u64);
-    assert_eq!(figures["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
+    assert_eq!(statistics["hit_ratio"].as_f64().unwrap(), kept as f64 / covered as f64);
     // 2k + 2 words per pixel, and the counters.
-    assert_eq!(figures["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + COUNTERS.len() as u64));
-    assert!(figures["device"].is_string() && figures["ms"].is_object(), "{figures}");
+    assert_eq!(statistics["bytes"].as_u64().unwrap(), 4 * (32 * 32 * 6 + COUNTERS.len() as u64));
+    assert!(statistics["device"].is_string() && statistics["ms"].is_object(), "{statistics}");
 }
 
 #[test]
 fn generated_scenes_are_the_same_every_time_and_differ_by_seed() {
     let folder = folder("builtin");
-    let picture = |scene: &str| render(&folder, &["kplus_array", "--scene", scene]);
-    let first = picture("builtin:slabs,n=16");
-    assert_eq!(first, picture("builtin:slabs"));
-    assert_ne!(first, picture("builtin:slabs,seed=2"));
+    let image = |scene: &str| render(&folder, &["kplus_array", "--scene", scene]);
+    let first = image("builtin:slabs,n=16");
+    assert_eq!(first, image("builtin:slabs"));
+    assert_ne!(first, image("builtin:slabs,seed=2"));
     assert!(first.iter().any(|pixel| *pixel != first[0]));
 }
 
 #[test]
-fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
+fn attribute_names_select_scene_data_and_arguments_set_uniforms() {
     let folder = folder("payload");
     let text = "buffer Glass from kplus_array {
         fragment { color: rgba8, depth: f32, normal: octahedral, id: u32 }
@@ -380,7 +384,7 @@ fn a_description_is_fed_by_name_and_its_uniforms_from_outside() {
     ]);
     assert_eq!(output.status.code(), Some(0));
     assert!(stderr(&output).contains("warning") && stderr(&output).contains("uniforms"), "{}", stderr(&output));
-    assert!(read(&out).2.iter().all(|pixel| *pixel == [255; 4]), "only the background is seen");
+    assert!(read(&out).2.iter().all(|pixel| *pixel == [255; 4]), "only the background is visible");
 }
 
 #[test]
@@ -395,9 +399,9 @@ fn failures_have_their_exit_codes_and_write_nothing() {
     let broken = path("broken.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
     let lacking = path("lacking.fragbuf", "buffer B from kb { fragment { color: rgba8, depth: f32, heat: f32 } }");
     let cases: [(&[&str], i32, &str); 9] = [
-        (&["kb", "--scene", &broken], 1, "broken.obj:4: no position 4: there are 3 so far"),
+        (&["kb", "--scene", &broken], 1, "broken.obj:4: no position 4: 3 are defined so far"),
         (&[&lacking, "--scene", "builtin:cubes"], 1, "`heat: f32`"),
-        (&["no_such", "--scene", "builtin:cubes"], 1, "there is no technique"),
+        (&["no_such", "--scene", "builtin:cubes"], 1, "unknown technique"),
         (&["kb", "--scene", "nowhere.obj"], 3, "nowhere.obj"),
         (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, marbles, hairball, needles"),
         (&["kb", "--scene", "builtin:slabs,m=3"], 2, "n (16), seed (1)"),
@@ -417,7 +421,7 @@ fn failures_have_their_exit_codes_and_write_nothing() {
 }
 
 #[test]
-fn comparing_says_how_far_two_techniques_are_apart() {
+fn compare_measures_the_difference_between_two_techniques() {
     let folder = folder("compare");
     let out = folder.join("heat.png");
     let compare = |second: &str| {
@@ -440,8 +444,11 @@ fn comparing_says_how_far_two_techniques_are_apart() {
     let same = compare("ab_ll");
     assert!(same["psnr"].is_null() && same["max_error"] == 0.0, "{same}");
     assert_eq!(same["hit_ratio"], serde_json::json!([1.0, 1.0]));
-    let apart = compare("kb");
-    assert!(apart["hit_ratio"][1].as_f64().unwrap() <= 1.0 && apart["max_error"].as_f64().unwrap() < 1.0, "{apart}");
+    let different = compare("kb");
+    assert!(
+        different["hit_ratio"][1].as_f64().unwrap() <= 1.0 && different["max_error"].as_f64().unwrap() < 1.0,
+        "{different}"
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Plans and texts as they are, for one case per technique and the tricky ones. A diff here is what a reviewer reads.
+//! Snapshots of plans and sources, for one case per technique and for difficult ones.
 
 use fragbuf::{Form, Registry, Request, TARGETS, generate, target};
 
@@ -7,7 +7,7 @@ use crate::cases::{checked, generated, named};
 #[test]
 fn plans_and_wgsl() {
     for (name, description, set) in named() {
-        let variant = checked(&description, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        let variant = checked(&description, &set).unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics}"));
         let generation = generated(&variant);
         for planned in &generation.plans {
             let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
@@ -41,7 +41,7 @@ fn glsl() {
     }
 }
 
-/// SPIR-V by what an engine depends on: ids would change with every naga.
+/// Snapshots what an engine depends on in SPIR-V. The ids change with every version of naga.
 #[test]
 fn spirv_summaries() {
     let cases: [(&str, &[&str]); 2] =
@@ -107,7 +107,7 @@ fn module_form_with_a_prefix() {
 /// What a user's own test says, of a storage of the user's own.
 #[test]
 fn a_line_of_a_users_test() {
-    fragbuf::assert_variant_snapshot!("examples/own_storage/first_k.fragbuf", targets = ["wgsl", "glsl"]);
+    fragbuf::assert_variant_snapshot!("examples/user_storage/first_k.fragbuf", targets = ["wgsl", "glsl"]);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn manifest_of_textures() {
     for case in ["z_buffer", "kb_sr"] {
         let (_, description, set) = named().into_iter().find(|(name, ..)| *name == case).unwrap();
         let manifest = fragbuf::manifest(&generated(&checked(&description, &set).unwrap()), 0);
-        let parts = ["resources", "steps", "refused"].map(|part| format!("{part}: {:#}", manifest[part]));
+        let parts = ["resources", "steps", "unsupported"].map(|part| format!("{part}: {:#}", manifest[part]));
         insta::assert_snapshot!(format!("{case}.manifest"), parts.join("\n"));
     }
 }

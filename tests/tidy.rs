@@ -1,7 +1,8 @@
-//! The house is in order: what architecture and documentation promise about the files themselves.
+//! Tests of the tree itself: what ARCHITECTURE.md and the documentation promise about files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use fragbuf::Registry;
 
@@ -9,7 +10,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files under `folder` with this extension; build folders and snapshots apart.
+/// Returns the files under `folder` with this extension, without build folders.
 fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut waiting = vec![root().join(folder)];
@@ -42,7 +43,7 @@ fn every_template_has_a_row_and_is_plain_text() {
         let text = read(&path);
         assert!(known.contains(name.as_str()), "{name} has no row");
         assert!(text.is_ascii(), "{name} is not ASCII: shader compilers differ on the rest");
-        assert!(text.starts_with("// ") && text.ends_with('\n'), "{name} has no head");
+        assert!(text.starts_with("// ") && text.ends_with('\n'), "{name} has no header");
         assert!(
             text.lines().count() <= 200 && text.lines().all(|line| line.chars().count() <= 120),
             "{name} is too long"
@@ -70,14 +71,14 @@ fn every_row_is_in_a_snapshot() {
     }
 }
 
-/// A key compared in code is a special case on a shared mechanism. Words that are also something else are listed.
+/// Comparing a key in code would be a special case in a shared mechanism. Strings that are also keys by accident are listed.
 #[test]
 fn no_code_compares_a_key() {
     const ALSO: &[(&str, &str)] = &[
-        ("none", "a word of messages"),
-        ("all", "the command line's word for every target and every technique"),
+        ("none", "a string of messages"),
+        ("all", "the command line's name of every target and every technique"),
         ("closure", "Registry::CLOSURE"),
-        ("attribute", "what a payload is made of"),
+        ("attribute", "a part of a payload"),
         ("submission", "an order of the command line"),
         ("fail", "a field of a stencil test in the manifest"),
         ("coverage", "a field of a pass's samples in the manifest"),
@@ -98,21 +99,23 @@ fn no_code_compares_a_key() {
             let code = text.split("#[cfg(test)]").next().unwrap_or("");
             for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
                 for key in keys.iter().filter(|key| ALSO.iter().all(|(word, _)| word != key)) {
-                    assert!(!line.contains(&format!("\"{key}\"")), "{shown} names the row `{key}`: {line}");
+                    assert!(!line.contains(&format!("\"{key}\"")), "{shown} compares the row `{key}`: {line}");
                 }
             }
         }
     }
 }
 
-/// Steps are what rows say; devices, printers and the checker have the lowered frame, which one cursor goes through.
+/// Steps belong to rows. Devices, emitters and the checker use the lowered frame, through one cursor.
 #[test]
-fn nothing_behind_a_plan_walks_steps() {
+fn only_plans_use_steps() {
     for folder in ["backends", "src"] {
         for path in
             files(folder, "rs").into_iter().filter(|path| !path.components().any(|part| part.as_os_str() == "tests"))
         {
-            assert!(!read(&path).contains("Step::"), "{} has steps in it", path.display());
+            let text = read(&path);
+            let uses_step = text.match_indices("Step::").any(|(at, _)| !text[..at].ends_with(char::is_alphanumeric));
+            assert!(!uses_step, "{} uses steps", path.display());
         }
     }
     let has_table = |path: &PathBuf| read(path).contains("const SYMBOLS");
@@ -122,22 +125,22 @@ fn nothing_behind_a_plan_walks_steps() {
 }
 
 #[test]
-fn files_are_short_and_have_heads() {
+fn files_are_short_and_have_headers() {
     for folder in ["src", "dsl", "codegen", "backends", "templates"] {
         for path in files(folder, "rs") {
             let text = read(&path);
             let code = text.split("#[cfg(test)]").next().unwrap_or("").lines().count();
             let is_test = path.to_string_lossy().contains("/tests/");
             assert!(is_test || code <= 400, "{}: {code} lines", path.display());
-            assert!(is_test || text.starts_with("//!"), "{} has no head", path.display());
+            assert!(is_test || text.starts_with("//!"), "{} has no header", path.display());
         }
     }
 }
 
-/// The README's table of axes is computed from the registry. `INSTA_UPDATE=always` writes it anew.
+/// The README's table of axes is computed from the registry. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_names_every_value() {
-    const HEAD: &str = "| axis | what is chosen | values, the first where nothing else says one |\n";
+    const HEAD: &str = "| axis | what is chosen | values, the default first |\n";
     let (path, registry) = (root().join("README.md"), Registry::builtin());
     let mut table = format!("{HEAD}|---|---|---|\n");
     for axis in registry.axes().iter().filter(|axis| axis.chosen) {
@@ -146,16 +149,17 @@ fn the_readme_names_every_value() {
         keys.sort_by_key(|key| axis.default != Some(*key));
         table += &format!("| {} | {} | `{}` |\n", axis.key, axis.summary, keys.join("`, `"));
     }
+    let _lock = README.lock().unwrap_or_else(PoisonError::into_inner);
     let readme = read(&path);
     let start = readme.find(HEAD).expect("README.md has the table of axes");
-    let end = start + readme[start..].find("\n\n").expect("an empty line behind the table") + 1;
+    let end = start + readme[start..].find("\n\n").expect("an empty line after the table") + 1;
     if updating() {
         std::fs::write(&path, [&readme[..start], &table, &readme[end..]].concat()).unwrap();
     }
     assert!(read(&path).contains(&table), "README.md is out of date");
 }
 
-/// The guide's table of values is what `list --axes` computes. `INSTA_UPDATE=always` writes it anew.
+/// The guide's table of values is the output of `list --axes`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_guide_has_every_value_with_what_it_does() {
     let path = root().join("src/guide/axes.md");
@@ -167,7 +171,7 @@ fn the_guide_has_every_value_with_what_it_does() {
 }
 
 #[test]
-fn words_that_say_nothing_name_nothing() {
+fn no_file_has_a_meaningless_name() {
     const WORDS: [&str; 5] = ["utils", "util", "helpers_misc", "manager", "types_misc"];
     for folder in ["src", "dsl", "codegen", "backends", "templates", "tests", "examples"] {
         for path in files(folder, "rs") {
@@ -177,15 +181,13 @@ fn words_that_say_nothing_name_nothing() {
     }
 }
 
-/// The README's table of techniques is what `list` computes.
+/// The README's table of techniques is the output of `list`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_has_the_computed_table() {
-    let readme = read(&root().join("README.md"));
-    let table = fragbuf_table();
-    assert!(readme.contains(&table), "put this into README.md:\n{table}");
+    shows("text", 1, |_| fragbuf_table());
 }
 
-/// Every technique has a page and a picture. The pages follow the rows: `INSTA_UPDATE=always` writes them anew.
+/// Every technique has a page and an image. Pages are computed from the rows: `INSTA_UPDATE=always` updates them.
 #[test]
 fn every_technique_has_its_page() {
     let techniques = Registry::builtin().techniques().to_vec();
@@ -205,9 +207,9 @@ fn every_technique_has_its_page() {
     assert_eq!(files("examples/techniques", "md").len(), techniques.len() + 1, "a page of no technique");
 }
 
-/// The paper's table stands beside the pages, with ours as it is computed.
+/// The comparison with Table 1 of the k⁺-buffer paper is computed.
 #[test]
-fn the_papers_table_has_ours_beside_it() {
+fn the_comparison_with_table_1_is_computed() {
     let path = root().join("examples/techniques/table_1.md");
     let table = fragbuf(&["list", "--table-1"], root());
     if updating() {
@@ -216,7 +218,7 @@ fn the_papers_table_has_ours_beside_it() {
     assert_eq!(read(&path), table, "{} is out of date", path.display());
 }
 
-/// The guide's reference of the language is what the type checker's tables say. `INSTA_UPDATE=always` writes it anew.
+/// The guide's language reference is computed from the type checker's tables. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_guide_has_the_computed_reference() {
     let path = root().join("src/guide/language.md");
@@ -227,11 +229,11 @@ fn the_guide_has_the_computed_reference() {
     assert_eq!(read(&path), reference, "{} is out of date", path.display());
 }
 
-/// Every description in the guide's chapter on refusals is followed by what the command line says of it.
+/// Every description in the guide's chapter on diagnostics is followed by the output of the command line. `INSTA_UPDATE=always` updates it.
 #[test]
-fn the_guide_shows_real_refusals() {
-    let path = root().join("src/guide/refusals.md");
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refusals");
+fn the_guide_shows_real_diagnostics() {
+    let path = root().join("src/guide/diagnostics.md");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnostics");
     std::fs::create_dir_all(&folder).unwrap();
     let text = read(&path);
     let mut chapters = text.split("```fragbuf\n");
@@ -242,7 +244,7 @@ fn the_guide_shows_real_refusals() {
         let (_, after) = rest.split_once("```\n").unwrap();
         std::fs::write(folder.join("glass.fragbuf"), description).unwrap();
         let said = fragbuf(&["show", "glass.fragbuf"], &folder);
-        assert!(said.starts_with("error["), "{description} is no mistake: {said}");
+        assert!(said.starts_with("error["), "{description} has no error: {said}");
         expected += &format!("```fragbuf\n{description}```\n{between}```text\n{}\n```\n{after}", said.trim_end());
     }
     if updating() {
@@ -251,11 +253,11 @@ fn the_guide_shows_real_refusals() {
     assert_eq!(read(&path), expected, "{} is out of date", path.display());
 }
 
-/// The guide's storage is the example's.
+/// The storage in the guide equals the example.
 #[test]
 fn the_guide_builds_the_example() {
     let guide = read(&root().join("src/guide/extend.md"));
-    let example = read(&root().join("examples/own_storage/first_k.wgsl"));
+    let example = read(&root().join("examples/user_storage/first_k.wgsl"));
     assert!(example.ends_with(&block(&guide, "wgsl")));
 }
 
@@ -263,29 +265,54 @@ fn updating() -> bool {
     std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always")
 }
 
-/// Every block of code in the README is what a person would get.
+/// Every code block in the README is computed. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_shows_what_is_generated() {
-    let readme = read(&root().join("README.md"));
-    let description = read(&root().join("examples/most_visible.fragbuf"));
-    assert_eq!(block(&readme, "rust"), description);
+    shows("rust", 0, |_| read(&root().join("examples/most_visible.fragbuf")));
     for target in ["wgsl", "glsl"] {
-        let shown = fragbuf(&["show", "examples/most_visible.fragbuf", "--dump", target], root());
-        assert!(shown.contains(&block(&readme, target)), "{target}");
+        // The block is one function of the generated sources.
+        shows(target, 0, |block| {
+            let sources = fragbuf(&["show", "examples/most_visible.fragbuf", "--dump", target], root());
+            let name = block.split_inclusive('(').next().unwrap();
+            let start = sources.find(name).unwrap_or_else(|| panic!("no function `{name}`"));
+            let end = start + sources[start..].find("\n}\n").unwrap() + 3;
+            sources[start..end].to_owned()
+        });
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let glass = "buffer Glass from kplus_array {\n    storage: max_array;\n    sync: none;\n}\n";
     std::fs::write(folder.join("glass.fragbuf"), glass).unwrap();
-    assert!(fragbuf(&["show", "glass.fragbuf"], folder).starts_with(&block(&readme, "text")));
+    shows("text", 0, |_| {
+        let diagnostics = fragbuf(&["show", "glass.fragbuf"], folder);
+        format!("{}\n", diagnostics.split("\n\n").next().unwrap().trim_end())
+    });
 }
 
-/// The first block of a language.
+/// Held while a test reads or updates the README.
+static README: Mutex<()> = Mutex::new(());
+
+/// Asserts that a code block of the README, by its language and number, equals what `computed` returns for it.
+fn shows(language: &str, number: usize, computed: impl Fn(&str) -> String) {
+    let _lock = README.lock().unwrap_or_else(PoisonError::into_inner);
+    let path = root().join("README.md");
+    let readme = read(&path);
+    let fence = format!("```{language}\n");
+    let start = readme.match_indices(&fence).nth(number).unwrap().0 + fence.len();
+    let end = start + readme[start..].find("```").unwrap();
+    let computed = computed(&readme[start..end]);
+    if updating() {
+        std::fs::write(&path, [&readme[..start], &computed, &readme[end..]].concat()).unwrap();
+    }
+    assert!(updating() || readme[start..end] == computed, "README.md should show:\n{computed}");
+}
+
+/// Returns the first code block of a language.
 fn block(text: &str, language: &str) -> String {
     let start = text.split(&format!("```{language}\n")).nth(1).unwrap();
     start.split("```").next().unwrap().to_owned()
 }
 
-/// What the command line says, on either stream.
+/// Returns what the command line prints on both streams.
 fn fragbuf(arguments: &[&str], folder: &Path) -> String {
     let output =
         std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(folder).output().unwrap();
@@ -296,16 +323,115 @@ fn fragbuf_table() -> String {
     fragbuf(&["list"], root())
 }
 
+/// Names and phrases that the project no longer uses. The changelog has their replacements.
+const RETIRED: &[&str] = &[
+    // Phrases.
+    "turned away",
+    "turns away",
+    "given up",
+    "gives up",
+    "way out",
+    "ways out",
+    "whoever",
+    "nobody",
+    "goes round",
+    "for want of",
+    "found no room",
+    "finds no room",
+    "of one's own",
+    "affair",
+    "by chance",
+    "stands for each other",
+    "stand for each other",
+    "sign of life",
+    "mended",
+    // Names.
+    "turned_away",
+    "ways_out",
+    "LineOrigin",
+    "LineMap",
+    "OwnRow",
+    "RowPlaces",
+    "PassText",
+    "KeptText",
+    "Beside",
+    "beside_words",
+    "is_brought",
+    "Looped",
+    "spin_exhausted",
+    "partly_covered",
+    "checked_array",
+    "repeated_array",
+    "storage_settle",
+    "storage_survey",
+    "vertex_placed",
+    "Recorded::Cut",
+    "codes::UNMET",
+    "codes::ROW",
+    "fragbuf_backends",
+    "fragbuf-backends",
+    "fragbuf_builder",
+    "fragbuf-builder",
+];
+
 #[test]
-fn the_dsl_builds_without_naga_and_wgpu() {
+fn retired_words_stay_out() {
+    let mut found = Vec::new();
+    let folders = ["src", "dsl", "codegen", "backends", "templates", "tests", "examples"];
+    let of = |extension| folders.iter().flat_map(move |folder| files(folder, extension));
+    let top = ["README.md", "ARCHITECTURE.md"].map(|name| root().join(name));
+    for path in ["rs", "wgsl", "md", "fragbuf", "snap"].into_iter().flat_map(of).chain(top) {
+        if path.ends_with("tests/tidy.rs") {
+            continue;
+        }
+        for (line, text) in (1..).zip(read(&path).lines()) {
+            let words = RETIRED.iter().filter(|word| text.contains(**word));
+            found.extend(words.map(|word| format!("{}:{line}: {word}", path.display())));
+        }
+    }
+    assert!(found.is_empty(), "{} retired words:\n{}", found.len(), found.join("\n"));
+}
+
+/// The folders of crates, from the bottom to the top. A crate depends on its own folder and on those below it.
+const LAYERS: [&str; 7] =
+    ["templates", "dsl", "codegen", "backends/emit", "backends/run", "backends/verify", "Cargo.toml"];
+
+/// Tests may depend on crates above: a device is tested with the checker's `ReadOut`.
+#[test]
+fn dependencies_point_down() {
+    let layer = |path: &str| LAYERS.iter().position(|layer| path.starts_with(layer));
+    let workspace = read(&root().join("Cargo.toml"));
+    let path_of = |name: &str| {
+        let line = workspace.lines().find(|line| line.starts_with(&format!("{name} = {{ path = ")))?;
+        line.split('"').nth(1).map(str::to_owned)
+    };
+    let mut checked = 0;
+    for manifest in files("", "toml").into_iter().filter(|path| path.ends_with("Cargo.toml")) {
+        let shown = manifest.strip_prefix(root()).unwrap().to_string_lossy().into_owned();
+        let Some(own) = layer(&shown) else { continue };
+        let text = read(&manifest);
+        let dependencies = text.split("\n[dependencies]").nth(1).unwrap_or("").split("\n[").next().unwrap_or("");
+        let names = dependencies.lines().filter_map(|line| line.split(['.', ' ']).next());
+        for name in names.filter(|name| name.starts_with("fragbuf-")) {
+            let below = path_of(name).and_then(|path| layer(&path));
+            assert!(below.is_some_and(|below| below <= own), "{shown} depends on {name}, which is above it");
+            checked += 1;
+        }
+    }
+    assert!(checked > 30, "{checked} dependencies");
+}
+
+#[test]
+fn the_dsl_builds_without_codegen_naga_and_wgpu() {
     let language = ["fragbuf-syntax", "fragbuf-expansion", "fragbuf-macros", "fragbuf-dsl"];
     for package in ["fragbuf-templates", "fragbuf-model"].into_iter().chain(language) {
         let tree = tree(&["--edges", "all", "-p", package]);
-        assert!(!tree.contains("naga") && !tree.contains("wgpu"), "{package}:\n{tree}");
+        let above = ["fragbuf-codegen", "naga", "wgpu"];
+        assert!(above.iter().all(|name| !tree.contains(name)), "{package}:\n{tree}");
     }
 }
 
-/// Pictures on the CPU device need no wgpu either.
+/// Rendering on the CPU device does not depend on wgpu.
 #[test]
 fn drawing_needs_no_wgpu() {
     let features = ["--no-default-features", "--features", "pictures"];
@@ -313,12 +439,12 @@ fn drawing_needs_no_wgpu() {
     assert!(tree.contains("fragbuf-cpu") && !tree.contains("wgpu"), "{tree}");
 }
 
-/// Without the feature `pictures` the facade generates, and knows no device.
+/// Without the feature `pictures` the facade only generates.
 #[test]
 fn generating_needs_no_wgpu() {
     let tree = tree(&["--edges", "normal", "-p", "fragbuf", "--no-default-features"]);
     assert!(tree.contains("naga") && !tree.contains("wgpu"), "{tree}");
-    // Snapshots are taken by the caller's own insta.
+    // Snapshot tests use the caller's insta.
     assert!(!tree.contains("insta"), "{tree}");
 }
 

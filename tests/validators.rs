@@ -1,4 +1,4 @@
-//! glslang and spirv-val over generated files. What passed once, by content and validator, is not asked again.
+//! Runs glslang and spirv-val on generated files. Results are cached by content and validator.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -9,17 +9,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fragbuf::File;
 
-/// Files that an external validator knows, each once; returns how many there were. Panics with every refusal.
+/// Validates each distinct file for which there is an external validator. Returns their number. Panics with every error.
 pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
     let mut seen = BTreeSet::new();
     let jobs: Vec<&File> =
         files.filter(|file| tool(file).is_some() && seen.insert((suffix(file), file.target, &file.bytes))).collect();
     let queue = Mutex::new(jobs.iter());
-    let faults = Mutex::new(Vec::new());
+    let diagnostics = Mutex::new(Vec::new());
     let work = || {
         while let Some(file) = { queue.lock().unwrap().next() } {
-            if let Err(fault) = accepted(file) {
-                faults.lock().unwrap().push(fault);
+            if let Err(diagnostic) = accepted(file) {
+                diagnostics.lock().unwrap().push(diagnostic);
             }
         }
     };
@@ -27,12 +27,12 @@ pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
         scope.spawn(work);
         scope.spawn(work);
     });
-    let faults = faults.into_inner().unwrap();
-    assert!(faults.is_empty(), "{}", faults.join("\n\n"));
+    let diagnostics = diagnostics.into_inner().unwrap();
+    assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n\n"));
     jobs.len()
 }
 
-/// The validator of a file and its arguments, without the file's name.
+/// Returns the validator of a file and its arguments, without the file name.
 fn tool(file: &File) -> Option<(&'static str, Vec<&'static str>)> {
     let is_module = file.entry_points.iter().any(|(stage, _)| *stage == "module");
     match file.target {
@@ -59,19 +59,19 @@ fn accepted(file: &File) -> Result<(), String> {
     if passed.exists() {
         return Ok(());
     }
-    // Two tests may ask about one text at once: each has a folder of its own.
+    // Two tests may validate the same file at once, so each uses its own folder.
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let work: PathBuf = folder.join(format!("work-{:016x}-{}", hasher.finish(), COUNT.fetch_add(1, Ordering::Relaxed)));
     std::fs::create_dir_all(&work).unwrap();
     let name = format!("file.{}", suffix(file));
     std::fs::write(work.join(&name), &file.bytes).unwrap();
     let result = run(program, &arguments, &name, &work).and_then(|()| match file.target {
-        // What glslang makes of the Vulkan dialect must be right SPIR-V too.
+        // The SPIR-V that glslang writes for the Vulkan dialect must be valid, too.
         "glsl-vulkan" => run("spirv-val", &["--target-env", "vulkan1.1"], "out.spv", &work),
         _ => Ok(()),
     });
     std::fs::remove_dir_all(&work).unwrap();
-    result.map_err(|fault| format!("{}: {fault}\n{}", file.path, String::from_utf8_lossy(&file.bytes)))?;
+    result.map_err(|diagnostic| format!("{}: {diagnostic}\n{}", file.path, String::from_utf8_lossy(&file.bytes)))?;
     std::fs::write(passed, "").unwrap();
     Ok(())
 }

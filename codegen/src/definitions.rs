@@ -1,52 +1,56 @@
-//! Definitions of rows that give no value. In: what the table of symbols finds. Out: messages, each with a way out.
+//! Errors in definitions of symbols by rows.
 
 use std::fmt;
 
 use fragbuf_templates::vocabulary::{Formula, FormulaError};
 
-/// A definition of a row that gives its symbol no value.
+/// An error in a row's definition of a symbol.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Misdefined {
-    /// What is defined.
+pub(crate) struct DefinitionError {
+    /// The symbol.
     pub(crate) symbol: String,
-    /// As what.
+    /// The formula.
     pub(crate) formula: Formula,
-    /// What is wrong.
-    pub(crate) problem: Misdefinition,
+    /// The reason.
+    pub(crate) problem: DefinitionProblem,
 }
 
-/// What is wrong with a definition.
+/// The reason why a definition is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Misdefinition {
-    /// There is no such symbol.
+pub(crate) enum DefinitionProblem {
+    /// The symbol does not exist.
     Unknown,
-    /// The description, or another row, gives the symbol its value.
-    Twice,
-    /// It rests on itself.
+    /// The description or another row defines the symbol.
+    Duplicate,
+    /// The definition depends on itself.
     Circular,
-    /// The formula cannot be read, or can have no value.
-    NoFormula(FormulaError),
+    /// The formula is invalid.
+    InvalidFormula(FormulaError),
 }
 
-impl fmt::Display for Misdefined {
+/// The name of a parameter's constant has another meaning in formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NameTaken;
+
+impl fmt::Display for DefinitionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let symbol = &self.symbol;
         match &self.problem {
-            Misdefinition::Unknown => write!(f, "there is no symbol `{symbol}` to define"),
-            Misdefinition::Twice => write!(f, "`{symbol}` has a value already"),
-            Misdefinition::Circular => write!(f, "the value of `{symbol}` rests on itself"),
-            Misdefinition::NoFormula(error) => error.fmt(f),
+            DefinitionProblem::Unknown => write!(f, "there is no symbol `{symbol}` to define"),
+            DefinitionProblem::Duplicate => write!(f, "`{symbol}` has a value already"),
+            DefinitionProblem::Circular => write!(f, "the definition of `{symbol}` depends on itself"),
+            DefinitionProblem::InvalidFormula(error) => error.fmt(f),
         }
     }
 }
 
-impl Misdefined {
-    /// The way out, as an instruction.
-    pub(crate) fn hint(&self) -> &'static str {
+impl DefinitionError {
+    /// Returns the help text.
+    pub(crate) fn help(&self) -> &'static str {
         match &self.problem {
-            Misdefinition::Unknown | Misdefinition::Twice => "leave the definition out",
-            Misdefinition::Circular => "define it over `width` and `height` alone",
-            Misdefinition::NoFormula(error) => error.hint(),
+            DefinitionProblem::Unknown | DefinitionProblem::Duplicate => "leave the definition out",
+            DefinitionProblem::Circular => "define it over `width` and `height` alone",
+            DefinitionProblem::InvalidFormula(error) => error.help(),
         }
     }
 }

@@ -1,14 +1,14 @@
-//! The lowered frame: what one frame of a plan does, as a flat list of commands over physical resources.
+//! The lowered frame of a plan: a flat list of commands over physical resources.
 //!
-//! In: nothing; [`lower`] makes it from the steps of a plan. Out: what every device runs, the manifest prints, and one
-//! cursor steps through (`fragbuf-frame`). Nothing here has a value: loops, ranges and symbols are formulas.
+//! [`lower`] creates it from the steps of a plan. Every device runs it through the cursor of `fragbuf-frame`, and the manifest lists
+//! it. Loop limits, ranges and symbols are formulas without values.
 //!
-//! An exchange of two resources is no command. It flips which of the two a name stands for from there on, so every command
-//! says by how many finished iterations of which loops the names have been flipped: a [`Parity`].
+//! An exchange of two resources is not a command. It swaps the meaning of two names from there on, so every command has a [`Parity`]
+//! per exchange.
 
 mod lower;
 
-pub(crate) use lower::{Context, Lowered, lower};
+pub(crate) use lower::{LoweredSteps, LoweringContext, lower};
 
 use std::ops::Deref;
 
@@ -16,99 +16,99 @@ use fragbuf_templates::vocabulary::{HostFunction, Pass};
 
 use crate::{Quantity, SymbolId};
 
-/// A resource, by its place in the plan.
+/// The index of a resource in the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ResourceId(pub usize);
 
-/// A pass, by its place in the plan.
+/// The index of a pass in the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PassId(pub usize);
 
-/// A loop, by its place in the frame.
+/// The index of a loop in the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LoopId(pub usize);
 
-/// What a frame does.
+/// The commands of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoweredFrame {
-    /// In order.
+    /// The commands, in order.
     pub commands: Vec<Command>,
-    /// The loops, in the order of their beginnings.
+    /// The loops, in the order of their first commands.
     pub loops: Vec<Loop>,
-    /// Pairs of resources that exchange their roles. No resource is in two of them.
+    /// Pairs of resources that the frame exchanges. No resource is in two pairs.
     pub exchanges: Vec<[ResourceId; 2]>,
-    /// For each exchange, whether the two resources stand for each other when the frame is over.
+    /// For each exchange, its parity at the end of the frame.
     pub end: Vec<Parity>,
 }
 
 /// One command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Command {
-    /// What is done.
+    /// The action.
     pub action: Action,
-    /// For each exchange, whether the two resources stand for each other here.
+    /// For each exchange, its parity at this command.
     pub parities: Vec<Parity>,
 }
 
-/// What a command does.
+/// The action of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Every word of a resource becomes `value`.
+    /// Sets every word of a resource to `value`.
     Clear {
         /// The resource.
         resource: ResourceId,
         /// The word.
         value: u32,
     },
-    /// One resource over another of the same shape.
+    /// Copies a resource to another of the same shape.
     Copy {
-        /// Read.
+        /// The source.
         from: ResourceId,
-        /// Written.
+        /// The destination.
         to: ResourceId,
     },
-    /// A draw or a dispatch.
+    /// Draws or dispatches a pass.
     Pass(PassId),
-    /// The beginning of a loop; the commands up to its end are its body.
+    /// Begins a loop. The commands up to its end are its body.
     Loop(LoopId),
-    /// The end of a loop's body.
+    /// Ends the body of a loop.
     LoopEnd(LoopId),
-    /// The host decides: the words must have arrived before the frame goes on.
+    /// Runs a host function. The frame continues after the words that it reads have been read back.
     Host(Decision),
 }
 
 /// A loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// The command [`Action::Loop`]; the body begins behind it.
+    /// The index of the command [`Action::Loop`]; the body begins after it.
     pub begin: usize,
-    /// The command [`Action::LoopEnd`].
+    /// The index of the command [`Action::LoopEnd`].
     pub end: usize,
-    /// What ends it before its bound.
+    /// The condition that ends it before its limit.
     pub until: LoopUntil,
-    /// Iterations at most; exactly as many where nothing else ends it.
-    pub at_most: Quantity,
+    /// The limit of iterations; the exact number if no condition ends the loop.
+    pub max_iterations: Quantity,
 }
 
-/// What ends a loop before its bound.
+/// The condition that ends a loop before its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopUntil {
-    /// Nothing.
+    /// No condition.
     Times,
     /// The first word of this resource is zero after an iteration.
     WordIsZero(ResourceId),
-    /// No sample passed in this pass, in the iteration.
+    /// No sample passed in this pass during the iteration.
     NoSamples(PassId),
 }
 
-/// A decision of the host.
+/// A call of a host function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
     /// The key of its row on the axis `host`.
     pub name: String,
-    /// What is called.
+    /// The function.
     pub function: HostFunction,
-    /// The words that it is given, in order.
+    /// The words that it reads, in order.
     pub reads: Vec<Range>,
     /// The symbols that it sets, in order.
     pub sets: Vec<SymbolId>,
@@ -121,30 +121,30 @@ pub struct Range {
     pub resource: ResourceId,
     /// The first word.
     pub first: Quantity,
-    /// How many.
+    /// The number of words.
     pub count: Quantity,
 }
 
-/// Whether two resources stand for each other: they do where `is_odd`, and the finished iterations of `loops` together are
-/// even, or the other way round. Iterations are counted over the whole frame.
+/// The condition under which two resources are exchanged: either `is_odd` is true, or the total of finished iterations of `loops` is
+/// odd, but not both. Iterations are counted over the whole frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parity {
-    /// Exchanges before this command in a straight line, odd in number.
+    /// Whether the number of exchanges outside of loops before this command is odd.
     pub is_odd: bool,
-    /// Loops that exchange the two an odd number of times in each iteration.
+    /// The loops that exchange the two an odd number of times per iteration.
     pub loops: Vec<LoopId>,
 }
 
-/// A pass with its formulas resolved.
+/// A pass with resolved formulas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedPass {
     /// The pass.
     pub pass: Pass,
-    /// Workgroups along x, y and z; none for a draw.
+    /// Workgroups in x, y and z; empty for a draw.
     pub groups: Vec<Quantity>,
-    /// The reference of its stencil test.
+    /// The reference value of its stencil test.
     pub reference: Option<Quantity>,
-    /// Samples per pixel, and the mask of those that are written.
+    /// Samples per pixel, and the mask of the samples that are written.
     pub samples: Option<[Quantity; 2]>,
 }
 
@@ -157,25 +157,25 @@ impl Deref for PlannedPass {
 }
 
 impl Parity {
-    /// Whether the two stand for each other after these finished iterations of each loop.
+    /// Tests whether the two are exchanged after these finished iterations of each loop.
     pub fn is_flipped(&self, finished: &[u32]) -> bool {
-        let rounds = self.loops.iter().map(|id| finished.get(id.0).copied().unwrap_or(0) % 2).sum::<u32>();
-        self.is_odd != (rounds % 2 == 1)
+        let iterations = self.loops.iter().map(|id| finished.get(id.0).copied().unwrap_or(0) % 2).sum::<u32>();
+        self.is_odd != (iterations % 2 == 1)
     }
 }
 
 impl LoweredFrame {
-    /// Whether a loop waits for the samples of a pass.
+    /// Tests whether the condition of a loop depends on the samples of a pass.
     pub fn waits_for_samples(&self, pass: PassId) -> bool {
         self.loops.iter().any(|looped| looped.until == LoopUntil::NoSamples(pass))
     }
 
-    /// The exchanges that `resource` is in, by their number.
+    /// Returns the index of the exchange that includes `resource`.
     pub fn exchange_of(&self, resource: ResourceId) -> Option<usize> {
         self.exchanges.iter().position(|pair| pair.contains(&resource))
     }
 
-    /// The physical resource that `resource` stands for where the exchanges of the bit mask `flipped` are flipped.
+    /// Returns the physical resource of `resource`, given the bit mask of exchanged pairs.
     pub fn physical(&self, resource: ResourceId, flipped: u32) -> ResourceId {
         match self.exchange_of(resource) {
             Some(number) if flipped >> number & 1 == 1 => {
@@ -186,7 +186,7 @@ impl LoweredFrame {
         }
     }
 
-    /// The decisions of the host, in order.
+    /// Returns the calls of host functions, in order.
     pub fn decisions(&self) -> impl Iterator<Item = &Decision> {
         self.commands.iter().filter_map(|command| match &command.action {
             Action::Host(decision) => Some(decision),

@@ -1,25 +1,25 @@
-//! How a fragment lies in memory: the members of `Fragment`, and the words of one entry, the key first.
+//! The memory layout of a fragment: the members of `Fragment`, and the words of an entry, key first.
 
 use fragbuf_model::{Attribute, Format, Selection, Variant, mangled};
-use fragbuf_templates::vocabulary::Order;
+use fragbuf_templates::vocabulary::TieBreak;
 
-/// The members of a fragment and the words of a stored one.
+/// The members of a fragment and the words of an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// What the first word is.
+    /// The meaning of the first word.
     pub key: Key,
-    /// What a fragment carries, in the user's order; behind it what rows add.
+    /// The payload, in the order of the description, then the attributes that rows add.
     pub members: Vec<Member>,
     /// The words after the key, in memory order.
-    pub beside: Vec<Word>,
+    pub values: Vec<Word>,
 }
 
-/// What fragments are ordered by when one must go.
+/// The order by which the worst fragment is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// The bits of the depth: the payload's own word, which costs no memory of its own.
+    /// The bits of the depth. The depth is part of the payload, so the key needs no extra word.
     Depth,
-    /// The ordered bits of the criterion's value: one word beside the whole payload.
+    /// The ordered bits of the criterion's value: one word in addition to the payload.
     Criterion,
 }
 
@@ -28,16 +28,16 @@ pub enum Key {
 pub struct Member {
     /// Its name in generated code.
     pub name: String,
-    /// How it is stored.
+    /// Its format in memory.
     pub format: Format,
-    /// Where a pass over the scene has it from.
-    pub source: Source,
+    /// Where geometry passes get its value.
+    pub source: MemberSource,
 }
 
-/// Where a pass over the scene has a member from.
+/// Where geometry passes get the value of a member.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The rasteriser's depth.
+pub enum MemberSource {
+    /// The rasterised depth.
     Depth,
     /// A vertex input.
     Vertex,
@@ -45,74 +45,74 @@ pub enum Source {
     BuiltIn(String),
 }
 
-/// One word beside the key.
+/// A value word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word {
     /// Its field in `Packed`.
     pub field: String,
-    /// The member that it holds, or a part of.
+    /// The member that it stores completely or partly.
     pub member: Member,
-    /// The components that it holds, for a vector of several words.
+    /// The components that it stores, for a vector of several words.
     pub components: Option<&'static str>,
 }
 
 impl Layout {
-    /// The layout of a variant's payload with what the chosen rows add: words in the user's order, depth as the key unless
-    /// there is a criterion. The attribute that decides ties comes first, so that the order of words is the order of
-    /// fragments.
+    /// Returns the layout of a variant's payload and of the attributes that the selected rows add. Words are in the order of the
+    /// description. Depth is the key unless there is a criterion. The attribute that breaks ties comes first, so that the order of
+    /// words is the order of fragments.
     pub fn of(variant: &Variant, selection: &Selection) -> Self {
         let key = if variant.criterion.is_some() { Key::Criterion } else { Key::Depth };
-        let members: Vec<Member> = variant.attributes.iter().map(member).chain(carried(selection)).collect();
-        let mut beside: Vec<Word> = Vec::new();
+        let members: Vec<Member> = variant.attributes.iter().map(member).chain(implicit_members(selection)).collect();
+        let mut values: Vec<Word> = Vec::new();
         let first = tie_breaker(selection).and_then(|index| members.get(index));
         let others = members.iter().filter(|member| Some(*member) != first);
         for member in first.into_iter().chain(others) {
-            if key == Key::Depth && member.source == Source::Depth {
+            if key == Key::Depth && member.source == MemberSource::Depth {
                 continue;
             }
             for part in parts(member.format) {
                 let suffix = part.map_or(String::new(), |letters| format!("_{letters}"));
                 let name = format!("{}{suffix}", member.name);
-                beside.push(Word { field: unused(name, &beside), member: member.clone(), components: part });
+                values.push(Word { field: unused(name, &values), member: member.clone(), components: part });
             }
         }
-        Layout { key, members, beside }
+        Layout { key, members, values }
     }
 
-    /// Words of an entry, the key included.
+    /// Returns the words of an entry, including the key.
     pub fn entry_words(&self) -> u32 {
-        self.beside_words() + 1
+        self.value_words() + 1
     }
 
-    /// Words of an entry beside the key.
-    pub fn beside_words(&self) -> u32 {
-        self.beside.len() as u32
+    /// Returns the words of an entry after the key.
+    pub fn value_words(&self) -> u32 {
+        self.values.len() as u32
     }
 
-    /// The field that holds the depth.
+    /// Returns the field that stores the depth.
     pub fn depth_field(&self) -> &str {
-        let depth = self.beside.iter().find(|word| word.member.source == Source::Depth);
+        let depth = self.values.iter().find(|word| word.member.source == MemberSource::Depth);
         depth.map_or("key", |word| &word.field)
     }
 }
 
 fn member(attribute: &Attribute) -> Member {
-    let source = if attribute.name.value == "depth" { Source::Depth } else { Source::Vertex };
+    let source = if attribute.name.value == "depth" { MemberSource::Depth } else { MemberSource::Vertex };
     Member { name: mangled(&attribute.name.value).into_owned(), format: attribute.format.value, source }
 }
 
-fn carried(selection: &Selection) -> impl Iterator<Item = Member> {
-    let carried = selection.rows.iter().flat_map(|selected| &selected.row.carries);
-    carried.map(|word| Member {
+fn implicit_members(selection: &Selection) -> impl Iterator<Item = Member> {
+    let words = selection.rows.iter().flat_map(|selected| &selected.row.extra_words);
+    words.map(|word| Member {
         name: word.name.to_string(),
         format: Format::U32,
-        source: Source::BuiltIn(word.built_in.to_string()),
+        source: MemberSource::BuiltIn(word.built_in.to_string()),
     })
 }
 
-/// The attribute that decides between fragments with equal keys before all others, if the description names one.
+/// Returns the attribute that breaks ties first, if the description names one.
 fn tie_breaker(selection: &Selection) -> Option<usize> {
-    let ties = selection.rows.iter().find(|selected| selected.row.order == Some(Order::Attribute))?;
+    let ties = selection.rows.iter().find(|selected| selected.row.order == Some(TieBreak::Attribute))?;
     Some(ties.options.first().map_or(0, |(_, index)| *index as usize))
 }
 
@@ -126,7 +126,7 @@ fn parts(format: Format) -> Vec<Option<&'static str>> {
     }
 }
 
-/// `name`, or with `_` appended until neither the key nor another word has it.
+/// Returns `name` with `_` appended until neither the key nor another word has this name.
 fn unused(mut name: String, words: &[Word]) -> String {
     while name == "key" || words.iter().any(|word| word.field == name) {
         name.push('_');

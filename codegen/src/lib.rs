@@ -1,35 +1,43 @@
-//! From a checked variant to a plan of passes, and from the plan to one linked WGSL text per pass.
+//! Turns a checked variant into a plan of passes, and the plan into one linked WGSL source per pass.
 //!
 //! ```text
-//! Variant ──select──► Selection ──plan──► Plan ──link──► Program: one WGSL text per pass, each line with its source
+//! Variant ──select──► Selection ──plan──► Plan ──link──► Program: one WGSL source per pass, with a source map
 //! ```
 //!
-//! A plan has no text in it, and a program nothing that naga has seen: `fragbuf-targets` checks it. Statements come from
-//! templates and from the user's closures; what is generated here is declarations, the packing of a fragment into words,
-//! the orders over packed fragments, and the accessors of buffers.
+//! A plan contains no source code. A program has not been checked by naga; `fragbuf-targets` does that. Statements come from templates
+//! and from the closures of the description. This crate generates declarations, the packing of a fragment into words, the orders
+//! over packed fragments, and the accessors of buffers.
 
 mod contract;
+mod contract_check;
 mod definitions;
 mod emit;
+mod entry_point;
 mod frame;
 mod layout;
 mod link;
+mod linking;
 mod markers;
-mod own;
 mod plan;
 mod program;
+mod source_map;
 mod symbols;
+mod user_file;
 
-pub use contract::{CONTRACTS, Contract, verify};
+pub use contract::{CONTRACTS, Contract};
+pub use contract_check::verify;
+pub use entry_point::{EntryPoint, Stage};
 pub use frame::{
     Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range, ResourceId,
 };
 pub use layout::{Key, Layout, Word};
+pub use linking::{Form, Linking, Profile};
 pub use markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MARKERS, MEMORY_FENCE};
-pub use own::adopt;
-pub use plan::{Arrival, FIRST_BINDING, Part, Plan, Planned, bucket, plan};
-pub use program::{EntryPoint, Form, LineMap, LineOrigin, Linking, Notes, PassText, Profile, Program, Stage, link};
-pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term, is_truth};
+pub use plan::{Arrival, FIRST_BINDING, Part, Plan, PlannedResource, bucket, plan};
+pub use program::{Notes, PassSource, Program, link};
+pub use source_map::{LineSource, SourceMap};
+pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term, is_boolean};
+pub use user_file::validate_user_row;
 
-/// What a generator puts on the first line of every file that it writes.
+/// The name and version that are written on the first line of every generated file.
 pub const GENERATOR: &str = concat!("fragbuf ", env!("CARGO_PKG_VERSION"));

@@ -1,14 +1,14 @@
-//! Marker functions: what WGSL has no word for (`templates/shared/markers.wgsl`), by name, before any prefix. Targets put
-//! words of their own in place of their calls, so linking leaves them alone.
+//! The names of marker functions, without prefix. They mark operations that WGSL cannot express (`templates/shared/markers.wgsl`).
+//! Back ends replace their calls with target-specific code, so linking does not fold them.
 
 /// Orders memory accesses.
 pub const MEMORY_FENCE: &str = "memory_fence";
-/// Whether this is a helper invocation.
+/// Returns whether the invocation is a helper invocation.
 pub const HELPER_LANE: &str = "is_helper_lane";
-/// The interlock begins.
+/// Begins the interlock.
 pub const CRITICAL_BEGIN: &str = "critical_begin";
-/// The interlock ends.
+/// Ends the interlock.
 pub const CRITICAL_END: &str = "critical_end";
 
-/// All of them.
+/// All markers.
 pub const MARKERS: [&str; 4] = [MEMORY_FENCE, HELPER_LANE, CRITICAL_BEGIN, CRITICAL_END];

@@ -1,165 +1,53 @@
-//! A plan as text: one WGSL text per pass, every line with where it comes from.
+//! Links a plan to a program: one WGSL source per pass, with a source map.
 
 mod instances;
 
-use std::sync::Arc;
-
-use fragbuf_model::{Diagnostic, Diagnostics, Origin, Selected, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, SelectedRow, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::link::{self, Source};
-use crate::{GENERATOR, Plan, emit};
+use crate::{EntryPoint, Form, GENERATOR, Linking, Plan, SourceMap, emit};
 
-/// How texts are linked.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Linking {
-    /// What the text may use.
-    pub profile: Profile,
-    /// What it is for.
-    pub form: Form,
-    /// Before every name but the entry points', so that two buffers can share a shader.
-    pub prefix: String,
-    /// The bind group of everything declared.
-    pub group: u32,
-}
-
-/// What a WGSL text may use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Profile {
-    /// The WGSL standard: browsers take it.
-    Portable,
-    /// naga's additions too: coherent buffers.
-    Native,
-}
-
-/// What a text is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Entry points for every pass.
-    Program,
-    /// Geometry passes as functions for a shader of the caller's own; the other passes with their entry points.
-    Module,
-}
-
-/// A plan, linked: its texts. The plan itself says what to do with them.
+/// The linked sources of a plan. The plan describes how to run them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// How it was linked.
+    /// The parameters of linking.
     pub linking: Linking,
-    /// One per pass, in the order of the steps.
-    pub passes: Vec<PassText>,
+    /// One source per pass, in the order of the plan's passes.
+    pub passes: Vec<PassSource>,
 }
 
-/// The text of one pass.
+/// The source of one pass.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PassText {
-    /// The pass.
-    pub anchor: String,
-    /// WGSL.
+pub struct PassSource {
+    /// The name of the pass.
+    pub name: String,
+    /// The WGSL source.
     pub text: String,
-    /// Where its lines come from.
-    pub lines: LineMap,
-    /// Its entry points, in the order of the text.
+    /// The origin of each line.
+    pub lines: SourceMap,
+    /// Its entry points, in source order.
     pub entry_points: Vec<EntryPoint>,
     /// The functions that a caller's shader calls, in module form.
     pub exports: Vec<String>,
-    /// Resources that the text declares, by name.
+    /// Names of the resources that the source declares.
     pub resources: Vec<String>,
-    /// Private arrays whose elements are written before they are read, by name: no target needs to set them to zero. All
-    /// arrays of templates are, and the CPU device and the checker begin them with words that no program means, so that their
-    /// tests fail otherwise. A file of the user's own may rely on zeros.
+    /// Names of private arrays whose elements are written before they are read, so that no target needs to set them to zero. This
+    /// holds for every array of a template: the CPU device and the checker fill them with 0xdeadbeef, so that tests fail
+    /// otherwise. User files may rely on zeros.
     pub written_first: Vec<String>,
-    /// Who made it and what the algorithms linked into it rest on, for texts that lose the templates' comments.
+    /// Generator and algorithms, for targets that lose the comments of templates.
     pub notes: Notes,
 }
 
-/// Comments for the head of a file, lines without a comment sign.
+/// Comments for the header of a file, without comment signs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Notes {
     /// Technique, generator and choices other than the defaults.
     pub generated: String,
-    /// The printed heads of the templates that come from papers.
+    /// The printed headers of templates that implement papers.
     pub algorithms: String,
-}
-
-/// An entry point.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EntryPoint {
-    /// Its name in the text.
-    pub name: String,
-    /// Its stage.
-    pub stage: Stage,
-}
-
-/// A shader stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Vertex.
-    Vertex,
-    /// Fragment.
-    Fragment,
-    /// Compute.
-    Compute,
-}
-
-/// Where each line of a text comes from: runs of lines that follow each other in one source, in order.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineMap {
-    lines: usize,
-    runs: Vec<Run>,
-}
-
-/// Lines from `first` on (from 1) up to the next run.
-#[derive(Clone, Debug, PartialEq)]
-struct Run {
-    first: usize,
-    origin: LineOrigin,
-}
-
-/// Where one line comes from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LineOrigin {
-    /// Headers, banners and blank lines.
-    None,
-    /// A template or generated text, by its name and line.
-    Source {
-        /// `storage/max_array.wgsl`, `generated/buffers`.
-        name: Arc<str>,
-        /// From 1.
-        line: usize,
-    },
-    /// The user's description.
-    User(Origin),
-    /// A WGSL file of the user's own, from the line's first sign to its last: the same text, unless it was renamed.
-    Own(Origin),
-}
-
-impl LineMap {
-    /// Lines that come from nowhere.
-    pub(crate) fn skip(&mut self, lines: usize) {
-        self.run(lines, LineOrigin::None);
-    }
-
-    /// Lines of which the first comes from `origin`, and those after it from the lines after that.
-    pub(crate) fn run(&mut self, lines: usize, origin: LineOrigin) {
-        self.runs.push(Run { first: self.lines + 1, origin });
-        self.lines += lines;
-    }
-
-    /// The origin of a line, counted from 1.
-    pub fn origin(&self, line: usize) -> LineOrigin {
-        let index = self.runs.partition_point(|run| run.first <= line);
-        let Some(run) = index.checked_sub(1).map(|index| &self.runs[index]).filter(|_| line <= self.lines) else {
-            return LineOrigin::None;
-        };
-        match &run.origin {
-            LineOrigin::Source { name, line: first } => {
-                LineOrigin::Source { name: name.clone(), line: first + line - run.first }
-            }
-            other => other.clone(),
-        }
-    }
 }
 
 /// Links every pass of a plan.
@@ -168,43 +56,43 @@ pub fn link(plan: &Plan, linking: &Linking, registry: &Registry) -> Result<Progr
     let mut diagnostics = Diagnostics::new();
     for pass in &plan.passes {
         match link_pass(plan, pass, linking, registry) {
-            Ok(text) => passes.push(text),
-            Err(fault) => diagnostics.push(unlinkable(plan, pass, &fault)),
+            Ok(source) => passes.push(source),
+            Err(error) => diagnostics.push(diagnostic(plan, pass, &error)),
         }
     }
-    diagnostics.gate(Program { linking: linking.clone(), passes })
+    diagnostics.into_result(Program { linking: linking.clone(), passes })
 }
 
-fn unlinkable(plan: &Plan, pass: &Pass, fault: &link::Fault) -> Diagnostic {
-    match &fault.own {
-        Some(origin) => {
-            let hint = "every file of a program has its own names: begin private ones with the name of the file";
-            Diagnostic::new(codes::REFUSED, origin, &fault.problem, hint)
+fn diagnostic(plan: &Plan, pass: &Pass, error: &link::LinkError) -> Diagnostic {
+    match &error.user_line {
+        Some(span) => {
+            let help = "names must be unique in a program: begin private names with the name of the file";
+            Diagnostic::new(codes::INVALID_WGSL, span, &error.problem, help)
         }
         None => Diagnostic::new(
             codes::INTERNAL,
-            &plan.variant.name.origin,
-            format!("pass `{}`: {}", pass.anchor, fault.problem),
-            "report it with the description; a row of your own must fulfil the contract of its axis",
+            &plan.variant.name.span,
+            format!("pass `{}`: {}", pass.name, error.problem),
+            "report this defect with the description; a row of your own must implement the contracts of its axis",
         ),
     }
 }
 
-fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassText, link::Fault> {
+fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -> Result<PassSource, link::LinkError> {
     let is_library = linking.form == Form::Module && pass.kind == Kind::Geometry;
-    let stage_text = match pass.kind {
+    let stage = match pass.kind {
         Kind::Geometry if !is_library => Some("geometry"),
         Kind::Fullscreen => Some("fullscreen"),
         _ => None,
     };
     let no_renames = link::Renames::default();
-    let own = instances::sources(pass, plan, registry)?;
-    // A shared function serves a contract where no row has one of its own.
-    let fulfilled: Vec<&'static str> = own.iter().flat_map(Source::fulfilled).collect();
+    let implementations = instances::sources(pass, plan, registry)?;
+    // A shared function implements a contract where no row does.
+    let implemented: Vec<&'static str> = implementations.iter().flat_map(Source::implemented).collect();
     let shared = registry.shared().iter();
-    let shared = shared.map(|text| Source::template(text, &no_renames).leaving(fulfilled.clone()));
-    let mut templates: Vec<Source> = shared.chain(own).collect();
-    if let Some(stage) = stage_text {
+    let shared = shared.map(|template| Source::template(template, &no_renames).without(implemented.clone()));
+    let mut templates: Vec<Source> = shared.chain(implementations).collect();
+    if let Some(stage) = stage {
         templates.push(instances::skeleton(stage, registry)?);
     }
     let skeleton = instances::skeleton(&pass.skeleton, registry)?;
@@ -213,16 +101,16 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
     let mut sources = emit::sources(plan, pass, linking, &atomics);
     sources.extend(templates);
-    // Forms of a skeleton (`store_reserving`) offer a caller's shader the same function.
+    // All forms of a skeleton (`store_reserving`) export the same function.
     let export = format!("{}_fragment", pass.skeleton.split('_').next().unwrap_or_default());
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };
     let generated = generated(plan, registry);
     let header = format!("{}\n{}", commented(&generated), enabled(&sources));
     let linked = link::link(&header, &sources, &exports, &prefix)?;
-    let notes = Notes { generated, algorithms: instances::algorithms(pass, plan, registry, &linked.heads)? };
-    Ok(PassText {
-        anchor: pass.anchor.clone(),
+    let notes = Notes { generated, algorithms: instances::algorithms(pass, plan, registry, &linked.headers)? };
+    Ok(PassSource {
+        name: pass.name.clone(),
         text: format!("{}\n", linked.text.trim_end()),
         lines: linked.lines,
         entry_points: linked.entry_points,
@@ -239,11 +127,11 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     })
 }
 
-/// What a file is made from. Choices that are their axis' default are left out, so that a new axis changes no file.
+/// Returns the choices that a file is generated from. Defaults of axes are omitted, so that a new axis changes no file.
 fn generated(plan: &Plan, registry: &Registry) -> String {
     let name = plan.variant.technique.as_deref().unwrap_or(&plan.variant.name.value);
     let mut text = format!("{name}, generated by {GENERATOR}.\n");
-    for Selected { row, options } in &plan.selection.rows {
+    for SelectedRow { row, options } in &plan.selection.rows {
         let is_default = registry.axis(&row.axis).and_then(|axis| axis.default) == Some(&*row.key);
         let options: Vec<String> = options.iter().map(|(name, value)| format!("{name}: {value}")).collect();
         text.push_str(&match options.as_slice() {
@@ -255,7 +143,7 @@ fn generated(plan: &Plan, registry: &Registry) -> String {
     text
 }
 
-/// What WGSL wants to be told at the top of a text: directives for words that some source uses.
+/// Returns the WGSL directives that the sources require.
 fn enabled(sources: &[Source]) -> &'static str {
     if sources.iter().any(|source| source.mentions("builtin(primitive_index)")) {
         "enable primitive_index;\n\n"
@@ -264,7 +152,7 @@ fn enabled(sources: &[Source]) -> &'static str {
     }
 }
 
-/// Each line as a comment.
+/// Returns each line as a comment.
 fn commented(lines: &str) -> String {
     lines.lines().map(|line| format!("// {line}\n")).collect()
 }

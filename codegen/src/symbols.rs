@@ -1,17 +1,17 @@
-//! The symbols of one plan, and formulas over them.
+//! The symbols of a plan, and formulas over them.
 //!
-//! In: the vocabulary's table ([`SYMBOLS`]), the parameters of the chosen rows, the symbols that rows define. Out: one table
-//! with a handle per symbol, and formulas whose symbols are handles. What a frame gives the symbols is not here.
+//! Input: the table of the vocabulary ([`SYMBOLS`]), the parameters of the selected rows, the symbols that rows define. Output: one
+//! table with a handle per symbol, and formulas whose symbols are handles. The table has no values that a frame sets.
 
 use std::fmt;
 
 use fragbuf_templates::vocabulary::{
-    Expression, Formula, FormulaError, SYMBOLS, SetBy, Symbol, Text, When, apply, is_word_of_formulas,
+    BindingTime, Expression, Formula, FormulaError, SYMBOLS, Setter, Symbol, Text, apply, is_reserved_in_formulas,
 };
 
-use crate::definitions::{Misdefined, Misdefinition};
+use crate::definitions::{DefinitionError, DefinitionProblem, NameTaken};
 
-/// A symbol of a plan: the place in its [`SymbolTable`].
+/// The handle of a symbol of a plan: its index in the [`SymbolTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SymbolId(u16);
 
@@ -20,34 +20,34 @@ impl SymbolId {
     pub const WIDTH: SymbolId = builtin("width");
     /// Rows of the frame, or of a slice.
     pub const HEIGHT: SymbolId = builtin("height");
-    /// The row at which a slice begins.
+    /// The first row of a slice.
     pub const FIRST_ROW: SymbolId = builtin("first_row");
     /// Pixels of the frame and of its padding.
     pub const PIXELS: SymbolId = builtin("pixels");
     /// Fragments that a pixel keeps.
     pub const K: SymbolId = builtin("k");
-    /// Slots of every pixel of a fixed array.
+    /// Slots of each pixel in a fixed array.
     pub const N: SymbolId = builtin("n");
-    /// Fragments that a pool has memory for.
+    /// Fragments that fit in a pool.
     pub const FRAGMENTS: SymbolId = builtin("fragments");
-    /// Fragments that exact regions have memory for.
+    /// Fragments that fit in exact regions.
     pub const KEPT: SymbolId = builtin("kept");
     /// The iteration of the innermost loop.
     pub const ITERATION: SymbolId = builtin("iteration");
-    /// The greatest k that the code serves.
+    /// The largest k that the code supports.
     pub const CAPACITY: SymbolId = builtin("capacity");
     /// Words of a stored fragment.
     pub const ENTRY_WORDS: SymbolId = builtin("entry_words");
     /// Words of a stored fragment without its key.
-    pub const BESIDE_WORDS: SymbolId = builtin("beside_words");
+    pub const VALUE_WORDS: SymbolId = builtin("value_words");
 
-    /// The place in the table.
+    /// Returns the index in the table.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// The handle of a symbol that every plan has. A name that is not in the table does not compile.
+/// Returns the handle of a symbol that every plan has. A name that is not in the table does not compile.
 const fn builtin(name: &str) -> SymbolId {
     let mut index = 0;
     while index < SYMBOLS.len() {
@@ -56,7 +56,7 @@ const fn builtin(name: &str) -> SymbolId {
         }
         index += 1;
     }
-    // Only ever evaluated by the compiler, which stops here.
+    // Evaluated only by the compiler, which reports the panic as an error.
     #[allow(clippy::panic, reason = "an error at compile time")]
     {
         panic!("not a symbol of the vocabulary")
@@ -64,14 +64,14 @@ const fn builtin(name: &str) -> SymbolId {
 }
 
 const fn is_equal(a: &[u8], b: &[u8]) -> bool {
-    let mut at = 0;
-    while at < a.len() && at < b.len() && a[at] == b[at] {
-        at += 1;
+    let mut index = 0;
+    while index < a.len() && index < b.len() && a[index] == b[index] {
+        index += 1;
     }
-    at == a.len() && at == b.len()
+    index == a.len() && index == b.len()
 }
 
-/// The symbols of a plan: those of the vocabulary in its order, then parameters of rows by their constants.
+/// The symbols of a plan: those of the vocabulary in its order, then the parameters of rows, named by their constants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SymbolTable {
     symbols: Vec<PlanSymbol>,
@@ -80,28 +80,28 @@ pub struct SymbolTable {
 /// A symbol of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanSymbol {
-    /// The word in formulas.
+    /// The name in formulas.
     pub name: Text,
-    /// What it is.
+    /// The meaning.
     pub meaning: Text,
-    /// When it gets its value.
-    pub when: When,
-    /// Who gives it its value.
-    pub set_by: SetBy,
+    /// When its value is set.
+    pub when: BindingTime,
+    /// What sets its value.
+    pub set_by: Setter,
     /// The least and the greatest value.
     pub range: (u64, u64),
-    /// What the plan itself says of its value.
+    /// Its value in the plan.
     pub value: PlanValue,
 }
 
-/// What a plan says of a symbol's value.
+/// The value of a symbol in a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlanValue {
     /// A number.
     Number(u64),
-    /// This formula, unless a frame sets another value.
+    /// The value of this formula, unless a frame sets another value.
     Default(Quantity),
-    /// Nothing: the frame sets it.
+    /// No value: the frame sets it.
     Open,
 }
 
@@ -109,18 +109,17 @@ pub enum PlanValue {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
     text: Formula,
-    /// The whole formula.
-    whole: Term,
-    /// The same with every part computed that has a value when code is generated.
-    term: Term,
+    resolved: Term,
+    /// The term after evaluation of the parts whose values are known at generation.
+    folded: Term,
 }
 
-/// Whether an operator says that something holds, which texts do by a type of its own.
-pub fn is_truth(operator: &str) -> bool {
+/// Tests whether the result of an operator is a Boolean, which is a separate type in generated code.
+pub fn is_boolean(operator: &str) -> bool {
     matches!(operator, "==" | "!=" | "<" | "<=" | ">" | ">=" | "&&" | "||")
 }
 
-/// A formula, resolved.
+/// A formula with resolved symbols.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Term {
     /// A whole number.
@@ -131,68 +130,68 @@ pub enum Term {
     Apply(&'static str, Vec<Term>),
 }
 
-/// The name of a parameter's constant has another meaning in formulas.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct NameTaken;
-
 impl SymbolTable {
-    /// The table of a plan: `number` gives the values of generation time, `defined` the formulas that rows give instead of a
-    /// default. Parameters are added one by one ([`SymbolTable::add`]), because each may rest on the former.
-    pub(crate) fn new(number: &dyn Fn(&str) -> Option<u64>, defined: &[(&str, &Formula)]) -> Result<Self, Misdefined> {
+    /// Creates the table of a plan. `number` returns the values that are known at generation; `definitions` are the formulas by which
+    /// rows replace defaults. Parameters are added one by one ([`SymbolTable::add`]), because each may depend on the previous ones.
+    pub(crate) fn new(
+        number: &dyn Fn(&str) -> Option<u64>,
+        definitions: &[(&str, &Formula)],
+    ) -> Result<Self, DefinitionError> {
         let mut table = SymbolTable { symbols: SYMBOLS.iter().map(open).collect() };
         for symbol in &mut table.symbols {
             if let Some(number) = number(&symbol.name) {
                 symbol.value = PlanValue::Number(number);
             }
         }
-        for (at, (name, formula)) in defined.iter().enumerate() {
-            let fault = |problem| Misdefined { symbol: (*name).to_owned(), formula: (*formula).clone(), problem };
-            let id = table.find(name).ok_or_else(|| fault(Misdefinition::Unknown))?;
-            if table.number(id).is_some() || defined[..at].iter().any(|(other, _)| other == name) {
-                return Err(fault(Misdefinition::Twice));
+        for (index, (name, formula)) in definitions.iter().enumerate() {
+            let error = |problem| DefinitionError { symbol: (*name).to_owned(), formula: (*formula).clone(), problem };
+            let id = table.find(name).ok_or_else(|| error(DefinitionProblem::Unknown))?;
+            if table.number(id).is_some() || definitions[..index].iter().any(|(other, _)| other == name) {
+                return Err(error(DefinitionProblem::Duplicate));
             }
         }
-        table.define(defined)?;
+        table.define(definitions)?;
         Ok(table)
     }
 
-    /// Gives symbols their formulas: those of rows, else their defaults. None may go round in a circle.
-    fn define(&mut self, defined: &[(&str, &Formula)]) -> Result<(), Misdefined> {
+    /// Sets the formulas of symbols: those of rows, or else their defaults. Fails on a definition that depends on itself.
+    fn define(&mut self, definitions: &[(&str, &Formula)]) -> Result<(), DefinitionError> {
         for (index, symbol) in SYMBOLS.iter().enumerate() {
-            let own = defined.iter().find(|(name, _)| *name == symbol.name).map(|(_, formula)| (*formula).clone());
-            let Some(formula) = own.or_else(|| symbol.default_formula()) else { continue };
-            let quantity = self.compile(&formula).map_err(|error| Misdefined {
+            let definition =
+                definitions.iter().find(|(name, _)| *name == symbol.name).map(|(_, formula)| (*formula).clone());
+            let Some(formula) = definition.or_else(|| symbol.default_formula()) else { continue };
+            let quantity = self.compile(&formula).map_err(|error| DefinitionError {
                 symbol: symbol.name.to_owned(),
                 formula,
-                problem: Misdefinition::NoFormula(error),
+                problem: DefinitionProblem::InvalidFormula(error),
             })?;
             self.symbols[index].value = PlanValue::Default(quantity);
         }
-        for (name, formula) in defined {
-            if self.find(name).is_some_and(|id| self.rests_on_itself(id)) {
+        for (name, formula) in definitions {
+            if self.find(name).is_some_and(|id| self.depends_on_itself(id)) {
                 let (symbol, formula) = ((*name).to_owned(), (*formula).clone());
-                return Err(Misdefined { symbol, formula, problem: Misdefinition::Circular });
+                return Err(DefinitionError { symbol, formula, problem: DefinitionProblem::Circular });
             }
         }
         Ok(())
     }
 
-    /// Whether the formula of a symbol leads back to it, through those of others too.
-    fn rests_on_itself(&self, id: SymbolId) -> bool {
+    /// Tests whether the formula of a symbol depends on the symbol, directly or through other symbols.
+    fn depends_on_itself(&self, id: SymbolId) -> bool {
         let formula_of = |id: SymbolId| match &self.get(id).value {
             PlanValue::Default(quantity) => quantity.symbols(),
             _ => Vec::new(),
         };
         let mut reached = formula_of(id);
-        let mut at = 0;
-        while let Some(next) = reached.get(at).copied() {
+        let mut index = 0;
+        while let Some(next) = reached.get(index).copied() {
             reached.extend(formula_of(next).into_iter().filter(|id| !reached.contains(id)).collect::<Vec<_>>());
-            at += 1;
+            index += 1;
         }
         reached.contains(&id)
     }
 
-    /// Adds a parameter of a row. `Err`: its name means something else in formulas already.
+    /// Adds a parameter of a row. Fails if its name already has another meaning in formulas.
     pub(crate) fn add(
         &mut self,
         constant: &Text,
@@ -200,22 +199,22 @@ impl SymbolTable {
         range: (u32, u32),
         value: u32,
     ) -> Result<(), NameTaken> {
-        if is_word_of_formulas(constant) || self.find(constant).is_some() {
+        if is_reserved_in_formulas(constant) || self.find(constant).is_some() {
             return Err(NameTaken);
         }
         self.symbols.push(PlanSymbol {
             name: constant.clone(),
             meaning: meaning.clone(),
-            when: When::Generation,
-            set_by: SetBy::Description,
+            when: BindingTime::Generation,
+            set_by: Setter::Description,
             range: (range.0.into(), range.1.into()),
             value: PlanValue::Number(value.into()),
         });
         Ok(())
     }
 
-    /// Bounds a symbol that frames set, and says its value where none does.
-    pub(crate) fn bound(&mut self, id: SymbolId, range: (u64, u64), default: Option<Quantity>) {
+    /// Sets the range of a symbol that frames set, and its default.
+    pub(crate) fn set_range(&mut self, id: SymbolId, range: (u64, u64), default: Option<Quantity>) {
         let symbol = &mut self.symbols[id.index()];
         symbol.range = range;
         if let Some(default) = default {
@@ -223,23 +222,23 @@ impl SymbolTable {
         }
     }
 
-    /// A symbol.
+    /// Returns a symbol.
     pub fn get(&self, id: SymbolId) -> &PlanSymbol {
         &self.symbols[id.index()]
     }
 
-    /// Every symbol with its handle, in order.
+    /// Returns every symbol with its handle, in order.
     pub fn iter(&self) -> impl Iterator<Item = (SymbolId, &PlanSymbol)> {
         self.symbols.iter().enumerate().map(|(index, symbol)| (SymbolId(index as u16), symbol))
     }
 
-    /// The handle of a name, for what comes from outside.
+    /// Returns the handle of a name.
     pub fn find(&self, name: &str) -> Option<SymbolId> {
         let index = self.symbols.iter().position(|symbol| symbol.name == name)?;
         Some(SymbolId(index as u16))
     }
 
-    /// The value of a symbol, if it has one when code is generated.
+    /// Returns the value of a symbol if it is known at generation.
     pub fn number(&self, id: SymbolId) -> Option<u64> {
         match self.get(id).value {
             PlanValue::Number(number) => Some(number),
@@ -247,24 +246,24 @@ impl SymbolTable {
         }
     }
 
-    /// The same by name.
+    /// Returns the value of a name if it is known at generation.
     pub fn number_of(&self, name: &str) -> Option<u64> {
         self.number(self.find(name)?)
     }
 
-    /// A formula with its symbols resolved. `Err`: it cannot be read, names a symbol that there is not, or has a part that has
-    /// no value in any frame.
+    /// Resolves the symbols of a formula. Fails if it cannot be parsed, names an unknown symbol, or has a part without a value in every
+    /// frame.
     pub fn compile(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
         let expression = formula.read()?;
-        let whole = self.term(&expression)?;
-        let term = self.term(&expression.folded(&|name| self.number_of(name))?)?;
-        Ok(Quantity { text: formula.clone(), whole, term })
+        let resolved = self.term(&expression)?;
+        let folded = self.term(&expression.folded(&|name| self.number_of(name))?)?;
+        Ok(Quantity { text: formula.clone(), resolved, folded })
     }
 
-    /// The same for a length, which shaders compute in words of 32 bits.
+    /// Resolves the symbols of a length. Fails if a number exceeds 32 bits, because shaders compute lengths in 32-bit words.
     pub fn length(&self, formula: &Formula) -> Result<Quantity, FormulaError> {
         let length = self.compile(formula)?;
-        match length.term.greatest_number() {
+        match length.folded.greatest_number() {
             Some(number) if number > u64::from(u32::MAX) => Err(FormulaError::Word(number)),
             _ => Ok(length),
         }
@@ -282,29 +281,33 @@ impl SymbolTable {
         })
     }
 
-    /// The value of a symbol where a frame has `given` it one, else what the plan says.
-    pub fn value(&self, id: SymbolId, given: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
-        match (&self.get(id).value, given(id)) {
+    /// Returns the value of a symbol: that of the plan if it is a number, or else that of the frame (`frame_value`), or else the default.
+    pub fn value(&self, id: SymbolId, frame_value: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
+        match (&self.get(id).value, frame_value(id)) {
             (PlanValue::Number(number), _) => Ok(*number),
             (_, Some(value)) => Ok(value),
-            (PlanValue::Default(quantity), None) => self.evaluate(quantity, given),
+            (PlanValue::Default(quantity), None) => self.evaluate(quantity, frame_value),
             (PlanValue::Open, None) => Err(FormulaError::Unbound(self.get(id).name.to_string())),
         }
     }
 
-    /// The value of a formula where a frame has `given` symbols these values.
-    pub fn evaluate(&self, of: &Quantity, given: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
-        self.evaluate_term(&of.whole, given)
+    /// Returns the value of a formula, with the values of the frame (`frame_value`).
+    pub fn evaluate(
+        &self,
+        quantity: &Quantity,
+        frame_value: &dyn Fn(SymbolId) -> Option<u64>,
+    ) -> Result<u64, FormulaError> {
+        self.evaluate_term(&quantity.resolved, frame_value)
     }
 
-    fn evaluate_term(&self, term: &Term, given: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
+    fn evaluate_term(&self, term: &Term, frame_value: &dyn Fn(SymbolId) -> Option<u64>) -> Result<u64, FormulaError> {
         match term {
             Term::Number(number) => Ok(*number),
-            Term::Symbol(id) => self.value(*id, given),
+            Term::Symbol(id) => self.value(*id, frame_value),
             Term::Apply(operator, arguments) => {
                 let mut values = Vec::with_capacity(arguments.len());
                 for argument in arguments {
-                    values.push(self.evaluate_term(argument, given)?);
+                    values.push(self.evaluate_term(argument, frame_value)?);
                 }
                 apply(operator, &values).ok_or_else(|| FormulaError::Overflow(format!("{operator}{values:?}")))
             }
@@ -334,22 +337,22 @@ impl Term {
 }
 
 impl Quantity {
-    /// The formula as it was written.
+    /// Returns the formula as written.
     pub fn formula(&self) -> &Formula {
         &self.text
     }
 
-    /// The formula as texts say it: resolved, and every part computed that has a value when code is generated.
+    /// Returns the resolved formula for generated code, after evaluation of the parts whose values are known at generation.
     pub fn term(&self) -> &Term {
-        &self.term
+        &self.folded
     }
 
-    /// Whether the formula itself names the symbol.
+    /// Tests whether the formula names the symbol.
     pub fn mentions(&self, id: SymbolId) -> bool {
         self.symbols().contains(&id)
     }
 
-    /// The symbols that the formula names.
+    /// Returns the symbols that the formula names.
     pub fn symbols(&self) -> Vec<SymbolId> {
         fn collect(term: &Term, symbols: &mut Vec<SymbolId>) {
             match term {
@@ -359,7 +362,7 @@ impl Quantity {
             }
         }
         let mut symbols = Vec::new();
-        collect(&self.whole, &mut symbols);
+        collect(&self.resolved, &mut symbols);
         symbols
     }
 }
@@ -380,17 +383,16 @@ mod tests {
     }
 
     #[test]
-    fn handles_are_the_tables_places() {
+    fn handles_are_indices_of_the_table() {
         let table = table();
-        for (id, name) in
-            [(SymbolId::WIDTH, "width"), (SymbolId::KEPT, "kept"), (SymbolId::BESIDE_WORDS, "beside_words")]
+        for (id, name) in [(SymbolId::WIDTH, "width"), (SymbolId::KEPT, "kept"), (SymbolId::VALUE_WORDS, "value_words")]
         {
             assert_eq!((table.get(id).name.as_ref(), table.find(name)), (name, Some(id)));
         }
     }
 
     #[test]
-    fn defaults_rest_on_what_the_frame_gives() {
+    fn defaults_depend_on_values_of_the_frame() {
         let table = table();
         let frame = |id| {
             [(SymbolId::WIDTH, 4), (SymbolId::HEIGHT, 3), (SymbolId::FRAGMENTS, 25)]
@@ -400,37 +402,41 @@ mod tests {
         };
         assert_eq!(table.value(SymbolId::PIXELS, &frame), Ok(12));
         assert_eq!(table.value(SymbolId::N, &frame), Ok(3));
-        let given = |id| if id == SymbolId::N { Some(7) } else { frame(id) };
-        assert_eq!(table.evaluate(&table.compile(&"n * entry_words * pixels".into()).unwrap(), &given), Ok(168));
+        let frame_value = |id| if id == SymbolId::N { Some(7) } else { frame(id) };
+        assert_eq!(table.evaluate(&table.compile(&"n * entry_words * pixels".into()).unwrap(), &frame_value), Ok(168));
         assert_eq!(table.value(SymbolId::K, &frame), Err(FormulaError::Unbound("k".into())));
         assert_eq!(table.compile(&"2 * unknown".into()), Err(FormulaError::Unbound("unknown".into())));
     }
 
     #[test]
-    fn definitions_that_give_no_value_are_refused() {
-        let new = |defined: &[(&str, &'static str)]| {
-            let formulas: Vec<(&str, Formula)> = defined.iter().map(|(name, text)| (*name, (*text).into())).collect();
+    fn invalid_definitions_are_rejected() {
+        let new = |definitions: &[(&str, &'static str)]| {
+            let formulas: Vec<(&str, Formula)> =
+                definitions.iter().map(|(name, text)| (*name, (*text).into())).collect();
             let formulas: Vec<(&str, &Formula)> = formulas.iter().map(|(name, formula)| (*name, formula)).collect();
             let number = |name: &str| (name == "entry_words").then_some(2);
-            SymbolTable::new(&number, &formulas).map(|_| ()).map_err(|fault| (fault.symbol, fault.problem))
+            SymbolTable::new(&number, &formulas).map(|_| ()).map_err(|error| (error.symbol, error.problem))
         };
-        let circular = |name: &str| Err((name.to_owned(), Misdefinition::Circular));
+        let circular = |name: &str| Err((name.to_owned(), DefinitionProblem::Circular));
         assert_eq!(new(&[("pixels", "width * 2")]), Ok(()));
         assert_eq!(new(&[("fragments", "kept"), ("kept", "pixels * 2")]), Ok(()));
         assert_eq!(new(&[("pixels", "pixels * 2")]), circular("pixels"));
-        // Not through defaults alone.
+        // Cycles through other definitions and defaults.
         assert_eq!(new(&[("fragments", "kept"), ("kept", "fragments")]), circular("fragments"));
         assert_eq!(new(&[("height", "n"), ("width", "1")]), circular("height"));
-        assert_eq!(new(&[("pixel", "width")]), Err(("pixel".to_owned(), Misdefinition::Unknown)));
-        for twice in [&[("pixels", "width"), ("pixels", "height")][..], &[("entry_words", "3")]] {
-            assert_eq!(new(twice).map_err(|(_, problem)| problem), Err(Misdefinition::Twice));
+        assert_eq!(new(&[("pixel", "width")]), Err(("pixel".to_owned(), DefinitionProblem::Unknown)));
+        for duplicate in [&[("pixels", "width"), ("pixels", "height")][..], &[("entry_words", "3")]] {
+            assert_eq!(new(duplicate).map_err(|(_, problem)| problem), Err(DefinitionProblem::Duplicate));
         }
-        let unread = new(&[("pixels", "width *")]);
-        assert!(matches!(unread, Err((_, Misdefinition::NoFormula(FormulaError::Malformed { .. })))), "{unread:?}");
+        let unparsable = new(&[("pixels", "width *")]);
+        assert!(
+            matches!(unparsable, Err((_, DefinitionProblem::InvalidFormula(FormulaError::Malformed { .. })))),
+            "{unparsable:?}"
+        );
     }
 
     #[test]
-    fn no_parameter_takes_the_name_of_a_symbol() {
+    fn parameters_cannot_have_the_name_of_a_symbol() {
         let mut table = table();
         let mut add = |name: &'static str| table.add(&name.into(), &"".into(), (1, 9), 3);
         assert_eq!(add("LIMIT"), Ok(()));

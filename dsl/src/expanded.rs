@@ -1,7 +1,5 @@
-//! What code expanded from [`fragment_buffer!`](crate::fragment_buffer) needs at run time: the list that a resolve closure
-//! sees, and the bytes of uniforms.
-//!
-//! In: slices and values of Rust's and glam's types. Out: the same with the meaning that the language gives them.
+//! The runtime types of code expanded from [`fragment_buffer!`](crate::fragment_buffer): the list that a resolve closure
+//! reads, and the bytes of uniforms.
 
 use std::iter::Copied;
 use std::ops::Index;
@@ -9,27 +7,27 @@ use std::slice::Iter;
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// The kept fragments as a closure sees them: a list that is read as often as it takes and gives values, not references.
+/// The list of kept fragments that a resolve closure reads. Iteration gives values, not references, and can be repeated.
 #[derive(Debug)]
 pub struct Fragments<'a, F>(&'a [F]);
 
 impl<'a, F: Copy> Fragments<'a, F> {
-    /// These fragments, in this order.
+    /// Wraps fragments; their order stays.
     pub fn new(fragments: &'a [F]) -> Self {
         Fragments(fragments)
     }
 
-    /// How many there are.
+    /// Returns the number of fragments.
     pub fn len(self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     pub fn is_empty(self) -> bool {
         self.0.is_empty()
     }
 
-    /// One after the other.
+    /// Iterates over the fragments.
     pub fn iter(self) -> Copied<Iter<'a, F>> {
         self.0.iter().copied()
     }
@@ -62,11 +60,11 @@ impl<F> Index<usize> for Fragments<'_, F> {
 
 /// A value of a uniform block.
 pub trait UniformValue {
-    /// Writes the value as it lies in memory into its bytes, as many as its type has.
+    /// Writes the bytes of the value; `bytes` has the size of the type.
     fn write(self, bytes: &mut [u8]);
 }
 
-macro_rules! written {
+macro_rules! uniform_values {
     ($($kind:ty: |$value:ident| $components:expr;)*) => {
         $(impl UniformValue for $kind {
             fn write(self, bytes: &mut [u8]) {
@@ -79,7 +77,7 @@ macro_rules! written {
     };
 }
 
-written! {
+uniform_values! {
     f32: |value| [value];
     u32: |value| [value];
     i32: |value| [value];

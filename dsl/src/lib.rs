@@ -1,8 +1,9 @@
-//! The language of fragment buffers, whole: `.fragbuf` files ([`parse`]), the macro [`fragment_buffer!`], and the
-//! [`builder`]. Equal descriptions make equal [`Draft`]s and have the same mistakes, whichever door they come through.
+//! The language of fragment buffers with its three front ends: `.fragbuf` files ([`parse`]), the macro
+//! [`fragment_buffer!`], and the [`builder`]. Equal descriptions give equal [`Draft`]s and the same diagnostics in every
+//! front end.
 //!
-//! This crate is the language's facade: it re-exports, and holds the little that expanded code needs at run time. It
-//! depends on no GPU crate: `fragbuf` adds the generation of passes.
+//! This crate is the facade of the language: it re-exports the other crates and defines the runtime types of expanded
+//! code. It depends on no GPU crate; `fragbuf` adds the generation of passes.
 //!
 //! ```
 //! fragbuf_dsl::fragment_buffer! {
@@ -27,7 +28,7 @@
 //!     .attribute("depth", Format::F32)
 //!     .uniform("far", UniformType::F32)
 //!     .keep_least(4, closure!(|f| f.depth - 0.25 * f.color.w))
-//!     .admit(closure!(|f, u| f.depth < u.far));
+//!     .constraint(closure!(|f, u| f.depth < u.far));
 //! assert_eq!(built.draft(), Ok(glass::draft()));
 //! ```
 
@@ -35,48 +36,57 @@ pub mod builder;
 mod expanded;
 
 pub use expanded::{Fragments, UniformValue};
-pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Origin, Variant, check};
-pub use fragbuf_syntax::{Captured, Parsed, parse};
+pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, check};
+pub use fragbuf_syntax::{CapturedTokens, Parsed, parse};
 pub use fragbuf_templates::Registry;
 pub use glam;
 
 #[doc(hidden)]
 pub use fragbuf_macros as macros;
 
-/// A fragment buffer described in Rust: the grammar of `.fragbuf` files, a visibility and documentation in front.
+/// Describes a fragment buffer in Rust, with the grammar of `.fragbuf` files; documentation and a visibility may precede it.
 ///
-/// It becomes a module named after the buffer (`MostVisible`: `most_visible`) with
+/// It emits a module named after the buffer (`MostVisible`: `most_visible`) with
 ///
 /// * `Fragment`, the attributes in [`glam`]'s types, and `Uniforms`, laid out as on the GPU, with `SIZE` and `bytes()`;
-/// * `criterion`, `constraint_0` …, `resolve`: the closures as functions, as far as the description has them; its helper
-///   functions in `functions`;
-/// * `bindings`: the numbers of uniform blocks and buffers in the bind group, as far as they are the same on every target;
-/// * `draft()` and `variant()`: the description as data, with the places where it was written.
+/// * `criterion`, `constraint_0` …, `resolve`: the closures of the description as functions; its helper functions are in
+///   `functions`;
+/// * `draft()` and `variant()`: the description as data, with source spans.
 ///
-/// The functions are Rust's: where a shader goes on with some value (a sum that overflows, an index beyond the list, a
-/// `clamp` with crossed bounds), they panic as Rust does.
+/// `fragbuf::fragment_buffer!` emits the binding numbers of the passes in addition, in a module `bindings`.
 ///
-/// A mistake is an error at the user's own token, `[code] message` with a way out. The description is checked against
-/// fragbuf's own registry; one that needs rows of a user's belongs into a file or the builder.
+/// The functions have Rust's semantics: they panic where a shader continues with some value (a sum that overflows, an index
+/// beyond the list, a `clamp` with crossed bounds).
+///
+/// An error is a compiler error at the user's token: `[code] message`, with a help text. The description is checked against
+/// fragbuf's own registry; for user files, use a `.fragbuf` file or the builder.
 #[macro_export]
 macro_rules! fragment_buffer {
     ($($description:tt)*) => { $crate::macros::fragment_buffer! { [$crate] $($description)* } };
 }
 
-/// These items, as they are.
+/// Emits nothing: binding numbers follow from the plan, which the language does not have. The macro of this name in `fragbuf`
+/// emits them.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! bindings {
+    ($($description:tt)*) => {};
+}
+
+/// Emits the items unchanged.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! as_written {
     ($($items:tt)*) => { $($items)* };
 }
 
-/// A closure for the [`builder`], captured with its places: `closure!(|f| f.depth - 0.25 * f.color.w)`.
+/// Captures a closure for the [`builder`], with its source spans: `closure!(|f| f.depth - 0.25 * f.color.w)`.
 #[macro_export]
 macro_rules! closure {
     ($($closure:tt)*) => { $crate::macros::closure! { [$crate] $($closure)* } };
 }
 
-/// A helper function for the [`builder`], captured with its places: `function!(fn twice(x: f32) -> f32 { x * 2.0 })`.
+/// Captures a helper function for the [`builder`], with its source spans: `function!(fn twice(x: f32) -> f32 { x * 2.0 })`.
 #[macro_export]
 macro_rules! function {
     ($($function:tt)*) => { $crate::macros::function! { [$crate] $($function)* } };

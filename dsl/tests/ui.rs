@@ -1,5 +1,5 @@
-//! What the compiler shows a user of `fragment_buffer!`: every family of mistakes at the user's own token, and nothing
-//! of rustc's own about the expansion. `ui/NAME.stderr` is reviewed by eye.
+//! The compiler errors that a user of `fragment_buffer!` sees: every family of errors at the user's own token, and no error
+//! of rustc about the expansion. A person reviews `ui/NAME.stderr`.
 
 #[test]
 fn mistakes_are_shown_at_the_users_tokens() {

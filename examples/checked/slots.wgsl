@@ -1,4 +1,4 @@
-// Four slots for one pixel, given out by a counter that is read and written apart: two fragments can take one slot.
+// Four slots for one pixel, allocated by a counter. Its read and write are separate, so two fragments can take one slot.
 
 @group(0) @binding(0) var<storage, read_write> used: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> slots: array<atomic<u32>, 4>;
@@ -12,7 +12,7 @@ fn store(@builtin(position) position: vec4<f32>) {
     }
 }
 
-/// Two fragments came, so two slots are taken and written.
+/// Returns whether the two fragments took and wrote two slots.
 fn holds() -> bool {
     return atomicLoad(&used) == 2u && atomicLoad(&slots[0]) != 0u && atomicLoad(&slots[1]) != 0u;
 }

@@ -1,15 +1,15 @@
-//! What Rust code needs to run generated passes: entry points and texts, bindings, sizes of buffers, layouts of blocks.
+//! Writes the Rust bindings of generated passes: entry points and sources, binding numbers, buffer sizes, block layouts.
 
 use std::fmt::Write;
 
-use fragbuf_targets::{File, Generation, Planned};
 use fragbuf_codegen::Plan;
-use fragbuf_model::UniformType;
+use fragbuf_model::{UniformBlock, UniformType};
+use fragbuf_targets::{File, Generation, PlanForTargets};
 
 use super::rust;
 
-/// One module `name` of bindings for a generation from `source`. Paths of files begin with `folder`, relative to the Rust
-/// file. A plan is a module `plan`, with a number where targets follow different ones; each target is a module with one
+/// Returns a module `name` of bindings for a generation from `source`. Paths of files begin with `folder`, relative to the
+/// Rust file. A plan is a module `plan`, with a number if targets have different plans; each target is a module with one
 /// module per pass.
 pub fn bindings(name: &str, source: &str, generation: &Generation, group: u32, folder: &str) -> String {
     let mut text = format!(
@@ -35,7 +35,7 @@ fn plan_name(index: usize) -> String {
 fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
     let axes = plan.selection.describe();
     let _ = write!(text, "\n    /// {}: {axes}.\n    pub mod {name} {{\n", plan.variant.name.value);
-    let _ = writeln!(text, "        /// The bind group of everything.\n        pub const GROUP: u32 = {group};");
+    let _ = writeln!(text, "        /// The bind group of all declarations.\n        pub const GROUP: u32 = {group};");
     let mut names = Names::with("GROUP");
     for (constant, value) in &plan.constants {
         let name = names.fresh(constant.clone());
@@ -47,18 +47,18 @@ fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
     text.push_str("    }\n");
 }
 
-/// Uniform blocks: byte offsets of their fields, and sizes as every target takes them.
+/// Writes the uniform blocks: byte offsets of their fields, and sizes that are valid on every target.
 fn blocks(plan: &Plan, text: &mut String) {
     let fields = plan.fields.iter().map(|id| (plan.symbols.get(*id).name.to_string(), UniformType::U32));
     let frame: Vec<(String, UniformType)> = fields.collect();
-    block("frame", "The size of the frame and what else the host sets for it", 0, &frame, text);
-    let own: Vec<(String, UniformType)> =
+    block("frame", "The size of the frame and the other values that the host sets for it", 0, &frame, text);
+    let user: Vec<(String, UniformType)> =
         plan.variant.uniforms.iter().map(|u| (u.name.value.clone(), u.kind.value)).collect();
-    if !own.is_empty() {
-        block("uniforms", "The description's own uniforms", 1, &own, text);
+    if !user.is_empty() {
+        block("uniforms", "The uniforms of the description", 1, &user, text);
     }
     text.push_str(
-        "\n        /// One matrix, column after column: from positions of vertices to clip space.\n        pub mod camera {\n\
+        "\n        /// One matrix, column after column: transforms vertex positions to clip space.\n        pub mod camera {\n\
         \x20           /// The binding.\n            pub const BINDING: u32 = 2;\n\
         \x20           /// Bytes of the block.\n            pub const SIZE: u64 = 64;\n        }\n",
     );
@@ -67,31 +67,18 @@ fn blocks(plan: &Plan, text: &mut String) {
 fn block(name: &str, summary: &str, binding: u32, fields: &[(String, UniformType)], text: &mut String) {
     let _ = write!(text, "\n        /// {summary}.\n        pub mod {name} {{\n");
     let _ = writeln!(text, "            /// The binding.\n            pub const BINDING: u32 = {binding};");
-    let (mut end, mut names) = (0u64, Names::with("SIZE"));
-    for (field, kind) in fields {
-        let (size, align) = layout(*kind);
-        let offset = end.next_multiple_of(align);
-        end = offset + size;
+    let UniformBlock { offsets, size } = UniformBlock::of_types(fields.iter().map(|(_, kind)| *kind));
+    let mut names = Names::with("SIZE");
+    for ((field, kind), offset) in fields.iter().zip(offsets) {
         let constant = names.fresh(format!("{}_OFFSET", field.to_ascii_uppercase()));
         let _ = writeln!(text, "            /// Byte offset of `{field}`, {}.", kind.wgsl_type());
         let _ = writeln!(text, "            pub const {constant}: u64 = {offset};");
     }
-    let size = end.next_multiple_of(16);
     let _ =
         writeln!(text, "            /// Bytes of the block.\n            pub const SIZE: u64 = {size};\n        }}");
 }
 
-/// Bytes and alignment in a uniform block, WGSL §14.4.1; std140 says the same of these.
-fn layout(kind: UniformType) -> (u64, u64) {
-    match kind {
-        UniformType::F32 | UniformType::U32 | UniformType::I32 => (4, 4),
-        UniformType::Vec2 => (8, 8),
-        UniformType::Vec3 => (12, 16),
-        UniformType::Vec4 => (16, 16),
-    }
-}
-
-/// Locations of the vertex stage's inputs.
+/// Writes the locations of the vertex stage's inputs.
 fn vertex(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// Locations of the inputs of geometry passes.\n        pub mod vertex {\n");
     text.push_str("            /// vec3<f32>\n            pub const POSITION: u32 = 0;\n");
@@ -105,9 +92,9 @@ fn vertex(plan: &Plan, text: &mut String) {
     text.push_str("        }\n");
 }
 
-/// Buffers: bindings, and sizes as functions of what is known at allocation.
+/// Writes the buffers: binding numbers, and sizes as functions of the values known at allocation.
 fn buffers(plan: &Plan, text: &mut String) {
-    text.push_str("\n        /// What is kept in memory.\n        pub mod buffers {\n");
+    text.push_str("\n        /// Buffers and textures.\n        pub mod buffers {\n");
     for planned in &plan.resources {
         let (name, summary) = (rust::snake_case(&planned.resource.name), &planned.resource.summary);
         let (parameters, words) = rust::formula(&planned.words, &plan.symbols);
@@ -123,7 +110,7 @@ fn buffers(plan: &Plan, text: &mut String) {
     text.push_str("        }\n");
 }
 
-fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], folder: &str, text: &mut String) {
+fn target_module(target: &str, plan: &str, planned: &PlanForTargets, files: &[&File], folder: &str, text: &mut String) {
     let name = rust::snake_case(target);
     let _ =
         write!(text, "\n    /// The passes of a frame for the target `{target}`, in order.\n    pub mod {name} {{\n");
@@ -133,10 +120,10 @@ fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], f
         let _ = write!(
             text,
             "\n        /// The pass `{0}`.\n        pub mod {1} {{\n",
-            pass.anchor,
-            names.fresh(rust::snake_case(&pass.anchor))
+            pass.name,
+            names.fresh(rust::snake_case(&pass.name))
         );
-        for file in files.iter().filter(|file| file.pass == pass.anchor) {
+        for file in files.iter().filter(|file| file.pass == pass.name) {
             for (stage, entry_point) in &file.entry_points {
                 stage_constants(stage, entry_point, &format!("{folder}/{}", file.path), text);
             }
@@ -146,7 +133,7 @@ fn target_module(target: &str, plan: &str, planned: &Planned, files: &[&File], f
     text.push_str("    }\n");
 }
 
-/// Names in one module: Rust takes each once, and names of descriptions may differ by case alone.
+/// The names of one module. Rust accepts each name once, but names of a description may differ only by case.
 struct Names(Vec<String>);
 
 impl Names {
@@ -154,7 +141,7 @@ impl Names {
         Names(vec![taken.to_owned()])
     }
 
-    /// The name, with `_` appended until none before had it.
+    /// Returns the name, with `_` appended until it is unique.
     fn fresh(&mut self, mut name: String) -> String {
         while self.0.contains(&name) {
             name.push('_');

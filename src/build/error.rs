@@ -1,15 +1,15 @@
-//! Why a build script stops. `Debug` is the report itself: a `main` that returns the error prints it so.
+//! The error of a build script. `Debug` prints the report itself, because a `main` that returns the error uses `Debug`.
 
 use std::fmt;
 use std::path::Path;
 
-/// Why nothing, or not everything, was written.
+/// The reason why not all files were written.
 pub enum Error {
-    /// A description is at fault: the report, with source lines.
+    /// Errors in a description: the report, with source lines.
     Description(String),
-    /// A file cannot be read or written.
+    /// A file that cannot be read or written.
     Files(String),
-    /// The build script asks for what there is not.
+    /// A call with an unknown target, or a missing `OUT_DIR`.
     Usage(String),
 }
 
@@ -22,7 +22,7 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Description(report) => write!(f, "fragbuf refuses a description\n\n{report}"),
+            Error::Description(report) => write!(f, "fragbuf rejects a description\n\n{report}"),
             Error::Files(text) | Error::Usage(text) => f.write_str(text),
         }
     }

@@ -1,8 +1,8 @@
-//! For a caller's `build.rs`: descriptions in, files and typed Rust bindings in `OUT_DIR` out.
+//! Generates files and typed Rust bindings in `OUT_DIR`, for a caller's `build.rs`.
 //!
-//! A file is written only if its content changes, and cargo is told what every description was read from, so a build
-//! script runs again only when one of those changes. Any diagnostic fails the build with the report that the command line
-//! prints. The bindings depend on nothing: no crate of fragbuf is needed at run time.
+//! It writes a file only if its content changes, and tells cargo which files every description was read from. The build script
+//! therefore runs again only when one of them changes. Any diagnostic fails the build with the report that the command line
+//! prints. The bindings have no dependencies: no crate of fragbuf is needed at run time.
 //!
 //! ```no_run
 //! fn main() -> Result<(), fragbuf::build::Error> {
@@ -12,7 +12,7 @@
 //! ```
 //!
 //! and in the crate `include!(concat!(env!("OUT_DIR"), "/fragbuf.rs"));`, then `glass::wgsl::store::FRAGMENT`. In
-//! `[build-dependencies]`, `default-features = false` leaves the picture commands and wgpu out.
+//! `[build-dependencies]`, `default-features = false` leaves out the image commands and wgpu.
 
 mod bindings;
 mod error;
@@ -25,15 +25,15 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_codegen::Form;
-use fragbuf_model::Origin;
+use fragbuf_model::SourceSpan;
+use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_templates::Registry;
 
 use crate::load::{Description, load};
 use crate::report::render;
 
-/// What to generate, in the order in which it was said.
+/// The descriptions to generate, in the order in which they were added.
 #[derive(Clone, Debug, Default)]
 pub struct Build {
     entries: Vec<Entry>,
@@ -44,35 +44,35 @@ pub struct Build {
 
 #[derive(Clone, Debug)]
 struct Entry {
-    what: What,
+    input: Input,
     set: Vec<(String, String)>,
 }
 
 #[derive(Clone, Debug)]
-enum What {
+enum Input {
     File(PathBuf),
     Technique(String),
 }
 
 impl Build {
-    /// Nothing yet; the target `wgsl` when none is named, bind group 0.
+    /// Creates a build without descriptions. Defaults: target `wgsl`, bind group 0.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a description's file, relative to the package. Its bindings are a module named after the file.
+    /// Adds the file of a description, relative to the package. Its bindings are a module named after the file.
     pub fn file(mut self, path: impl Into<PathBuf>) -> Self {
-        self.entries.push(Entry { what: What::File(path.into()), set: Vec::new() });
+        self.entries.push(Entry { input: Input::File(path.into()), set: Vec::new() });
         self
     }
 
-    /// Adds a technique as it is. Its bindings are a module of its key.
+    /// Adds a technique without changes. Its bindings are a module named after its key.
     pub fn technique(mut self, key: &str) -> Self {
-        self.entries.push(Entry { what: What::Technique(key.to_owned()), set: Vec::new() });
+        self.entries.push(Entry { input: Input::Technique(key.to_owned()), set: Vec::new() });
         self
     }
 
-    /// Changes what was added last, as `--set name=value` does.
+    /// Changes the description added last, as `--set name=value` does.
     pub fn set(mut self, name: &str, value: &str) -> Self {
         if let Some(last) = self.entries.last_mut() {
             last.set.push((name.to_owned(), value.to_owned()));
@@ -80,25 +80,25 @@ impl Build {
         self
     }
 
-    /// The targets of everything that was added, by the words of the command line.
+    /// Sets the targets of all descriptions, by their names on the command line.
     pub fn targets(mut self, names: &[&str]) -> Self {
         self.targets = names.iter().map(|name| (*name).to_owned()).collect();
         self
     }
 
-    /// The bind group of everything declared.
+    /// Sets the bind group of all declarations.
     pub fn group(mut self, group: u32) -> Self {
         self.group = group;
         self
     }
 
-    /// A folder to write to in place of `OUT_DIR`.
+    /// Sets a folder to write to instead of `OUT_DIR`.
     pub fn out_dir(mut self, path: impl Into<PathBuf>) -> Self {
         self.out = Some(path.into());
         self
     }
 
-    /// Generates everything, then writes it. The path is that of the Rust file.
+    /// Generates everything, then writes it. Returns the path of the Rust file.
     pub fn emit(&self) -> Result<PathBuf, Error> {
         let out = self.out.clone().or_else(|| std::env::var_os("OUT_DIR").map(PathBuf::from));
         let out = out.ok_or_else(|| Error::Usage("OUT_DIR is not set: call this from a build script".to_owned()))?;
@@ -106,13 +106,14 @@ impl Build {
         rerun_if_changed(Path::new("build.rs"))?;
         let mut modules: Vec<(String, Generation, String)> = Vec::new();
         for entry in &self.entries {
-            let (name, generation) = entry.generated(&targets, self.group)?;
+            let (name, generation) = entry.generate(&targets, self.group)?;
             if modules.iter().any(|(other, ..)| *other == name) {
-                return Err(Error::Usage(format!("two descriptions would be the module `{name}`")));
+                return Err(Error::Usage(format!("two descriptions have the same module `{name}`")));
             }
             modules.push((name, generation, entry.name()));
         }
-        let mut text = format!("// Generated by {}. Changes to this file are lost.\n", fragbuf_codegen::GENERATOR);
+        let mut text =
+            format!("// Generated by {}. Do not edit: changes are overwritten.\n", fragbuf_codegen::GENERATOR);
         for (name, generation, source) in &modules {
             for file in &generation.files {
                 write(&out.join("fragbuf").join(name).join(&file.path), &file.bytes)?;
@@ -125,67 +126,68 @@ impl Build {
     }
 
     fn chosen_targets(&self) -> Result<Vec<&'static Target>, Error> {
-        let named = self.targets.iter().map(|name| {
+        let targets = self.targets.iter().map(|name| {
             target(name).ok_or_else(|| {
                 let known: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
                 Error::Usage(format!("there is no target `{name}`: the targets are {}", known.join(", ")))
             })
         });
-        let named: Vec<&'static Target> = named.collect::<Result<_, _>>()?;
-        Ok(if named.is_empty() { TARGETS.iter().take(1).collect() } else { named })
+        let targets: Vec<&'static Target> = targets.collect::<Result<_, _>>()?;
+        Ok(if targets.is_empty() { TARGETS.iter().take(1).collect() } else { targets })
     }
 }
 
 impl Entry {
-    /// What messages call it.
+    /// Returns the name in messages.
     fn name(&self) -> String {
-        match &self.what {
-            What::File(path) => path.display().to_string(),
-            What::Technique(key) => key.clone(),
+        match &self.input {
+            Input::File(path) => path.display().to_string(),
+            Input::Technique(key) => key.clone(),
         }
     }
 
-    /// The module's name, and everything that is generated.
-    fn generated(&self, targets: &[&'static Target], group: u32) -> Result<(String, Generation), Error> {
-        let (description, stem) = match &self.what {
-            What::File(path) => {
+    /// Returns the module name and the generated files.
+    fn generate(&self, targets: &[&'static Target], group: u32) -> Result<(String, Generation), Error> {
+        let (description, stem) = match &self.input {
+            Input::File(path) => {
                 rerun_if_changed(path)?;
                 let description = Description::read(path).map_err(|error| Error::files(path, &error))?;
                 (description, path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
             }
-            What::Technique(key) => (Description::Technique(key.clone()), key.clone()),
+            Input::Technique(key) => (Description::Technique(key.clone()), key.clone()),
         };
         let registry = Registry::builtin();
         let loaded = load(&description, &self.set, &[], &registry);
-        // The first source is the description itself, or a technique's key.
+        // The first source is the description itself, or the key of a technique.
         for (file, _) in loaded.sources.iter().skip(1) {
             rerun_if_changed(Path::new(file))?;
         }
-        let texts = loaded.texts();
-        let failed = |faults| Error::Description(render(&faults, &texts));
+        let sources = loaded.all_sources();
+        let failed = |errors| Error::Description(render(&errors, &sources));
         let variant = loaded.variant.map_err(failed)?;
         let request = Request { targets, form: Form::Program, prefix: "", group };
         let generation = generate(&variant, &request, &registry).map_err(failed)?;
-        if let Some((target, refusal)) = generation.refusals.first() {
-            let chosen = variant.choices.iter().find(|chosen| chosen.axis == refusal.axis);
-            let origin = chosen.map_or(Origin::new(description.name(), 1, 1), |chosen| chosen.origin.clone());
-            let message = format!("the target `{}` cannot express it: {refusal}", target.name);
-            let hint = "leave the target out, or add an `else` alternative to the axis";
-            let code = fragbuf_model::codes::TARGET;
-            return Err(failed(fragbuf_model::Diagnostic::new(code, &origin, message, hint).into()));
+        if let Some((target, missing)) = generation.unsupported.first() {
+            let chosen = variant.choices.iter().find(|chosen| chosen.axis == missing.axis);
+            let span = chosen.map_or(SourceSpan::new(description.name(), 1, 1), |chosen| chosen.span.clone());
+            let message = format!("the target `{}` does not support the description: {missing}", target.name);
+            let help = "remove the target, or add an `else` alternative to the axis";
+            let code = fragbuf_model::codes::UNSUPPORTED_TARGET;
+            return Err(failed(fragbuf_model::Diagnostic::new(code, &span, message, help).into()));
         }
         Ok((rust::snake_case(&stem), generation))
     }
 }
 
+/// Tells cargo to run the build script again if the file changes.
 fn rerun_if_changed(path: &Path) -> Result<(), Error> {
     let line = format!("cargo::rerun-if-changed={}\n", path.display());
     std::io::stdout().write_all(line.as_bytes()).map_err(|error| Error::files(Path::new("stdout"), &error))
 }
 
-/// Writes a file whose content is not there already.
+/// Writes a file unless it already has this content.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    if fs::read(path).is_ok_and(|known| known == bytes) {
+    if fs::read(path).is_ok_and(|present| present == bytes) {
         return Ok(());
     }
     if let Some(folder) = path.parent() {

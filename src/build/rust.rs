@@ -1,54 +1,54 @@
-//! Names and formulas as Rust spells them.
+//! Writes names and formulas in Rust.
 
 use std::collections::BTreeSet;
 
-use fragbuf_codegen::{PlanValue, Quantity, SymbolId, SymbolTable, Term, is_truth};
+use fragbuf_codegen::{PlanValue, Quantity, SymbolId, SymbolTable, Term, is_boolean};
 
-/// Words that Rust keeps for itself.
+/// The keywords of Rust.
 const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final \
     fn for gen if impl in let loop macro match mod move mut override priv pub ref return self Self static struct super \
     trait true try type typeof union unsafe unsized use virtual where while yield";
 
-/// A name in lower case whose other signs are underscores, and that is no keyword.
+/// Returns a name in lower case. Underscores replace other characters; a keyword gets one more underscore.
 pub(super) fn snake_case(name: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '_' };
-    let mut word: String = name.chars().map(plain).collect();
-    if word.is_empty() || word.starts_with(|first: char| first.is_ascii_digit()) {
-        word.insert(0, '_');
+    let mut identifier: String = name.chars().map(plain).collect();
+    if identifier.is_empty() || identifier.starts_with(|first: char| first.is_ascii_digit()) {
+        identifier.insert(0, '_');
     }
-    if KEYWORDS.split_whitespace().any(|keyword| keyword == word) || word == "_" {
-        word.push('_');
+    if KEYWORDS.split_whitespace().any(|keyword| keyword == identifier) || identifier == "_" {
+        identifier.push('_');
     }
-    word
+    identifier
 }
 
-/// A constant function: the parameters that a formula needs, and its value. Symbols of generation time are numbers, the pixels
-/// of a frame are what the addressing says, and all others are parameters.
+/// Returns the parameters of a constant function, and its value. Symbols of generation time are numbers, the addressing row
+/// defines the pixels of a frame, and all other symbols are parameters.
 pub(super) fn formula(of: &Quantity, symbols: &SymbolTable) -> (Vec<String>, String) {
     let mut used = BTreeSet::new();
-    let text = written(of.term(), symbols, &mut used);
+    let text = expression(of.term(), symbols, &mut used);
     (used.into_iter().map(|id| symbols.get(id).name.to_string()).collect(), text)
 }
 
-fn written(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
+fn expression(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
     match term {
         Term::Number(number) => number.to_string(),
         Term::Symbol(id) => match &symbols.get(*id).value {
             PlanValue::Number(number) => number.to_string(),
-            PlanValue::Default(quantity) if *id == SymbolId::PIXELS => written(quantity.term(), symbols, used),
+            PlanValue::Default(quantity) if *id == SymbolId::PIXELS => expression(quantity.term(), symbols, used),
             _ => {
                 used.insert(*id);
                 symbols.get(*id).name.to_string()
             }
         },
-        Term::Apply(operator, _) if is_truth(operator) => format!("({} as u64)", holding(term, symbols, used)),
+        Term::Apply(operator, _) if is_boolean(operator) => format!("({} as u64)", condition(term, symbols, used)),
         Term::Apply(operator, arguments) => {
-            let parts: Vec<String> = arguments.iter().map(|argument| written(argument, symbols, used)).collect();
+            let parts: Vec<String> = arguments.iter().map(|argument| expression(argument, symbols, used)).collect();
             match (*operator, parts.as_slice()) {
                 ("ceil_div", [a, b]) => format!("u64::div_ceil({a}, {b})"),
                 ("pow2", [a]) => format!("(1u64 << {a})"),
                 ("log2_ceil", [a]) => format!("(u64::next_power_of_two({a}).trailing_zeros() as u64)"),
-                // Functions of traits are not for constants.
+                // Trait methods such as `Ord::min` cannot be called in a `const fn`.
                 ("min", [a, b]) => format!("({{ let (a, b) = ({a}, {b}); if a < b {{ a }} else {{ b }} }})"),
                 ("max", [a, b]) => format!("({{ let (a, b) = ({a}, {b}); if a > b {{ a }} else {{ b }} }})"),
                 (operator, parts) => format!("({})", parts.join(&format!(" {operator} "))),
@@ -57,16 +57,16 @@ fn written(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) ->
     }
 }
 
-/// Whether a formula holds, in parentheses.
-fn holding(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
+/// Returns a formula as a condition, in parentheses.
+fn condition(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
     let (operator, parts): (&str, Vec<String>) = match term {
         Term::Apply(operator @ ("&&" | "||"), arguments) => {
-            (operator, arguments.iter().map(|argument| holding(argument, symbols, used)).collect())
+            (operator, arguments.iter().map(|argument| condition(argument, symbols, used)).collect())
         }
-        Term::Apply(operator, arguments) if is_truth(operator) => {
-            (operator, arguments.iter().map(|argument| written(argument, symbols, used)).collect())
+        Term::Apply(operator, arguments) if is_boolean(operator) => {
+            (operator, arguments.iter().map(|argument| expression(argument, symbols, used)).collect())
         }
-        _ => ("!=", vec![written(term, symbols, used), "0".to_owned()]),
+        _ => ("!=", vec![expression(term, symbols, used), "0".to_owned()]),
     };
     format!("({})", parts.join(&format!(" {operator} ")))
 }
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn modules_have_names_that_rust_takes() {
+    fn module_names_are_valid_in_rust() {
         let names = ["Glass", "my-glass.v2", "2d", "type", "", "_"].map(snake_case);
         assert_eq!(names, ["glass", "my_glass_v2", "_2d", "type_", "__", "__"]);
     }
@@ -85,10 +85,10 @@ mod tests {
     #[test]
     fn formulas_keep_their_meaning() {
         use fragbuf_codegen::plan;
-        use fragbuf_model::{Draft, Origin, Selection, check};
+        use fragbuf_model::{Draft, Selection, SourceSpan, check};
         use fragbuf_templates::Registry;
         let registry = Registry::builtin();
-        let draft = Draft::from_technique("kplus_array", &Origin::new("test", 1, 1));
+        let draft = Draft::from_technique("kplus_array", &SourceSpan::new("test", 1, 1));
         let variant = check(&draft, &registry).unwrap();
         let plan = plan(&variant, &Selection::first(&variant), &registry).unwrap();
         let of = |text: &'static str| formula(&plan.symbols.compile(&text.into()).unwrap(), &plan.symbols);

@@ -1,4 +1,4 @@
-//! The scene's vertices as a description's payload: each attribute from what the scene has under its name.
+//! Converts the scene's vertices to a description's payload. The name of an attribute selects the scene's data.
 
 use std::ops::Range;
 
@@ -8,18 +8,18 @@ use fragbuf_scene::{Object, Scene};
 
 use super::output::Failure;
 
-/// Words of vertices, one after the other, three indices per triangle, and the part of the indices that each object has.
+/// The words of the vertices, three indices per triangle, and the range of indices of each object.
 pub(crate) struct Geometry {
     pub(crate) vertices: Vec<u32>,
     pub(crate) indices: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
 }
 
-/// The words of one attribute of a vertex.
-type Words = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
+/// A function that returns the words of one attribute of a vertex.
+type ReadWords = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
 
-/// What a scene has: names, the formats that it can be read as, how to get it.
-const HAS: [(&[&str], &[Format], Words); 4] = [
+/// The data of a scene: its names, the formats that it can be read as, and the function that reads it.
+const SCENE_DATA: [(&[&str], &[Format], ReadWords); 4] = [
     (&["color", "colour"], &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3], |object, _, vertex| {
         bits(&object.colors, vertex)
     }),
@@ -28,11 +28,12 @@ const HAS: [(&[&str], &[Format], Words); 4] = [
     (&["id", "object"], &[Format::U32], |_, id, _| [id, 0, 0, 0]),
 ];
 
-/// The vertices as the plan's geometry passes read them: the position, then the attributes in their order, without depth.
+/// Returns the vertices as the plan's geometry passes read them: the position, then the attributes in their order, without
+/// depth.
 pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> {
     let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
     let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
-    let columns: Vec<(usize, Words)> = columns.collect::<Result<_, _>>()?;
+    let columns: Vec<(usize, ReadWords)> = columns.collect::<Result<_, _>>()?;
     let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(3 * scene.triangles()));
     let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
     for (id, object) in (0..).zip(&scene.objects) {
@@ -52,11 +53,11 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
     Ok(Geometry { vertices, indices, objects })
 }
 
-/// Words in a vertex, and where they come from.
-fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
-    let found = HAS.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format));
+/// Returns the number of words of an attribute in a vertex, and the function that reads them.
+fn column(name: &str, format: Format) -> Result<(usize, ReadWords), Failure> {
+    let found = SCENE_DATA.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format));
     let Some((_, _, read)) = found else {
-        let has: Vec<String> = HAS
+        let known: Vec<String> = SCENE_DATA
             .iter()
             .map(|(names, formats, _)| {
                 let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
@@ -66,7 +67,7 @@ fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
         return Err(Failure::Input(format!(
             "the scene has no `{name}: {}` for the fragments: it has {}, and depth",
             format.keyword(),
-            has.join(", ")
+            known.join(", ")
         )));
     };
     let words = match format {
@@ -78,7 +79,7 @@ fn column(name: &str, format: Format) -> Result<(usize, Words), Failure> {
     Ok((words, *read))
 }
 
-/// Bits of a vertex's values; 0 beyond.
+/// Returns the bits of a vertex's values, padded with 0.
 fn bits<const N: usize>(values: &[[f32; N]], vertex: usize) -> [u32; 4] {
     let values = values.get(vertex);
     std::array::from_fn(|index| values.and_then(|values| values.get(index)).map_or(0, |value| value.to_bits()))

@@ -1,33 +1,34 @@
-//! `fragbuf compare`: the same scene through two descriptions. The picture is a heat map of their difference, from black
-//! (none) over red and yellow to white (the greatest difference there is).
+//! `fragbuf compare`: renders a scene with two descriptions and measures the difference between the images. The image that it
+//! writes is a heat map of the difference, from black (none) over red and yellow to white (the greatest difference).
 
 use serde_json::json;
 
+use super::assignment::assignment;
 use super::output::{self, Failure};
-use super::paint::{Painted, Wish, paint};
 use super::picture;
 use super::progress::Progress;
-use super::render::{figures, tally};
+use super::rendering::{RenderRequest, RenderResult, render};
+use super::statistics::{FragmentCounts, statistics};
 use super::view::{View, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
 pub(crate) struct Compare {
-    /// A technique's key, or a .fragbuf file
+    /// Technique key or .fragbuf file
     first: String,
-    /// Another
+    /// Technique key or .fragbuf file to compare it with
     second: String,
-    /// Changes both descriptions: axis=value, axis.option=value or k=8
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    /// Change both descriptions: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
-    /// Changes the first description alone
-    #[arg(long = "set-first", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    /// Change only the first description
+    #[arg(long = "set-first", value_name = "NAME=VALUE", value_parser = assignment)]
     set_first: Vec<(String, String)>,
-    /// Changes the second description alone
-    #[arg(long = "set-second", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    /// Change only the second description
+    #[arg(long = "set-second", value_name = "NAME=VALUE", value_parser = assignment)]
     set_second: Vec<(String, String)>,
-    /// A uniform of both descriptions; those that are not given are 0
-    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = super::assignment)]
+    /// Set a uniform of both descriptions [default: 0]
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = assignment)]
     uniforms: Vec<(String, String)>,
     #[command(flatten)]
     view: View,
@@ -38,31 +39,29 @@ impl Compare {
         let view = &self.view;
         view.check()?;
         let progress = Progress::new();
-        progress.stage(format!("loading {}", view.scene));
-        let (stage, opaque) = view.stages()?;
-        let one = |description: &str, own: &[(String, String)]| {
-            let set = [&self.set, own].concat();
+        progress.set_message(format!("loading {}", view.scene));
+        let (scene, opaque) = view.scene_views()?;
+        let opaque = opaque.as_ref();
+        let one = |description: &str, set: &[(String, String)]| {
+            let set = [&self.set, set].concat();
             // The hit ratio needs every event.
-            let opaque = opaque.as_ref();
-            let wish = Wish { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque };
-            paint(&wish, view, &stage, &progress)
+            let request = RenderRequest { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque };
+            render(&request, view, &scene, &progress)
         };
         let (first, second) = (one(&self.first, &self.set_first)?, one(&self.second, &self.set_second)?);
-        let shown = |painted: &Painted| picture::displayed(&painted.drawn.pixels, view.background, view.linear);
-        let difference = Difference::of(&shown(&first), &shown(&second));
+        let displayed = |result: &RenderResult| picture::displayed(&result.stats.pixels, view.background, view.linear);
+        let difference = Difference::of(&displayed(&first), &displayed(&second));
         picture::write(&view.out, view.size, &difference.heat(), true)?;
         drop(progress);
-        let hits = [&first, &second].map(|painted| tally(painted).map(|tally| tally.hit_ratio));
+        let hits = [&first, &second].map(|result| FragmentCounts::of(result).map(|counts| counts.hit_ratio));
         if view.json {
-            let [a, b] =
-                [(&self.first, &first), (&self.second, &second)].map(|(key, painted)| figures(key, painted, &stage));
             return output::print(&output::json(&json!({
                 "psnr": difference.psnr(),
                 "max_error": difference.greatest,
                 "different_pixels": difference.count,
                 "hit_ratio": hits,
-                "first": a,
-                "second": b,
+                "first": statistics(&self.first, &first, &scene),
+                "second": statistics(&self.second, &second, &scene),
             })));
         }
         let psnr = difference.psnr().map_or("infinite".to_owned(), |psnr| format!("{psnr:.2} dB"));
@@ -77,22 +76,22 @@ impl Compare {
     }
 }
 
-/// How far two pictures are apart.
+/// The difference between two images.
 struct Difference {
-    /// The greatest over the channels, by pixel.
+    /// The greatest difference over the channels, by pixel.
     pixels: Vec<f32>,
     greatest: f32,
-    /// Pixels that differ in 8 bits.
+    /// Pixels that differ in 8 bits a channel.
     count: usize,
     mean_square: f64,
 }
 
 impl Difference {
     fn of(first: &[[f32; 4]], second: &[[f32; 4]]) -> Self {
-        let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let distance = |(a, b): (&[f32; 4], &[f32; 4])| {
             std::array::from_fn::<f32, 4, _>(|channel| (a[channel] - b[channel]).abs())
         };
-        let channels: Vec<[f32; 4]> = first.iter().zip(second).map(apart).collect();
+        let channels: Vec<[f32; 4]> = first.iter().zip(second).map(distance).collect();
         let pixels: Vec<f32> = channels.iter().map(|values| values.iter().copied().fold(0.0, f32::max)).collect();
         let greatest = pixels.iter().copied().fold(0.0, f32::max);
         let count = pixels.iter().filter(|value| **value > 0.5 / 255.0).count();
@@ -100,11 +99,12 @@ impl Difference {
         Difference { greatest, count, mean_square: squares / (4 * channels.len().max(1)) as f64, pixels }
     }
 
-    /// Peak signal to noise over all channels, in dB; `None`: there is no noise.
+    /// Returns the peak signal-to-noise ratio over all channels in dB. `None`: the images are equal.
     fn psnr(&self) -> Option<f64> {
         (self.mean_square > 0.0).then(|| -10.0 * self.mean_square.log10())
     }
 
+    /// Returns the heat map.
     fn heat(&self) -> Vec<[f32; 4]> {
         let scale = 3.0 / self.greatest.max(1.0e-6);
         let heat = |value: &f32| {

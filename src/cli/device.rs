@@ -1,99 +1,96 @@
-//! `--device`: which device is meant, and whether there is one.
+//! Parses `--device` and `--order`, and selects the device.
 //!
-//! In: the words of the command line. Out: the CPU device, which is always there, or an adapter of wgpu's.
+//! Input: the arguments. Output: the CPU device, which is always available, or an adapter of wgpu's.
 
 use std::convert::Infallible;
 use std::str::FromStr;
 
-use fragbuf_cpu::Order;
+use fragbuf_cpu::FragmentOrder;
 
 use super::output::Failure;
 
-/// The name of the device that needs no driver.
+/// The name of the CPU device.
 pub(crate) const CPU: &str = "cpu";
 
-/// What the command line asks for.
+/// The value of `--device`.
 #[derive(Clone, Debug)]
-pub(crate) enum Wanted {
-    /// A GPU where there is one, else the CPU device.
+pub(crate) enum DeviceRequest {
+    /// A GPU if there is one, else the CPU device.
     Auto,
     /// The CPU device.
     Cpu,
-    /// The first adapter whose name has this in it.
+    /// The first adapter whose name contains this text.
     Named(String),
 }
 
-/// What will draw.
-pub(crate) enum Picked {
-    Cpu(Order),
+/// The device that renders.
+pub(crate) enum SelectedDevice {
+    Cpu(FragmentOrder),
     #[cfg(feature = "gpu")]
     Gpu(fragbuf_runtime::headless::Choice),
 }
 
-impl FromStr for Wanted {
+impl FromStr for DeviceRequest {
     type Err = Infallible;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Ok(match text {
-            "auto" => Wanted::Auto,
-            CPU => Wanted::Cpu,
-            name => Wanted::Named(name.to_owned()),
+            "auto" => DeviceRequest::Auto,
+            CPU => DeviceRequest::Cpu,
+            name => DeviceRequest::Named(name.to_owned()),
         })
     }
 }
 
-impl Wanted {
-    /// The device, which takes fragments in this order, if one was asked for.
-    pub(crate) fn pick(&self, order: Option<Order>) -> Result<Picked, Failure> {
-        let picked = match self {
-            Wanted::Cpu => Picked::Cpu(order.unwrap_or_default()),
-            Wanted::Auto => gpu().unwrap_or(Picked::Cpu(order.unwrap_or_default())),
-            Wanted::Named(name) => named(name)?,
+impl DeviceRequest {
+    /// Selects a device. Only the CPU device supports an `order`.
+    pub(crate) fn select(&self, order: Option<FragmentOrder>) -> Result<SelectedDevice, Failure> {
+        let selected = match self {
+            DeviceRequest::Cpu => SelectedDevice::Cpu(order.unwrap_or_default()),
+            DeviceRequest::Auto => gpu().unwrap_or(SelectedDevice::Cpu(order.unwrap_or_default())),
+            DeviceRequest::Named(name) => named(name)?,
         };
-        match picked {
-            Picked::Cpu(_) => Ok(picked),
+        match selected {
+            SelectedDevice::Cpu(_) => Ok(selected),
             #[cfg(feature = "gpu")]
-            Picked::Gpu(_) if order.is_some() => {
-                let hint = "take `--device cpu`";
-                Err(Failure::Usage(format!(
-                    "`--order` is the CPU device's: no other takes fragments as it is told; {hint}"
-                )))
+            SelectedDevice::Gpu(_) if order.is_some() => {
+                Err(Failure::Usage("`--order` works only with `--device cpu`".to_owned()))
             }
             #[cfg(feature = "gpu")]
-            Picked::Gpu(_) => Ok(picked),
+            SelectedDevice::Gpu(_) => Ok(selected),
         }
     }
 }
 
-/// The best adapter that is no software.
+/// Returns the best adapter, unless it is a software driver.
 #[cfg(feature = "gpu")]
-fn gpu() -> Option<Picked> {
+fn gpu() -> Option<SelectedDevice> {
     use fragbuf_runtime::headless::{Choice, adapters};
     let best = adapters().into_iter().next()?;
-    (best.device_type != fragbuf_runtime::wgpu::DeviceType::Cpu).then_some(Picked::Gpu(Choice::Auto))
+    (best.device_type != fragbuf_runtime::wgpu::DeviceType::Cpu).then_some(SelectedDevice::Gpu(Choice::Auto))
 }
 
 #[cfg(not(feature = "gpu"))]
-fn gpu() -> Option<Picked> {
+fn gpu() -> Option<SelectedDevice> {
     None
 }
 
 #[cfg(feature = "gpu")]
-fn named(name: &str) -> Result<Picked, Failure> {
-    Ok(Picked::Gpu(fragbuf_runtime::headless::Choice::Named(name.to_owned())))
+fn named(name: &str) -> Result<SelectedDevice, Failure> {
+    Ok(SelectedDevice::Gpu(fragbuf_runtime::headless::Choice::Named(name.to_owned())))
 }
 
 #[cfg(not(feature = "gpu"))]
-fn named(name: &str) -> Result<Picked, Failure> {
-    Err(Failure::Device(format!("no adapter is named `{name}`: this build has the device `{CPU}` alone")))
+fn named(name: &str) -> Result<SelectedDevice, Failure> {
+    Err(Failure::Device(format!("no adapter is named `{name}`: this build has only the device `{CPU}`")))
 }
 
-/// `submission`, or `shuffle:SEED`.
-pub(crate) fn order(text: &str) -> Result<Order, String> {
+/// Parses `submission` or `shuffle:SEED`.
+pub(crate) fn order(text: &str) -> Result<FragmentOrder, String> {
     let seed = text.strip_prefix("shuffle:").and_then(|seed| seed.parse().ok());
     match (text, seed) {
-        ("submission", _) => Ok(Order::Submission),
-        (_, Some(seed)) => Ok(Order::Shuffled(seed)),
+        ("submission", _) => Ok(FragmentOrder::Submission),
+        (_, Some(seed)) => Ok(FragmentOrder::Shuffled(seed)),
         _ => Err("write submission, or shuffle:SEED with a whole number".to_owned()),
     }
 }

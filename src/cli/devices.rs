@@ -1,5 +1,5 @@
-//! `fragbuf devices`: what can render here. The first is what `--device auto` takes: a GPU, or the CPU device; software
-//! drivers come last.
+//! `fragbuf devices`: lists the devices that can render. The first is the one that `--device auto` selects: a GPU, or the
+//! CPU device. Software drivers are last.
 
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use super::output::{self, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct Devices {
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }
@@ -24,13 +24,13 @@ impl Devices {
     }
 }
 
-/// Name, kind, back end and driver of each.
+/// Returns the name, type, back end and driver of each device.
 fn rows() -> Vec<[String; 4]> {
-    let own = [CPU, "Cpu", "interpreter", fragbuf::GENERATOR].map(str::to_owned);
+    let cpu = [CPU, "Cpu", "interpreter", fragbuf::GENERATOR].map(str::to_owned);
     let adapters = adapters();
-    let first = adapters.iter().position(|[_, kind, _, _]| *kind == own[1]).unwrap_or(adapters.len());
+    let first = adapters.iter().position(|[_, kind, _, _]| *kind == cpu[1]).unwrap_or(adapters.len());
     let (gpus, software) = adapters.split_at(first);
-    [gpus, &[own], software].concat()
+    [gpus, &[cpu], software].concat()
 }
 
 #[cfg(feature = "gpu")]

@@ -1,37 +1,38 @@
-//! `fragbuf generate`: files and a manifest under a folder. Everything is generated before anything is written.
+//! `fragbuf generate`: writes files and a manifest to a folder. Writing begins after everything is generated.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target};
 
+use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
 
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "all"])))]
 pub(crate) struct Generate {
-    /// A technique's key, or a .fragbuf file
+    /// Technique key or .fragbuf file
     description: Option<String>,
-    /// Every technique, each in a folder of its key
+    /// Generate every technique, each in a folder named after its key
     #[arg(long)]
     all: bool,
-    /// Changes the description: axis=value, axis.option=value or k=8
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    /// Change the description: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
-    /// Targets, joined by commas, or `all`
+    /// Comma-separated targets, or `all`
     #[arg(long, required = true, value_delimiter = ',', value_name = "TARGETS")]
     target: Vec<String>,
-    /// Whole programs, or functions for a shader of your own
+    /// Write whole programs, or functions for your own shader
     #[arg(long, value_enum, default_value_t = FormArgument::Program)]
     form: FormArgument,
-    /// Goes before every name but the entry points', so that two buffers can share a shader
+    /// Prefix of every generated name except entry points, so that two buffers can share a shader
     #[arg(long, default_value = "", value_parser = prefix)]
     prefix: String,
-    /// The bind group (descriptor set, register space) of everything declared
+    /// Bind group (descriptor set, register space) of all declarations
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=31))]
     group: u32,
-    /// The folder to write to
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
@@ -56,32 +57,32 @@ impl Generate {
         for argument in self.description.iter().cloned().chain(all) {
             let mut input = Input::read(&argument, &registry)?;
             let variant = input.variant(&self.set, &registry)?;
-            let generation = generate(&variant, &request, &registry).map_err(|faults| input.failure(faults))?;
+            let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() {
-                return Err(refused(&argument, &generation));
+                return Err(unsupported(&argument, &generation));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));
         }
         for (folder, generation) in &folders {
             write(folder, generation, self.group)?;
-            for (target, refusal) in &generation.refusals {
-                output::warn(&format!("nothing written for {} in {}: {refusal}", target.name, folder.display()));
+            for (target, missing) in &generation.unsupported {
+                output::warn(&format!("nothing written for {} in {}: {missing}", target.name, folder.display()));
             }
         }
         Ok(())
     }
 }
 
-/// No target that was asked for can express the description.
-fn refused(description: &str, generation: &Generation) -> Failure {
+/// Returns the failure if none of the targets supports the description.
+fn unsupported(description: &str, generation: &Generation) -> Failure {
     let reasons: Vec<String> =
-        generation.refusals.iter().map(|(target, refusal)| format!("{}: {refusal}", target.name)).collect();
-    let origin = fragbuf::Origin::new(description, 1, 1);
+        generation.unsupported.iter().map(|(target, missing)| format!("{}: {missing}", target.name)).collect();
+    let span = fragbuf::SourceSpan::new(description, 1, 1);
     let diagnostic = fragbuf::Diagnostic::new(
-        fragbuf_model::codes::TARGET,
-        &origin,
-        format!("none of the targets can express it: {}", reasons.join("; ")),
+        fragbuf_model::codes::UNSUPPORTED_TARGET,
+        &span,
+        format!("none of the targets supports the description: {}", reasons.join("; ")),
         "choose other targets, `--form program`, or add `else` alternatives to the axis",
     );
     Failure::Description(diagnostic.into(), Vec::new())
@@ -104,18 +105,20 @@ fn targets(names: &[String]) -> Result<Vec<&'static Target>, Failure> {
     Ok(targets)
 }
 
-/// An identifier of every target's, without a final underscore: the underscore that parts it from a name is added.
+/// Parses a prefix: an identifier on every target, without a final underscore. The generator adds the underscore that
+/// separates it from a name.
 fn prefix(text: &str) -> Result<String, String> {
     let mut letters = text.chars();
-    let starts = letters.next().is_none_or(|first| first.is_ascii_alphabetic());
-    let goes_on = text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if starts && goes_on && !text.ends_with('_') && !text.contains("__") {
+    let starts_well = letters.next().is_none_or(|first| first.is_ascii_alphabetic());
+    let is_plain = text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    if starts_well && is_plain && !text.ends_with('_') && !text.contains("__") {
         Ok(text.to_owned())
     } else {
         Err("letters, digits and single underscores, beginning with a letter and not ending in `_`".to_owned())
     }
 }
 
+/// Writes every file once, and the manifest.
 fn write(folder: &Path, generation: &Generation, group: u32) -> Result<(), Failure> {
     let mut seen: Vec<&str> = Vec::new();
     for file in &generation.files {

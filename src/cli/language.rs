@@ -1,4 +1,4 @@
-//! `fragbuf language`: what closures can say, computed from the type checker's tables.
+//! `fragbuf language`: prints the reference of the closure language, computed from the type checker's tables.
 
 use super::output::{self, Failure};
 

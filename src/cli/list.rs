@@ -1,4 +1,4 @@
-//! `fragbuf list`: what there is, computed from the rows.
+//! `fragbuf list`: lists techniques and axes, computed from the registry rows.
 
 use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
 use fragbuf_templates::vocabulary::{Row, Technique};
@@ -9,13 +9,13 @@ use super::output::{self, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct List {
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Table 1 of the k⁺-buffer paper with ours beside it, as Markdown
+    /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
     #[arg(long, conflicts_with = "json")]
     table_1: bool,
-    /// The axes and their values as Markdown: of each axis the value that stands where nothing else says one comes first
+    /// Print the axes and their values as Markdown, the default value of each axis first
     #[arg(long, conflicts_with_all = ["json", "table_1"])]
     axes: bool,
 }
@@ -35,7 +35,7 @@ impl List {
     }
 }
 
-/// Every axis that a description chooses on, with the summary of each of its values.
+/// Returns the table of the axes on which descriptions choose, with a summary of each value.
 fn axes(registry: &Registry) -> String {
     let mut text = String::from("| axis | value | |\n|---|---|---|\n");
     for axis in registry.axes().iter().filter(|axis| axis.chosen) {
@@ -49,19 +49,20 @@ fn axes(registry: &Registry) -> String {
     text
 }
 
+/// Returns a technique as JSON.
 fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
     let mut input = Input::read(&technique.key, registry)?;
     let variant = input.variant(&[], registry)?;
     let targets: Vec<&'static Target> = TARGETS.iter().collect();
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(&variant, &request, registry).map_err(|faults| input.failure(faults))?;
+    let generation = generate(&variant, &request, registry).map_err(|errors| input.failure(errors))?;
     let mut tiers = Map::new();
     for target in TARGETS {
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target.name));
-        let refusal = generation.refusals.iter().find(|(refused, _)| refused.name == target.name);
-        let verdict = match (planned, refusal) {
+        let unsupported = generation.unsupported.iter().find(|(unsupported, _)| unsupported.name == target.name);
+        let verdict = match (planned, unsupported) {
             (Some(planned), _) => tier(planned.plan.soundness, target).to_owned(),
-            (None, Some((_, refusal))) => refusal.to_string(),
+            (None, Some((_, missing))) => missing.to_string(),
             (None, None) => continue,
         };
         tiers.insert(target.name.to_owned(), verdict.into());
@@ -83,49 +84,49 @@ fn row(technique: &Technique, registry: &Registry) -> Result<Value, Failure> {
         "geometry_passes": passes,
         "draws": over_plans(&generation, " or ", |plan| plan.draw_count().to_string()),
         "passes": over_plans(&generation, " or ", |plan| plan.pass_count().to_string()),
-        "deterministic": over_plans(&generation, " or ", |plan| yes(plan.arrival() != Arrival::Race)),
-        "order_independent": over_plans(&generation, " or ", |plan| yes(plan.arrival() == Arrival::Any)),
+        "deterministic": over_plans(&generation, " or ", |plan| yes_or_no(plan.arrival() != Arrival::Race)),
+        "order_independent": over_plans(&generation, " or ", |plan| yes_or_no(plan.arrival() == Arrival::Any)),
         "features": over_plans(&generation, " or ", features),
         "targets": tiers,
     }))
 }
 
-/// What the first target's plan says, and what those of targets that follow another do.
-fn over_plans(generation: &Generation, or: &str, said: impl Fn(&Plan) -> String) -> String {
-    let mut words: Vec<String> = Vec::new();
+/// Returns a property of the plans. Different values, of targets with different plans, are joined by `separator`.
+fn over_plans(generation: &Generation, separator: &str, property: impl Fn(&Plan) -> String) -> String {
+    let mut values: Vec<String> = Vec::new();
     for planned in &generation.plans {
-        let word = said(&planned.plan);
-        if !words.contains(&word) {
-            words.push(word);
+        let value = property(&planned.plan);
+        if !values.contains(&value) {
+            values.push(value);
         }
     }
-    words.join(or)
+    values.join(separator)
 }
 
-fn yes(is_so: bool) -> String {
+fn yes_or_no(is_so: bool) -> String {
     if is_so { "yes" } else { "no" }.to_owned()
 }
 
-/// What a target must offer.
+/// Returns the features that a target must provide.
 fn features(plan: &Plan) -> String {
-    let words: Vec<String> = plan.requires.iter().map(|capability| capability.word()).collect();
-    words.join("+")
+    let names: Vec<String> = plan.requires.iter().map(|feature| feature.name()).collect();
+    names.join("+")
 }
 
-/// Columns of the table, and the fields that they show.
-const HEADS: [&str; 12] = [
+/// The headings of the table, and the JSON field of each column.
+const HEADINGS: [&str; 12] = [
     "key",
     "words/pixel",
     "bytes/pixel",
     "geometry",
     "draws",
     "passes",
-    "same every frame",
-    "any order",
+    "deterministic",
+    "order-independent",
     "tiers",
-    "needs",
+    "features",
     "paper",
-    "what",
+    "summary",
 ];
 const FIELDS: [&str; 12] = [
     "key",
@@ -143,10 +144,10 @@ const FIELDS: [&str; 12] = [
 ];
 const LAST: usize = 11;
 
-/// The same as a table for people: one line per technique.
+/// Returns the table of techniques, one line each.
 fn table(rows: &[Value]) -> String {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let mut lines = vec![HEADS.map(str::to_owned)];
+    let mut lines = vec![HEADINGS.map(str::to_owned)];
     for row in rows {
         let tiers = row["targets"].as_object().map(grouped).unwrap_or_default();
         let cells = FIELDS.map(|field| if field == "tiers" { tiers.clone() } else { text(&row[field]) });
@@ -165,7 +166,7 @@ fn table(rows: &[Value]) -> String {
     out
 }
 
-/// `T3 glsl spirv, T4 wgsl, no msl`: targets by tier; those last that cannot express it.
+/// Groups targets by tier: `T3 glsl spirv, T4 wgsl, no msl`. Unsupported targets are last.
 fn grouped(targets: &Map<String, Value>) -> String {
     let short = |verdict: &Value| match verdict.as_str() {
         Some(tier) if TIERS.contains(&tier) => tier.to_owned(),

@@ -1,5 +1,8 @@
-//! Arguments in, exit code out. 0: done; 1: the description or an input is at fault; 2: usage; 3: device or file system.
+//! Parses the arguments and runs one command.
+//!
+//! Exit code 0: done. 1: an error in the description or an input. 2: usage. 3: device or file system.
 
+mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;
 mod check;
@@ -16,14 +19,16 @@ mod list;
 mod output;
 mod page;
 #[cfg(feature = "pictures")]
-mod paint;
-#[cfg(feature = "pictures")]
 mod picture;
 #[cfg(feature = "pictures")]
 mod progress;
 #[cfg(feature = "pictures")]
 mod render;
+#[cfg(feature = "pictures")]
+mod rendering;
 mod show;
+#[cfg(feature = "pictures")]
+mod statistics;
 mod table_1;
 #[cfg(feature = "pictures")]
 mod uniforms;
@@ -45,23 +50,23 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// The techniques: axes, memory, passes, and the soundness tier on each target
+    /// List the techniques with their axes, memory, passes and soundness tier per target
     List(list::List),
-    /// One description: its plan, or any stage of its way to a target
+    /// Show the plan of a description, its manifest, or its shaders for one target
     Show(show::Show),
-    /// The reference of the closure language
+    /// Print the reference of the closure language
     Language(language::Language),
-    /// Writes the passes of a description, or of every technique, for one or more targets
+    /// Write the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
-    /// Every order in which the fragments of one pixel can run: does a technique keep what it promises?
+    /// Check a technique against its specification in every interleaving of the fragments of one pixel
     Check(check::Check),
-    /// A picture of a scene through one description
+    /// Render a scene with one description and write the image
     #[cfg(feature = "pictures")]
     Render(render::Render),
-    /// Two techniques on the same scene: how far their pictures are apart
+    /// Render a scene with two techniques and measure the difference between the images
     #[cfg(feature = "pictures")]
     Compare(compare::Compare),
-    /// The adapters that can render
+    /// List the devices that can render
     #[cfg(feature = "pictures")]
     Devices(devices::Devices),
 }
@@ -83,13 +88,5 @@ pub(crate) fn run() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
-    }
-}
-
-/// `axis=value`, `axis.option=value` or `k=8`.
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
-        _ => Err("write name=value: an axis (sort=none), an option (sync.limit=9), or k=8".to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! What goes to the user: text on stdout, failures on stderr with their exit code.
+//! Writes text to stdout, and failures to stderr with their exit code.
 
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -7,28 +7,28 @@ use std::process::ExitCode;
 use fragbuf::report::render;
 use fragbuf_model::Diagnostics;
 
-/// Why a command did not do what it was asked.
+/// The reason why a command failed.
 pub(crate) enum Failure {
-    /// The description is at fault; the texts by file name.
+    /// Errors in the description, with the sources by file name.
     Description(Diagnostics, Vec<(String, String)>),
-    /// The command line asks for what there is not.
+    /// An invalid argument.
     Usage(String),
     /// A file could not be read or written.
     Files(String),
-    /// A scene or a shader is at fault.
+    /// An error in a scene or a shader.
     Input(String),
-    /// The device cannot do it.
+    /// A limit or a failure of the device.
     #[cfg(feature = "pictures")]
     Device(String),
 }
 
 impl Failure {
-    /// A file system error on `path`.
+    /// Returns the failure for a file system error on `path`.
     pub(crate) fn files(path: &Path, error: &std::io::Error) -> Self {
         Failure::Files(format!("{}: {error}", path.display()))
     }
 
-    /// Says so on stderr.
+    /// Prints the failure on stderr and returns its exit code.
     pub(crate) fn report(self) -> ExitCode {
         let (text, code) = match self {
             Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
@@ -38,7 +38,7 @@ impl Failure {
             #[cfg(feature = "pictures")]
             Failure::Device(text) => (format!("error: {text}\n"), 3),
         };
-        // Nobody is left to tell when stderr is gone.
+        // Ignore the error: there is no other stream to report it on.
         let _ = std::io::stderr().write_all(text.as_bytes());
         ExitCode::from(code)
     }
@@ -59,13 +59,13 @@ impl From<fragbuf_scene::Error> for Failure {
 #[cfg(feature = "pictures")]
 impl From<fragbuf_cpu::Error> for Failure {
     fn from(error: fragbuf_cpu::Error) -> Self {
-        use fragbuf_frame::Error as Numbers;
+        use fragbuf_frame::Error as FrameError;
         let text = error.to_string();
         match error {
-            fragbuf_cpu::Error::Refused(_)
+            fragbuf_cpu::Error::MissingFeature(_)
             | fragbuf_cpu::Error::Shader { .. }
-            | fragbuf_cpu::Error::Frame(Numbers::Unsupported { .. }) => Failure::Input(text),
-            fragbuf_cpu::Error::Frame(Numbers::BadValue { .. }) => Failure::Usage(text),
+            | fragbuf_cpu::Error::Frame(FrameError::Unsupported { .. }) => Failure::Input(text),
+            fragbuf_cpu::Error::Frame(FrameError::BadValue { .. }) => Failure::Usage(text),
             _ => Failure::Device(text),
         }
     }
@@ -83,13 +83,13 @@ impl From<fragbuf_runtime::Error> for Failure {
     }
 }
 
-/// Says something on stderr without giving up.
+/// Prints a warning on stderr.
 pub(crate) fn warn(text: &str) {
-    // Nobody is left to tell when stderr is gone.
+    // Ignore the error: there is no other stream to report it on.
     let _ = writeln!(std::io::stderr(), "warning: {text}");
 }
 
-/// Writes to stdout. A reader that has seen enough (`| head`) is no failure.
+/// Writes to stdout. A closed pipe (`| head`) is not a failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::files(Path::new("stdout"), &error)),
@@ -97,7 +97,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Pretty JSON with a final newline.
+/// Formats pretty JSON with a final newline.
 pub(crate) fn json(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
 }

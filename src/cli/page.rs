@@ -1,4 +1,4 @@
-//! A technique's page: everything that its rows say, as Markdown. Nothing on it is written by hand.
+//! Writes the page of a technique as Markdown, computed from its registry rows.
 
 use std::fmt::Write;
 
@@ -6,22 +6,22 @@ use fragbuf::vocabulary::{Kind, Pass};
 use fragbuf::{Generation, Plan, Registry, tier};
 use fragbuf_codegen::{Action, Loop, LoopUntil, ResourceId};
 
-/// The page of what was generated from a preset for every target.
+/// Returns the page of a technique that was generated for every target.
 pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
     let Some(first) = generation.plans.first().map(|planned| &planned.plan) else { return String::new() };
     let mut text = String::new();
-    head(first, registry, &mut text);
+    header(first, registry, &mut text);
     axes(first, &mut text);
     memory(first, &mut text);
     text.push_str("\n## A frame\n\n");
     steps(first, &mut text);
-    let _ = writeln!(text, "\nGeometry is drawn {} time(s).", first.geometry_passes);
+    let _ = writeln!(text, "\nThe geometry is drawn {} time(s).", first.geometry_passes);
     targets(generation, &mut text);
     hazards(first, &mut text);
     text
 }
 
-fn head(plan: &Plan, registry: &Registry, text: &mut String) {
+fn header(plan: &Plan, registry: &Registry, text: &mut String) {
     let technique = plan.variant.technique.as_deref().and_then(|key| registry.technique(key));
     match technique {
         Some(technique) => {
@@ -35,7 +35,7 @@ fn head(plan: &Plan, registry: &Registry, text: &mut String) {
             );
             let _ = writeln!(
                 text,
-                "```text\nbuffer Mine from {0} {{ … }}                                  # a description of your own\n\
+                "```text\nbuffer Mine from {0} {{ … }}                                  # your own description\n\
                  fragbuf generate {0} --target all --out {0}    # its passes\n\
                  fragbuf render {0} --scene builtin:marbles --size 320x240 --out {0}.png\n```",
                 technique.key
@@ -47,14 +47,14 @@ fn head(plan: &Plan, registry: &Registry, text: &mut String) {
     }
 }
 
-/// With a capital letter.
+/// Capitalises the first letter.
 fn sentence(summary: &str) -> String {
     let mut letters = summary.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 fn axes(plan: &Plan, text: &mut String) {
-    text.push_str("\n## Axes\n\n| axis | value | what | source |\n|---|---|---|---|\n");
+    text.push_str("\n## Axes\n\n| axis | value | summary | source |\n|---|---|---|---|\n");
     for selected in &plan.selection.rows {
         let row = &selected.row;
         let _ = writeln!(text, "| {} | `{}` | {} | {} |", row.axis, row.key, row.summary, row.paper);
@@ -76,7 +76,7 @@ fn memory(plan: &Plan, text: &mut String) {
     for definition in plan.selection.rows.iter().flat_map(|selected| &selected.row.defines) {
         let _ = writeln!(text, "`{}` is `{}`.\n", definition.symbol, definition.value);
     }
-    text.push_str("| buffer | words | what |\n|---|---|---|\n");
+    text.push_str("| buffer | words | summary |\n|---|---|---|\n");
     for planned in &plan.resources {
         let _ = writeln!(text, "| `{}` | `{}` | {} |", planned.resource.name, planned.words, planned.resource.summary);
     }
@@ -87,11 +87,11 @@ fn steps(plan: &Plan, text: &mut String) {
     let name = |id: ResourceId| &plan.resources[id.0].resource.name;
     for command in &plan.frame.commands {
         let line = match &command.action {
-            Action::Pass(id) => pass(&plan.passes[id.0]),
+            Action::Pass(id) => pass_line(&plan.passes[id.0]),
             Action::Clear { resource, value } => format!("clear `{}` to {value:#x}", name(*resource)),
             Action::Copy { from, to } => format!("copy `{}` to `{}`", name(*from), name(*to)),
             Action::Host(decision) => format!("host {}", decision.summary(plan)),
-            Action::Loop(id) => looped(plan, &plan.frame.loops[id.0]),
+            Action::Loop(id) => loop_line(plan, &plan.frame.loops[id.0]),
             Action::LoopEnd(_) => {
                 indent.truncate(indent.len().saturating_sub(2));
                 continue;
@@ -104,28 +104,24 @@ fn steps(plan: &Plan, text: &mut String) {
     }
     if !plan.frame.exchanges.is_empty() {
         let pairs = plan.frame.exchanges.iter().map(|[a, b]| format!("`{}` and `{}`", name(*a), name(*b)));
-        let _ = writeln!(
-            text,
-            "\nIn the course of the frame these exchange their roles: {}.",
-            pairs.collect::<Vec<_>>().join(", ")
-        );
+        let _ = writeln!(text, "\nThe frame exchanges these resources: {}.", pairs.collect::<Vec<_>>().join(", "));
     }
 }
 
-fn looped(plan: &Plan, looped: &Loop) -> String {
-    let at_most = &looped.at_most;
+fn loop_line(plan: &Plan, looped: &Loop) -> String {
+    let max_iterations = &looped.max_iterations;
     match looped.until {
-        LoopUntil::Times => format!("repeat {at_most} times"),
+        LoopUntil::Times => format!("repeat {max_iterations} times"),
         LoopUntil::WordIsZero(word) => {
-            format!("repeat, at most {at_most} times, until `{}` is 0", plan.resources[word.0].resource.name)
+            format!("repeat, at most {max_iterations} times, until `{}` is 0", plan.resources[word.0].resource.name)
         }
         LoopUntil::NoSamples(pass) => {
-            format!("repeat, at most {at_most} times, until `{}` draws no sample", plan.passes[pass.0].anchor)
+            format!("repeat, at most {max_iterations} times, until `{}` draws no sample", plan.passes[pass.0].name)
         }
     }
 }
 
-fn pass(pass: &Pass) -> String {
+fn pass_line(pass: &Pass) -> String {
     let kind = match &pass.kind {
         Kind::Geometry => "draws the scene".to_owned(),
         Kind::Fullscreen => "draws one triangle over the frame".to_owned(),
@@ -136,7 +132,7 @@ fn pass(pass: &Pass) -> String {
     };
     let uses: Vec<String> = pass.uses.iter().map(|usage| format!("`{}`", usage.resource)).collect();
     let uses = if uses.is_empty() { String::new() } else { format!(", over {}", uses.join(", ")) };
-    format!("pass **{}** {kind}{uses}", pass.anchor)
+    format!("pass **{}** {kind}{uses}", pass.name)
 }
 
 fn targets(generation: &Generation, text: &mut String) {
@@ -161,8 +157,8 @@ fn targets(generation: &Generation, text: &mut String) {
             );
         }
     }
-    for (target, refusal) in &generation.refusals {
-        let _ = writeln!(text, "| `{}` | no | {refusal} |", target.name);
+    for (target, missing) in &generation.unsupported {
+        let _ = writeln!(text, "| `{}` | no | {missing} |", target.name);
     }
 }
 
@@ -170,8 +166,8 @@ fn hazards(plan: &Plan, text: &mut String) {
     if plan.hazards.is_empty() {
         return;
     }
-    text.push_str("\n## What can go wrong by design\n\n");
+    text.push_str("\n## Declared hazards\n\n");
     for hazard in &plan.hazards {
-        let _ = writeln!(text, "* **{}**: {}", hazard.name, hazard.what);
+        let _ = writeln!(text, "* **{}**: {}", hazard.name, hazard.description);
     }
 }

@@ -1,4 +1,4 @@
-//! A sign of life on stderr for whatever takes longer than a second. Nothing is shown where stderr is no terminal.
+//! Shows a progress bar on stderr for operations longer than one second. Shows nothing if stderr is not a terminal.
 
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 
-/// Shown from one second after it is made until it is dropped.
+/// A progress bar, shown from one second after its creation until it is dropped.
 pub(crate) struct Progress {
     bar: ProgressBar,
     waiting: Option<(Sender<()>, JoinHandle<()>)>,
@@ -26,13 +26,13 @@ impl Progress {
         Progress { bar, waiting: Some((sender, thread)) }
     }
 
-    /// What is being done now.
-    pub(crate) fn stage(&self, what: impl Into<String>) {
-        self.bar.set_message(what.into());
+    /// Shows what is being done now.
+    pub(crate) fn set_message(&self, message: impl Into<String>) {
+        self.bar.set_message(message.into());
     }
 
-    /// How much of it is done, from 0 to 1. `what` is asked for only where something is shown.
-    pub(crate) fn share(&self, what: impl FnOnce() -> String, share: f64) {
+    /// Shows how much of it is done, from 0 to 1. Calls `message` only if the bar is visible.
+    pub(crate) fn set_fraction(&self, message: impl FnOnce() -> String, fraction: f64) {
         if self.bar.is_hidden() {
             return;
         }
@@ -42,9 +42,9 @@ impl Progress {
                 self.bar.set_style(style);
             }
         }
-        let percent = (100.0 * share) as u64;
+        let percent = (100.0 * fraction) as u64;
         if percent != self.bar.position() {
-            self.bar.set_message(what());
+            self.bar.set_message(message());
             self.bar.set_position(percent);
         }
     }
@@ -54,7 +54,7 @@ impl Drop for Progress {
     fn drop(&mut self) {
         if let Some((sender, thread)) = self.waiting.take() {
             drop(sender);
-            // A thread that failed has shown nothing; there is nothing to mend.
+            // A thread that failed has shown nothing, so there is nothing to clear.
             let _ = thread.join();
         }
         self.bar.finish_and_clear();

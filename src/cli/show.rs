@@ -1,26 +1,27 @@
-//! `fragbuf show`: one description, at any stage.
+//! `fragbuf show`: prints one description at one stage of its generation.
 
 use fragbuf::snapshot::joined;
 use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target, tier};
 
+use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
 use super::page;
 
 #[derive(clap::Args)]
 pub(crate) struct Show {
-    /// A technique's key, or a .fragbuf file
+    /// Technique key or .fragbuf file
     description: String,
-    /// Changes the description: axis=value, axis.option=value or k=8
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+    /// Change the description: axis=value, axis.option=value or k=8
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
-    /// The manifest, as JSON
+    /// Print the manifest as JSON
     #[arg(long)]
     json: bool,
-    /// The page of a technique, as Markdown
+    /// Print the page of the technique as Markdown
     #[arg(long, conflicts_with_all = ["json", "dump"])]
     page: bool,
-    /// A stage: plan, manifest, or a target whose files are text
+    /// Print one stage: plan, manifest, or a target with text files
     #[arg(long, value_name = "STAGE", conflicts_with = "json")]
     dump: Option<String>,
 }
@@ -28,12 +29,12 @@ pub(crate) struct Show {
 impl Show {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let registry = Registry::builtin();
-        let whole = match (self.json, self.page) {
+        let default = match (self.json, self.page) {
             (true, _) => "manifest",
             (_, true) => "page",
             _ => "summary",
         };
-        let stage = self.dump.as_deref().unwrap_or(whole);
+        let stage = self.dump.as_deref().unwrap_or(default);
         let one: Vec<&'static Target> = target(stage).into_iter().collect();
         let all: Vec<&'static Target> = TARGETS.iter().collect();
         if one.is_empty() && !["plan", "manifest", "summary", "page"].contains(&stage) {
@@ -41,13 +42,13 @@ impl Show {
             return Err(Failure::Usage(format!("no stage `{stage}`: give plan, manifest, {}", names.join(", "))));
         }
         if stage == "spirv" {
-            return Err(Failure::Usage("spirv is no text: `generate --target spirv` writes it".to_owned()));
+            return Err(Failure::Usage("SPIR-V is binary: write it with `generate --target spirv`".to_owned()));
         }
         let mut input = Input::read(&self.description, &registry)?;
         let variant = input.variant(&self.set, &registry)?;
         let targets = if one.is_empty() { &all } else { &one };
         let request = Request { targets, form: Form::Program, prefix: "", group: 0 };
-        let generation = generate(&variant, &request, &registry).map_err(|faults| input.failure(faults))?;
+        let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
         output::print(&match stage {
             "manifest" => output::json(&manifest(&generation, 0)),
             "plan" => plans(&generation),
@@ -62,6 +63,7 @@ fn plans(generation: &Generation) -> String {
     generation.plans.iter().map(|planned| planned.plan.to_string()).collect()
 }
 
+/// Returns the plans, and the soundness tier of each target.
 fn summary(generation: &Generation) -> String {
     let mut text = plans(generation);
     text.push_str("targets\n");
@@ -75,17 +77,17 @@ fn summary(generation: &Generation) -> String {
             ));
         }
     }
-    for (target, refusal) in &generation.refusals {
-        text.push_str(&format!("  {:12} —   {refusal}\n", target.name));
+    for (target, missing) in &generation.unsupported {
+        text.push_str(&format!("  {:12} —   {missing}\n", target.name));
     }
     text
 }
 
-/// Every text file once, under its path.
+/// Returns every text file once, under its path.
 fn files(generation: &Generation) -> String {
     let mut text = joined(generation);
-    for (target, refusal) in &generation.refusals {
-        text.push_str(&format!("// {}: {refusal}\n", target.name));
+    for (target, missing) in &generation.unsupported {
+        text.push_str(&format!("// {}: {missing}\n", target.name));
     }
     text
 }

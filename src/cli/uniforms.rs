@@ -1,4 +1,4 @@
-//! `--uniform name=value[,value…]`: values for a description's own uniforms. Those that are not given are zero.
+//! Parses `--uniform name=value[,value…]`: values of a description's uniforms. The default is 0.
 
 use fragbuf::Variant;
 use fragbuf_frame::Value;
@@ -6,31 +6,31 @@ use fragbuf_model::UniformType;
 
 use super::output::Failure;
 
-/// The values, as the description's types want them.
+/// Parses the values by the types that the description declares.
 pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Vec<(String, Value)>, Failure> {
     let value = |(name, text): &(String, String)| {
         let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
             let names: Vec<&str> = variant.uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-            let there =
+            let known =
                 if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
-            return Err(Failure::Usage(format!("the description has no uniform `{name}`: {there}")));
+            return Err(Failure::Usage(format!("the description has no uniform `{name}`: {known}")));
         };
         let kind = uniform.kind.value;
         let value = read(text, kind);
         value
             .map(|value| (name.clone(), value))
-            .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, and not `{text}`", wanted(kind))))
+            .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, not `{text}`", expected(kind))))
     };
     given.iter().map(value).collect()
 }
 
 fn read(text: &str, kind: UniformType) -> Option<Value> {
-    let words: Vec<&str> = text.split(',').map(str::trim).collect();
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let floats: Option<Vec<f32>> =
-        words.iter().map(|word| word.parse().ok().filter(|value: &f32| value.is_finite())).collect();
+        parts.iter().map(|part| part.parse().ok().filter(|value: &f32| value.is_finite())).collect();
     match kind {
-        UniformType::U32 => words.first().filter(|_| words.len() == 1)?.parse().ok().map(Value::U32),
-        UniformType::I32 => words.first().filter(|_| words.len() == 1)?.parse().ok().map(Value::I32),
+        UniformType::U32 => parts.first().filter(|_| parts.len() == 1)?.parse().ok().map(Value::U32),
+        UniformType::I32 => parts.first().filter(|_| parts.len() == 1)?.parse().ok().map(Value::I32),
         UniformType::F32 => <[f32; 1]>::try_from(floats?).ok().map(|[value]| Value::F32(value)),
         UniformType::Vec2 => floats?.try_into().ok().map(Value::Vec2),
         UniformType::Vec3 => floats?.try_into().ok().map(Value::Vec3),
@@ -38,13 +38,13 @@ fn read(text: &str, kind: UniformType) -> Option<Value> {
     }
 }
 
-fn wanted(kind: UniformType) -> &'static str {
+fn expected(kind: UniformType) -> &'static str {
     match kind {
         UniformType::F32 => "one number",
         UniformType::U32 => "one whole number, 0 or more",
         UniformType::I32 => "one whole number",
-        UniformType::Vec2 => "2 numbers, joined by commas",
-        UniformType::Vec3 => "3 numbers, joined by commas",
-        UniformType::Vec4 => "4 numbers, joined by commas",
+        UniformType::Vec2 => "2 numbers, separated by commas",
+        UniformType::Vec3 => "3 numbers, separated by commas",
+        UniformType::Vec4 => "4 numbers, separated by commas",
     }
 }

@@ -1,51 +1,52 @@
-//! What is seen, from where, and where the picture goes: the arguments that `render` and `compare` share.
+//! The arguments that `render` and `compare` share: the scene, the camera, the device and the output file.
 
 use std::path::PathBuf;
 
-use fragbuf_cpu::Order;
-use fragbuf_scene::{BUILTIN, Camera, Scene};
+use fragbuf_cpu::FragmentOrder;
+use fragbuf_scene::{BUILTIN_SCENES, Camera, Scene};
 
-use super::device::{self, Picked, Wanted};
+use super::device::{self, DeviceRequest, SelectedDevice};
 use super::output::Failure;
 
 #[derive(clap::Args)]
 pub(crate) struct View {
-    /// A model (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
+    /// Model file (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
     pub(crate) scene: String,
-    /// A scene that is drawn first, as if opaque: what lies behind it is turned away, its picture is behind the other. The camera
-    /// frames both. A description takes opaque=in_shader unless it says otherwise
+    /// Scene to draw first as opaque geometry. Its image is the background; its depth buffer hides fragments behind it. The
+    /// camera frames both scenes. The description uses `opaque=in_shader` unless it chooses another value
     #[arg(long, value_name = "PATH|builtin:NAME")]
     opaque: Option<String>,
-    /// Pixels
+    /// Size of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// The PNG to write
+    /// PNG file to write
     #[arg(long, value_name = "PNG")]
     pub(crate) out: PathBuf,
-    /// Three-quarter view of the whole scene, or positions as clip-space positions
+    /// Three-quarter view of the whole scene, or positions used as clip-space positions
     #[arg(long, value_enum, default_value_t = CameraArgument::Auto)]
     camera: CameraArgument,
-    /// Lit by a lamp at the eye, or the bare colours
+    /// Light the scene from the camera position, or use its colours unlit
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
-    /// What is behind everything: linear, straight alpha
+    /// Background colour: linear, straight alpha
     #[arg(long, value_name = "r,g,b,a", default_value = "1,1,1,1", value_parser = color)]
     pub(crate) background: [f32; 4],
-    /// Colour of what the model gives none: linear, straight alpha
+    /// Colour of parts for which the model gives none: linear, straight alpha
     #[arg(long, value_name = "r,g,b,a", default_value = "0.15,0.45,0.35,0.4", value_parser = color)]
     color: [f32; 4],
-    /// Linear values in the PNG, and not sRGB
+    /// Write linear values to the PNG instead of sRGB
     #[arg(long)]
     pub(crate) linear: bool,
-    /// A GPU where there is one, else the CPU device; the CPU device, which needs no driver; or an adapter by a part of its name
+    /// `auto`: a GPU if there is one, else the CPU device. `cpu`: the CPU device, which needs no driver. NAME: an adapter whose
+    /// name contains NAME
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
-    device: Wanted,
-    /// The order of same-pixel fragments on the CPU device: as submitted, or their shaders interleaved by a seed; tests and
-    /// blending keep the order of submission
+    device: DeviceRequest,
+    /// Order of same-pixel fragments on the CPU device: as submitted, or with their shaders interleaved by a seed. Fixed-function
+    /// tests and blending keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
-    order: Option<Order>,
-    /// Figures on stdout, as JSON; counts every event unless the description says otherwise
+    order: Option<FragmentOrder>,
+    /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -59,31 +60,32 @@ enum CameraArgument {
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Shading {
     Lit,
-    Flat,
+    #[value(alias = "flat")]
+    Unlit,
 }
 
-/// A scene as it is drawn: lit, where it shall be, and seen.
-pub(crate) struct Stage {
+/// A scene with its final colours, and the camera that views it.
+pub(crate) struct SceneView {
     pub(crate) scene: Scene,
     pub(crate) camera: Camera,
-    /// Whether the picture shall be what arithmetic over the scene's own colours says.
-    pub(crate) exact: bool,
+    /// Whether colours are unlit, so that the image must equal exact arithmetic over the scene's own colours.
+    pub(crate) is_unlit: bool,
 }
 
 impl View {
-    /// Loads or makes the scene, and the one that is opaque, whatever its alpha; the camera frames both.
-    pub(crate) fn stages(&self) -> Result<(Stage, Option<Stage>), Failure> {
+    /// Loads or generates the scene and the opaque scene, whose alpha becomes 1. The camera frames both.
+    pub(crate) fn scene_views(&self) -> Result<(SceneView, Option<SceneView>), Failure> {
         let scene = fragbuf_scene::open(&self.scene, self.color)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&scene);
-            return Ok((self.staged(scene, camera), None));
+            return Ok((self.scene_view(scene, camera), None));
         };
         let mut opaque = fragbuf_scene::open(opaque, self.color)?;
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let both = Scene { objects: scene.objects.iter().chain(&opaque.objects).cloned().collect() };
         let camera = self.camera(&both);
-        Ok((self.staged(scene, camera), Some(self.staged(opaque, camera))))
+        Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
     }
 
     fn camera(&self, scene: &Scene) -> Camera {
@@ -93,40 +95,39 @@ impl View {
         }
     }
 
-    fn staged(&self, mut scene: Scene, camera: Camera) -> Stage {
-        let exact = match self.shading {
-            Shading::Flat => true,
+    fn scene_view(&self, mut scene: Scene, camera: Camera) -> SceneView {
+        let is_unlit = match self.shading {
+            Shading::Unlit => true,
             Shading::Lit => {
                 fragbuf_scene::light(&mut scene, camera.eye);
                 false
             }
         };
-        Stage { scene, camera, exact }
+        SceneView { scene, camera, is_unlit }
     }
 
-    /// What will draw.
-    pub(crate) fn picked(&self) -> Result<Picked, Failure> {
-        self.device.pick(self.order)
+    /// Selects the device.
+    pub(crate) fn select_device(&self) -> Result<SelectedDevice, Failure> {
+        self.device.select(self.order)
     }
 
-    /// What is wrong with the arguments and needs no work to see.
+    /// Checks the names of generated scenes, before any scene is loaded.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
     }
 }
 
-/// What is wrong with the name of a scene and needs no work to see.
 fn check(scene: &str) -> Result<(), Failure> {
     if let Some(name) = scene.strip_prefix("builtin:") {
-        name.parse::<fragbuf_scene::Builtin>()?;
+        name.parse::<fragbuf_scene::BuiltinScene>()?;
     }
     Ok(())
 }
 
-/// The generated scenes, for the help.
+/// Returns the list of generated scenes that the help shows.
 pub(crate) fn scenes() -> String {
     let mut text = "Generated scenes:\n".to_owned();
-    for row in BUILTIN {
+    for row in BUILTIN_SCENES {
         let parameters: Vec<String> =
             row.parameters.iter().map(|parameter| format!("{}={}", parameter.name, parameter.default)).collect();
         text.push_str(&format!("  builtin:{:10}{}  [{}]\n", row.name, row.summary, parameters.join(", ")));
@@ -134,6 +135,7 @@ pub(crate) fn scenes() -> String {
     text
 }
 
+/// Parses `WIDTHxHEIGHT`.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides
@@ -141,6 +143,7 @@ fn size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| "write WIDTHxHEIGHT in pixels, as 640x480".to_owned())
 }
 
+/// Parses `red,green,blue,alpha`.
 fn color(text: &str) -> Result<[f32; 4], String> {
     let values: Option<Vec<f32>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
     let values = values.and_then(|values| <[f32; 4]>::try_from(values).ok());

@@ -1,6 +1,6 @@
-// Morton order (1966) in blocks of 8 x 8 pixels, row after row of blocks: inside a block, bits of column and row
-// alternate, so that every aligned square of a power of two lies together. One curve over the whole frame would pad
-// it to a square; blocks pad columns and rows to 8. A slice of a picture begins at `first_row`, and its blocks with it.
+// Morton order (1966) in blocks of 8 x 8 pixels; blocks are in row-major order. Inside a block the bits of column and
+// row alternate, so every aligned square of a power of two is contiguous. One curve over the whole frame would pad it
+// to a square; blocks pad columns and rows to 8. A slice of an image begins at `first_row`, and its blocks with it.
 
 const BLOCK_SIDE = 8u;
 
@@ -11,7 +11,7 @@ fn pixel_index(position: vec2<f32>) -> u32 {
     return block * BLOCK_SIDE * BLOCK_SIDE + (inside.x | (inside.y << 1u));
 }
 
-/// The texel of a pixel in textures as large as the frame.
+/// Returns the texel of a pixel in textures of the size of the frame.
 fn pixel_texel(pixel: u32) -> vec2<u32> {
     let block = pixel / (BLOCK_SIDE * BLOCK_SIDE);
     let corner = BLOCK_SIDE * vec2<u32>(block % morton_blocks(frame.width), block / morton_blocks(frame.width));
@@ -27,13 +27,13 @@ fn morton_blocks(length: u32) -> u32 {
     return (length + BLOCK_SIDE - 1u) / BLOCK_SIDE;
 }
 
-/// The three bits of each number with a zero bit before each of them.
+/// Returns the three bits of each number with a zero bit before each of them.
 fn morton_spread(numbers: vec2<u32>) -> vec2<u32> {
     let twos = (numbers | (numbers << vec2<u32>(2u))) & vec2<u32>(0x13u);
     return (twos | (twos << vec2<u32>(1u))) & vec2<u32>(0x15u);
 }
 
-/// Takes the zero bits out again.
+/// Removes the zero bits that `morton_spread` inserted.
 fn morton_gather(numbers: vec2<u32>) -> vec2<u32> {
     let spread = numbers & vec2<u32>(0x15u);
     let twos = (spread | (spread >> vec2<u32>(1u))) & vec2<u32>(0x13u);

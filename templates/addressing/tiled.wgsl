@@ -1,5 +1,5 @@
-// Tiles of 2 x 8 pixels, row after row of tiles: two neighbours along a row and eight along a column lie within 16
-// words. A slice of a picture begins at `first_row`, and its tiles with it. Columns are padded to 2, rows to 8.
+// Tiles of 2 x 8 pixels in row-major order: two neighbours along a row and eight along a column are within 16 words. A
+// slice of an image begins at `first_row`, and its tiles with it. Columns are padded to 2, rows to 8.
 
 const TILE_WIDTH = 2u;
 const TILE_HEIGHT = 8u;
@@ -10,7 +10,7 @@ fn pixel_index(position: vec2<f32>) -> u32 {
     return (tile * TILE_HEIGHT + at.y % TILE_HEIGHT) * TILE_WIDTH + at.x % TILE_WIDTH;
 }
 
-/// The texel of a pixel in textures as large as the frame.
+/// Returns the texel of a pixel in textures of the size of the frame.
 fn pixel_texel(pixel: u32) -> vec2<u32> {
     let tile = pixel / (TILE_WIDTH * TILE_HEIGHT);
     let corner = vec2<u32>(tile % tiled_columns() * TILE_WIDTH, tile / tiled_columns() * TILE_HEIGHT);

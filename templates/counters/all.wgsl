@@ -1,4 +1,4 @@
-// Every event is counted. All pixels meet at a few words: for statistics, not for timing.
+// Counts every event. All pixels increment the same few words: for statistics, not for timing.
 
 fn count_event(counter: u32) {
     counters_atomic_add(counter, 1u);

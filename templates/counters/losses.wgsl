@@ -1,6 +1,6 @@
-// Losses are counted, other events are not: a frame that loses nothing never touches the counters.
+// Counts losses and no other events: a frame without losses never accesses the counters.
 
-/// Events that are no loss are not counted here.
+/// Does nothing: an event is not a loss.
 fn count_event(counter: u32) {}
 
 fn count_loss(counter: u32) {

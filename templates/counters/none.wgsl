@@ -1,10 +1,10 @@
-// Nothing is counted.
+// Counts nothing.
 
-/// Not counted here.
+/// Does nothing.
 fn count_event(counter: u32) {}
 
-/// Not counted here.
+/// Does nothing.
 fn count_loss(counter: u32) {}
 
-/// Not counted here.
+/// Does nothing.
 fn count_losses(counter: u32, number: u32) {}

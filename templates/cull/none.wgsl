@@ -1,4 +1,4 @@
-// No fragment is turned away.
+// Rejects no fragment.
 
 fn cull_fragment(pixel: u32, entry: Packed) -> bool {
     return false;

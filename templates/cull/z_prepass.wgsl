@@ -1,10 +1,10 @@
 // A pass over the scene finds the key of each pixel's best fragment before any is stored: a depth pre-pass by atomic
-// minima, for any criterion. The store pass then turns all others away, whatever the order of arrival: one fragment of
-// a pixel takes the lock, and those with an equal key. For `keep 1`.
+// minima, for any criterion. The store pass then rejects all other fragments, for any order of arrival: only the best
+// fragment of a pixel, and fragments with an equal key, take the lock. For `keep 1`.
 //
 // Memory: 1 word per pixel.
 
-fn cull_measure(pixel: u32, entry: Packed) {
+fn cull_key_range(pixel: u32, entry: Packed) {
     prepass_atomic_min(pixel, entry.key);
 }
 

@@ -1,7 +1,8 @@
-// Opaque surfaces hide what lies behind them: the caller draws them first, and brings their depth buffer. Equal depths
-// stay, as they pass a test by LESS_EQUAL: a decal that is drawn with the positions of its wall is seen. Depth is the
-// fragment's own, which the caller's shader may have chosen. The depth buffer has one sample per pixel; where fragments
-// have several, both depths are those at the pixel's middle, and a fragment is hidden there or nowhere.
+// Opaque surfaces hide fragments behind them: the caller draws the surfaces first and supplies their depth buffer.
+// Fragments of equal depth are kept, as with a LESS_EQUAL test, so a decal drawn at the positions of its wall is
+// visible. The depth is the fragment's, which the caller's shader may have replaced. The depth buffer has one sample
+// per pixel. If fragments have several, both depths are those at the pixel centre, and a fragment is hidden in all
+// samples or in none.
 
 fn opaque_hides(position: vec2<f32>, fragment: Fragment) -> bool {
     return fragment.depth > opaque_load(pixel_index(position));

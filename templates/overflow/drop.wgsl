@@ -1,5 +1,5 @@
-// A fragment that finds no place is dropped. Storages and locks hand every such fragment here, so that none is lost
-// uncounted.
+// Drops fragments that the storage does not keep. Storages and locks pass every such fragment to this row, so every
+// loss is counted.
 
 fn on_lost(pixel: u32, lost: Packed, reason: u32) {
     count_loss(reason);

@@ -1,5 +1,5 @@
-// No picture rather than a wrong one: once a fragment finds no room, or a lock is not free in time, every pixel of the
-// frame is magenta. Fragments that better ones displaced are no failure: they are what a limit means. Memory: 1 word.
+// No image instead of a wrong one: if a fragment does not fit or times out at a lock, every pixel of the frame is
+// magenta. Displaced fragments are no failure: a limit on the fragments kept implies them. Memory: 1 word.
 
 fn on_lost(pixel: u32, lost: Packed, reason: u32) {
     count_loss(reason);

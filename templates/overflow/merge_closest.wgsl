@@ -1,16 +1,16 @@
-// Z3 (Jouppi & Chang 1999): where a pixel has k + 1 fragments, the two neighbours that are closest in depth become
-// one. Of pairs equally close it is the farther, so that the front stays exact. The depth and the other attributes
-// are those of the nearer, the colour is the nearer's over the farther's; those behind move up.
+// Z3 (Jouppi & Chang 1999): if a pixel has k + 1 fragments, the two neighbours that are closest in depth are merged.
+// Of equally close pairs the farther is merged, so that the front stays exact. The depth and the other attributes are
+// those of the nearer fragment, and the colour is the nearer over the farther; fragments behind move up by one slot.
 //
-// Invariants. The storage hands over the farthest of k + 1 when all k slots are taken, in the order of depth: so
-// the pairs are neighbouring slots, and the last slot with what is handed over. Slots stay in that order. The
-// nearest fragment's depth stays. 1 - alpha of a merged colour is the product of both: the pixel's transmittance
-// stays, whatever the order of arrival, but for the rounding of its format.
+// Invariants. The storage passes the farthest of k + 1 fragments to this row when all k slots are full, in depth
+// order. So the pairs are neighbouring slots, and the last slot with the displaced fragment. Slots stay in depth
+// order. The nearest fragment's depth does not change. 1 - alpha of a merged colour is the product of both, so the
+// pixel's transmittance does not depend on the order of arrival, except for the rounding of its format.
 //
-// The keys that stay are not those of the k best, and the last may grow: a bound that rests on them would turn
-// fragments away that merge, so nothing may be turned away. Which pairs merge, and what lies between them later,
-// depends on the order of arrival. What is lost outside of the critical section (a lock that was not free in time)
-// is counted and not merged. Memory: none.
+// The kept keys are not those of the k best, and the last key may increase: a bound based on them would cull fragments
+// that must be merged, so nothing may be culled. Which pairs merge, and which fragments later lie between them,
+// depends on the order of arrival. Fragments lost outside the critical section (a timeout at a lock) are counted and
+// not merged. Memory: none.
 
 fn on_lost(pixel: u32, lost: Packed, reason: u32) {
     count_loss(reason);
@@ -31,7 +31,7 @@ fn overflow_finish(pixel: u32, color: vec4<f32>) -> vec4<f32> {
     return color;
 }
 
-/// The cursor of the nearer of the closest pair; `lost` lies behind the last slot.
+/// Returns the cursor of the nearer fragment of the closest pair; `lost` follows the last slot.
 fn merge_closest_find(pixel: u32, lost: Packed) -> u32 {
     var cursor = storage_first(pixel);
     var closest = cursor;
@@ -49,11 +49,11 @@ fn merge_closest_find(pixel: u32, lost: Packed) -> u32 {
     return closest;
 }
 
-/// Makes one of the fragment at `place` and the next behind it. Those behind that one move up by a slot, `lost` last.
-fn merge_closest_at(pixel: u32, place: u32, lost: Packed) {
-    var next = storage_next(pixel, place);
-    let both = merge_over(storage_read(pixel, place), merge_closest_behind(pixel, next, lost));
-    storage_replace(pixel, place, both);
+/// Merges the fragment at `front` with the next one. The fragments behind them, `lost` last, move up by one slot.
+fn merge_closest_at(pixel: u32, front: u32, lost: Packed) {
+    var next = storage_next(pixel, front);
+    let both = merge_over(storage_read(pixel, front), merge_closest_behind(pixel, next, lost));
+    storage_replace(pixel, front, both);
     while next != END {
         let cursor = next;
         next = storage_next(pixel, cursor);
@@ -61,7 +61,7 @@ fn merge_closest_at(pixel: u32, place: u32, lost: Packed) {
     }
 }
 
-/// The fragment at a cursor, or `lost` behind the last.
+/// Returns the fragment at a cursor, or `lost` past the last.
 fn merge_closest_behind(pixel: u32, cursor: u32, lost: Packed) -> Packed {
     if cursor == END {
         return lost;

@@ -1,19 +1,19 @@
-// Multi-layer alpha blending (Salvi & Vaidyanathan 2014): where a fragment is displaced, it and the farthest of
-// those that stay become one. The key and the other attributes are those of the nearer, the colour is the nearer's
-// over the farther's. The storage has put a new fragment in before it hands the displaced one over, so that the
-// two farthest of k + 1 merge.
+// Multi-layer alpha blending (Salvi & Vaidyanathan 2014): a displaced fragment is merged with the farthest of the kept
+// ones. The key and the other attributes are those of the nearer fragment, and the colour is the nearer over the
+// farther. The storage inserts a new fragment before it passes the displaced one to this row, so the two farthest of k
+// + 1 are merged.
 //
-// Invariants. 1 - alpha of a merged colour is the product of both: the pixel's transmittance stays, whatever the
-// order of arrival, but for the rounding of its format. Keys are never changed, so they are those of the k best,
-// and a bound that rests on keys stays sound. A colour is merged into the worst entry alone, which is the next to
-// be displaced: the k - 1 nearest stay as they came.
+// Invariants. 1 - alpha of a merged colour is the product of both, so the pixel's transmittance does not depend on the
+// order of arrival, except for the rounding of its format. Keys never change, so they are those of the k best, and a
+// bound on keys stays sound. Colours are only merged into the worst entry, which is displaced next: the k - 1 nearest
+// are not changed.
 //
-// The farthest entry's colour does depend on the order of arrival: what comes late, and lies between fragments
-// that are merged by then, goes behind them. Among equal keys it depends on it, and on the storage, which of them
-// stays, because a merged colour is compared like any other word.
+// The farthest entry's colour depends on the order of arrival: a late fragment that lies between fragments merged
+// before goes behind them. Among equal keys, the kept fragment depends on the order of arrival and on the storage,
+// because a merged colour is compared like any other word.
 //
-// What is lost outside of the critical section (a lock that was not free in time) is counted and not merged;
-// nothing is turned away earlier. Memory: none.
+// Fragments lost outside the critical section (a timeout at a lock) are counted and not merged; nothing is culled.
+// Memory: none.
 
 fn on_lost(pixel: u32, lost: Packed, reason: u32) {
     count_loss(reason);

@@ -1,11 +1,11 @@
-// What is not kept is blended behind what is (Maule et al. 2013; nvpro calls it tail blending): each lost fragment
-// over the tail so far, as if it lay before all that were lost earlier. That is approximate: colours in the tail
-// follow the order of arrival, and frames may differ where arrival is a race. The tail's transmittance is a
-// product and does not depend on the order, but for the rounding of floats.
+// Fragments that are not kept are blended behind the kept ones (Maule et al. 2013; nvpro calls it tail blending): each
+// lost fragment over the tail so far, as if it were in front of all fragments lost earlier. This is approximate:
+// colours of the tail depend on the order of arrival, and frames may differ if that order is a race. The tail's
+// transmittance is a product and does not depend on the order, except for the rounding of floats.
 //
-// The tail is read, changed and written, so it may be touched inside the critical section alone: that is where a
-// storage displaces fragments. What is lost elsewhere (a lock that was not free in time, no room in a pool) is
-// counted and not blended; nothing is turned away earlier.
+// The tail is read, modified and written, so only the critical section may access it: that is where a storage
+// displaces fragments. Fragments lost elsewhere (a timeout at a lock, a full pool) are counted and not blended;
+// nothing is culled.
 //
 // Memory: 4 words per pixel, a premultiplied colour of floats.
 
@@ -25,12 +25,12 @@ fn overflow_is_empty(pixel: u32) -> bool {
     return blended_load(3u, pixel) == 0u;
 }
 
-/// The tail behind `color`, which is premultiplied.
+/// Returns `color`, which is premultiplied, over the tail.
 fn overflow_finish(pixel: u32, color: vec4<f32>) -> vec4<f32> {
     return color + (1.0 - color.a) * tail_blend_color(pixel);
 }
 
-/// Puts a colour of straight alpha over the tail.
+/// Blends a colour of straight alpha over the tail.
 fn tail_blend_add(pixel: u32, color: vec4<f32>) {
     let front = vec4<f32>(color.a * color.rgb, color.a);
     let words = bitcast<vec4<u32>>(front + (1.0 - color.a) * tail_blend_color(pixel));

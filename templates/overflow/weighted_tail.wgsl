@@ -1,8 +1,8 @@
-// What is not kept is summed up behind what is (Maule et al. 2013, hybrid transparency: an exact core and a tail whose
-// colour is the mean by alpha and whose transmittance is the product). Sums of whole numbers do not depend on the order
-// of arrival: the tail is the same for every order, and nothing but atomic additions touches it. Memory: 5 words per
-// pixel. Alpha counts in steps of 1/4096, transmittance in steps of 2^(-1/2048) down to 2^-24; 87,381 opaque fragments
-// of one pixel are the most that its word can hold.
+// Fragments that are not kept are summed up behind the kept ones (Maule et al. 2013, hybrid transparency: an exact
+// core and a tail whose colour is the alpha-weighted mean and whose transmittance is the product). Integer sums do not
+// depend on the order of arrival: the tail is the same for every order, and only atomic additions access it. Memory: 5
+// words per pixel. Alpha is in steps of 1/4096, transmittance in steps of 2^(-1/2048) down to 2^-24; the word of a
+// pixel can hold at most 87,381 opaque fragments.
 
 const TAIL_ALPHA = 3u;
 const TAIL_OPACITY = 4u;
@@ -11,15 +11,15 @@ const TAIL_OPACITY_STEPS = 2048.0;
 
 fn on_lost(pixel: u32, lost: Packed, reason: u32) {
     count_loss(reason);
-    tail_add(pixel, lost);
+    weighted_tail_add(pixel, lost);
 }
 
 fn on_culled(pixel: u32, lost: Packed) {
     count_event(CULLED);
-    tail_add(pixel, lost);
+    weighted_tail_add(pixel, lost);
 }
 
-fn tail_add(pixel: u32, lost: Packed) {
+fn weighted_tail_add(pixel: u32, lost: Packed) {
     var color = clamp(fragment_unpack(lost).color, vec4<f32>(0.0), vec4<f32>(1.0));
     color.a *= samples_share(lost);
     let weighted = vec4<u32>(round(TAIL_STEPS * vec4<f32>(color.rgb * color.a, color.a)));
@@ -35,7 +35,7 @@ fn overflow_is_empty(pixel: u32) -> bool {
     return tail_load(TAIL_ALPHA, pixel) == 0u;
 }
 
-/// The tail behind `color`, which is premultiplied.
+/// Returns `color`, which is premultiplied, over the tail.
 fn overflow_finish(pixel: u32, color: vec4<f32>) -> vec4<f32> {
     if overflow_is_empty(pixel) {
         return color;

@@ -1,8 +1,8 @@
-// Counts the fragments of each pixel: the same scene, the same constraints as the store pass.
+// Counts the fragments of each pixel: the same scene and constraints as the store pass.
 
 @fragment
-fn count(varyings: Varyings) {
-    count_fragment(varyings.position.xy, varyings_fragment(varyings));
+fn count(inputs: FragmentInput) {
+    count_fragment(inputs.position.xy, fragment_from_inputs(inputs));
 }
 
 /// Counts one fragment. `position` is the fragment's, in pixels.

@@ -1,7 +1,7 @@
-// The vertex stage of every geometry pass. Positions are invariant: passes that draw the same scene twice must see
-// the same fragments.
+// The vertex stage of every geometry pass. Positions are invariant: passes that draw the scene again must produce the
+// same fragments.
 
 @vertex
-fn geometry(vertex: Vertex) -> Placed {
-    return vertex_placed(vertex);
+fn geometry(vertex: Vertex) -> VertexOutput {
+    return vertex_output(vertex);
 }

@@ -1,5 +1,6 @@
-// Writes the depth beyond which a pixel's fragments are turned away, for a depth test to do it. Keys are bits of
-// depths. A few last bits are added: whether a rasteriser tests the very depth that it shows a shader is its affair.
+// Writes the depth beyond which a depth test rejects a pixel's fragments. Keys are bits of depths. LIMIT_SLACK raises
+// the limit by a few units in the last place, because a rasteriser may test a slightly different depth than shaders
+// read.
 
 const LIMIT_SLACK = 16u;
 

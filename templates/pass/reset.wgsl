@@ -1,4 +1,4 @@
-// Brings every pixel's storage to its empty state.
+// Resets every pixel's storage to its empty state.
 
 @compute @workgroup_size(8, 8)
 fn reset(@builtin(global_invocation_id) invocation: vec3<u32>) {

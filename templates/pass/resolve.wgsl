@@ -1,6 +1,6 @@
-// Makes one colour of each pixel's fragments. Pixels without any keep what the target held.
+// Computes one colour from each pixel's fragments. Pixels without fragments keep the content of the target.
 
-/// The pixel.
+/// The index of the pixel.
 var<private> resolved: u32;
 
 @fragment
@@ -11,7 +11,7 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     sort_finish();
     if sorted_count() == 0u {
-        // Where a pass serves some pixels only, the others have fragments and no layers.
+        // If a pass serves only some pixels, the others have fragments but no layers.
         if overflow_is_empty(resolved) || resolve_first() != END {
             discard;
         }

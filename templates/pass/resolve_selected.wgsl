@@ -1,9 +1,9 @@
-// Makes one colour of the k best of each pixel's fragments, which are chosen here: the storage kept them all. Pixels
-// without any keep what the target held.
+// Computes one colour from the k best of each pixel's fragments, which this pass selects: the storage kept all. Pixels
+// without fragments keep the content of the target.
 
 var<private> selected: array<Packed, CAPACITY>;
 var<private> selected_count: u32;
-/// The slot of the worst, once there are k.
+/// The slot of the worst fragment, if k are selected.
 var<private> worst_slot: u32;
 
 @fragment
@@ -19,7 +19,7 @@ fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     sort_finish();
     if sorted_count() == 0u {
-        // Where a pass serves some pixels only, the others have fragments and no layers.
+        // If a pass serves only some pixels, the others have fragments but no layers.
         if overflow_is_empty(pixel) || resolve_first() != END {
             discard;
         }

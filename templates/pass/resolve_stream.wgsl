@@ -1,5 +1,5 @@
-// Finishes the stream of each pixel: what is still kept is composited behind what has left, nearest first. The last
-// fragment is its own neighbour. Pixels without any keep what the target held.
+// Finishes the stream of each pixel: composites the remaining fragments behind those that have left, nearest first.
+// The last fragment is its own neighbour. Pixels without fragments keep the content of the target.
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {

@@ -1,4 +1,4 @@
-// Sets the stencil of one sample of every pixel: what is drawn has no colour, the test's reference is the value.
+// Sets the stencil of one sample of every pixel to the reference of the stencil test. It writes no colour.
 
 @fragment
 fn route() {}

@@ -1,4 +1,4 @@
-// Adds to each pixel's offset what all blocks before its own sum up to.
+// Adds the sum of all preceding blocks to each pixel's offset.
 
 @compute @workgroup_size(256)
 fn scan_add(

@@ -1,5 +1,5 @@
-// Exclusive prefix sums, inside each block of 1024 pixels, of what pixels need room for: every invocation adds up four
-// neighbours, the workgroup scans the 256 sums. The block's total goes to `block_sums`.
+// Computes exclusive prefix sums of the pixels' region sizes inside each block of 1024 pixels: every invocation adds
+// up four neighbours, and the workgroup scans the 256 sums. The block's total goes to `block_sums`.
 
 const PIXELS_EACH = 4u;
 
@@ -10,11 +10,11 @@ fn scan_blocks(
 ) {
     let first = (group.x * 256u + local) * PIXELS_EACH;
     let end = min(first + PIXELS_EACH, pixel_count());
-    var own = 0u;
+    var value = 0u;
     for (var pixel = first; pixel < end; pixel++) {
-        own += storage_size(pixel);
+        value += storage_size(pixel);
     }
-    var offset = workgroup_scan(local, own) - own;
+    var offset = workgroup_scan(local, value) - value;
     for (var pixel = first; pixel < end; pixel++) {
         offsets_store(pixel, offset);
         offset += storage_size(pixel);

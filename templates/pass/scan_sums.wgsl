@@ -1,4 +1,4 @@
-// Exclusive prefix sum over the sums of all blocks, in one workgroup that goes through them 256 at a time. The
+// Computes the exclusive prefix sum over the sums of all blocks, in one workgroup that processes 256 at a time. The
 // grand total is the end of the last pixel's region.
 
 @compute @workgroup_size(256)
@@ -7,13 +7,13 @@ fn scan_sums(@builtin(local_invocation_index) local: u32) {
     var total = 0u;
     for (var first = 0u; first < blocks; first += 256u) {
         let block = first + local;
-        var own = 0u;
+        var value = 0u;
         if block < blocks {
-            own = block_sums_load(block);
+            value = block_sums_load(block);
         }
-        let scanned = workgroup_scan(local, own);
+        let scanned = workgroup_scan(local, value);
         if block < blocks {
-            block_sums_store(block, total + scanned - own);
+            block_sums_store(block, total + scanned - value);
         }
         total += sums[255];
     }

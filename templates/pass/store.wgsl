@@ -1,8 +1,8 @@
 // Stores the scene's fragments.
 
 @fragment
-fn store(varyings: Varyings) {
-    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+fn store(inputs: FragmentInput) {
+    store_fragment(inputs.position.xy, fragment_from_inputs(inputs));
 }
 
 /// Stores one fragment. `position` is the fragment's, in pixels.

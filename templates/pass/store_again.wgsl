@@ -1,8 +1,8 @@
-// Stores the scene's fragments, round after round: each comes again in every round. Events are counted in the first.
+// Stores the scene's fragments in every iteration of a loop. Events are counted in the first iteration only.
 
 @fragment
-fn store(varyings: Varyings) {
-    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+fn store(inputs: FragmentInput) {
+    store_fragment(inputs.position.xy, fragment_from_inputs(inputs));
 }
 
 /// Stores one fragment. `position` is the fragment's, in pixels.

@@ -1,9 +1,9 @@
-// Stores the scene's fragments. Those that have a place of their own are stored at once; only the others go on to where
-// writers of one pixel take turns.
+// Stores the scene's fragments. Fragments that reserve a slot are stored without the lock; only the others take the
+// lock.
 
 @fragment
-fn store(varyings: Varyings) {
-    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+fn store(inputs: FragmentInput) {
+    store_fragment(inputs.position.xy, fragment_from_inputs(inputs));
 }
 
 /// Stores one fragment. `position` is the fragment's, in pixels.
@@ -17,7 +17,7 @@ fn store_fragment(position: vec2<f32>, fragment: Fragment) {
         on_culled(pixel, entry);
         return;
     }
-    // A statement of its own, ahead of the lock: lanes of one wave that have a place must not wait for those that spin.
+    // A separate statement before the lock: lanes with a slot must not wait for lanes of their wave that spin.
     let is_done = storage_reserve(pixel, entry);
     if !is_done {
         sync_store(pixel, entry);

@@ -1,22 +1,22 @@
-// Stores the scene's fragments: those that have a place of their own at once, the others inside an interlock. Targets
-// want its ends at the top level of the entry point, with no way around them, so what elsewhere returns early is a
-// condition here. Whoever waits for another's slot does so before the interlock begins.
+// Stores the scene's fragments: those that reserve a slot at once, the others inside an interlock. Targets require its
+// begin and end at the top level of the entry point, reached on every path, so conditions replace the early returns of
+// other skeletons. A fragment that waits for others' slots waits before the interlock begins.
 
 @fragment
-fn store(varyings: Varyings) {
-    let fragment = varyings_fragment(varyings);
-    let pixel = pixel_index(varyings.position.xy);
+fn store(inputs: FragmentInput) {
+    let fragment = fragment_from_inputs(inputs);
+    let pixel = pixel_index(inputs.position.xy);
     let entry = fragment_pack(fragment);
-    var wanted = fragment_enters_counted(varyings.position.xy, fragment);
-    if wanted && cull_fragment(pixel, entry) {
+    var accepted = fragment_enters_counted(inputs.position.xy, fragment);
+    if accepted && cull_fragment(pixel, entry) {
         on_culled(pixel, entry);
-        wanted = false;
+        accepted = false;
     }
-    if wanted {
-        wanted = !storage_reserve(pixel, entry);
+    if accepted {
+        accepted = !storage_reserve(pixel, entry);
     }
     critical_begin();
-    if wanted {
+    if accepted {
         storage_insert(pixel, entry);
     }
     critical_end();

@@ -1,9 +1,9 @@
-// Stores the scene's fragments in targets, a word in each; tests that are fixed function decide which of them stay.
+// Stores the scene's fragments in render targets, one word each; fixed-function tests decide which of them are kept.
 
 @fragment
-fn store(varyings: Varyings) -> Targets {
-    let fragment = varyings_fragment(varyings);
-    if !fragment_enters_counted(varyings.position.xy, fragment) {
+fn store(inputs: FragmentInput) -> Targets {
+    let fragment = fragment_from_inputs(inputs);
+    if !fragment_enters_counted(inputs.position.xy, fragment) {
         discard;
     }
     return fragment_targets(fragment_pack(fragment));

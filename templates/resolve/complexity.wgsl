@@ -1,5 +1,5 @@
-// Depth complexity as a heat map: how many fragments a pixel shows, from blue for few over green to red for
-// COMPLEXITY_MOST and more. It tells where a frame is deep, and where a limit cuts off.
+// Depth complexity as a heat map: the number of fragments that a pixel shows, from blue for few over green to red for
+// COMPLEXITY_MOST and more. It shows where a frame is deep, and where a limit drops fragments.
 
 fn resolve_layers() -> vec4<f32> {
     let share = min(f32(layer_count()) / f32(COMPLEXITY_MOST), 1.0);

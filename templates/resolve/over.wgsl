@@ -1,5 +1,5 @@
-// Front-to-back *over* (Porter & Duff 1984). Colours come in with straight alpha; the result is premultiplied, to
-// be blended over the background.
+// Front-to-back *over* (Porter & Duff 1984). Input colours have straight alpha; the result is premultiplied, to be
+// blended over the background.
 
 fn resolve_layers() -> vec4<f32> {
     var color = vec3<f32>(0.0);
@@ -8,8 +8,8 @@ fn resolve_layers() -> vec4<f32> {
         let surface = layer(index).color;
         color += transmittance * surface.a * surface.rgb;
         transmittance *= 1.0 - surface.a;
-        // Ends once less than OPAQUE_THOUSANDTHS of the light behind would pass (K15 sec. 4.4): what is left out
-        // changes no channel by as much as that.
+        // Stops when less than OPAQUE_THOUSANDTHS of the light behind would pass (K15 sec. 4.4): the omitted fragments
+        // change every channel by less than that.
         if OPAQUE_THOUSANDTHS > 0u && 1000.0 * transmittance < f32(OPAQUE_THOUSANDTHS) {
             break;
         }

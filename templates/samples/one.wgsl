@@ -1,4 +1,4 @@
-// One sample per pixel: effects see every fragment that was kept, in order.
+// One sample per pixel: effects read every kept fragment, in order.
 
 fn samples_resolve() -> vec4<f32> {
     return resolve_layers();

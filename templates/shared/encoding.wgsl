@@ -1,17 +1,19 @@
-// How numbers become words whose unsigned order is the numbers' order, and how unit vectors become one word.
+// Encodes numbers as words whose unsigned order is the order of the numbers, and unit vectors as one word.
 
-/// A depth as a word. Bits of floats from +0.0 up are in the order of their values; below zero and -0.0 count as 0.0.
+/// Returns a depth as a word. Bits of floats from +0.0 up are in the order of their values; below zero and -0.0 become
+/// 0.0.
 fn depth_bits(depth: f32) -> u32 {
     return bitcast<u32>(max(depth, 0.0)) & 0x7fffffffu;
 }
 
-/// Any number as a word: negative ones have all their bits flipped, the others only the sign. No NaN becomes EMPTY.
+/// Returns any number as a word: all bits of negative numbers are inverted, and the sign of others. No NaN becomes
+/// EMPTY.
 fn ordered_bits(value: f32) -> u32 {
     let bits = bitcast<u32>(value);
     return min(bits ^ select(0x80000000u, 0xffffffffu, (bits & 0x80000000u) != 0u), EMPTY - 1u);
 }
 
-/// A unit vector as two 16-bit coordinates on the octahedron (Cigolle et al. 2014). The zero vector counts as +z.
+/// Returns a unit vector as two 16-bit octahedral coordinates (Cigolle et al. 2014). The zero vector becomes +z.
 fn octahedral_pack(direction: vec3<f32>) -> u32 {
     let size = abs(direction.x) + abs(direction.y) + abs(direction.z);
     let n = select(vec3<f32>(0.0, 0.0, 1.0), direction / size, size > 0.0);

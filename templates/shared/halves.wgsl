@@ -1,6 +1,6 @@
-// Words in texels of two 16-bit channels: texels of whole words may not have several samples.
+// Words in texels of two 16-bit channels, because texels of 32-bit words cannot be multisampled.
 
-/// A word as two halves, the lower first.
+/// Returns a word as two halves, the lower first.
 fn word_halves(word: u32) -> vec2<u32> {
     return vec2<u32>(word & 0xffffu, word >> 16u);
 }

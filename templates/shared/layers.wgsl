@@ -1,4 +1,4 @@
-// The fragments of one pixel, gathered from the storage: what sorts work on and effects read.
+// The fragments of one pixel, read from the storage: sorts order them and effects read them.
 
 var<private> layers: array<Packed, LAYERS>;
 var<private> gathered: u32;
@@ -8,11 +8,11 @@ fn sorted_count() -> u32 {
 }
 
 fn sorted_layer(index: u32) -> Fragment {
-    // A helper lane, whose pixel has no fragment, may ask for one all the same.
+    // A helper invocation may read a layer of a pixel without fragments.
     return fragment_unpack(layers[min(index, max(gathered, 1u) - 1u)]);
 }
 
-/// Appends one fragment. If there are more than fit, the farthest are left out, whatever the order of arrival.
+/// Appends one fragment. If more than LAYERS arrive, the farthest are dropped, for any order of arrival.
 fn layers_append(entry: Packed) {
     if gathered < LAYERS {
         layers[gathered] = entry;
@@ -31,7 +31,7 @@ fn layers_append(entry: Packed) {
     }
 }
 
-/// Puts one fragment into its place, nearest first. If there are more than fit, the farthest fall off the end.
+/// Inserts one fragment in order, nearest first. If more than LAYERS arrive, the farthest are dropped.
 fn layers_insert(entry: Packed) {
     if gathered == LAYERS {
         count_loss(LAYERS_EXCEEDED);
@@ -41,10 +41,10 @@ fn layers_insert(entry: Packed) {
     } else {
         gathered += 1u;
     }
-    var place = gathered - 1u;
-    while place > 0u && nearer(entry, layers[place - 1u]) {
-        layers[place] = layers[place - 1u];
-        place -= 1u;
+    var slot = gathered - 1u;
+    while slot > 0u && nearer(entry, layers[slot - 1u]) {
+        layers[slot] = layers[slot - 1u];
+        slot -= 1u;
     }
-    layers[place] = entry;
+    layers[slot] = entry;
 }

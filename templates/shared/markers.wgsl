@@ -1,17 +1,16 @@
-// What WGSL cannot say. The printers of other targets put their own words in place of calls to these functions: a
-// memory fence, the built-in for helper invocations, the ends of an interlock. In plain WGSL they do nothing, and
-// the soundness tier says what that costs.
+// Markers for what WGSL cannot express: a memory fence, the built-in for helper invocations, begin and end of an
+// interlock. Back ends replace calls to these functions with target-specific code. In plain WGSL they do nothing, and
+// the soundness tier shows the consequence.
 
-/// Orders this invocation's accesses to buffers before the call ahead of those after it, for every other invocation.
+/// Orders this invocation's buffer accesses before the call and those after it, for every other invocation.
 fn memory_fence() {}
 
-/// Whether this invocation only serves derivatives: its stores and atomics have no effect, so it would wait for ever.
+/// Returns whether this is a helper invocation: its stores and atomics have no effect, so a wait would not end.
 fn is_helper_lane() -> bool {
     return false;
 }
 
-/// From here to `critical_end` no other invocation of the same pixel is inside. Stands at the top level of an entry
-/// point.
+/// Begins a critical section of the pixel, which `critical_end` ends. The call is at the top level of an entry point.
 fn critical_begin() {}
 
 fn critical_end() {}

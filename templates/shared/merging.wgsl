@@ -1,13 +1,13 @@
-// Two fragments as one.
+// Merges two fragments.
 
-/// `near` with the colour of both, the nearer over the farther (Porter & Duff 1984), as straight alpha. Its other words
-/// stay.
+/// Returns `near` with the colour of `near` over `far` (Porter & Duff 1984), as straight alpha. Its other words do not
+/// change.
 fn merge_over(near: Packed, far: Packed) -> Packed {
     let front = fragment_unpack(near).color;
     let back = fragment_unpack(far).color;
     let shown = (1.0 - front.a) * back.a;
     let alpha = front.a + shown;
-    // Of neither is anything seen, and there is nothing to divide by.
+    // Both are invisible, and the division below would be by zero.
     if alpha == 0.0 {
         return near;
     }

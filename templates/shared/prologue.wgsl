@@ -1,12 +1,12 @@
-// What every pass over the scene asks of a fragment first. Passes that draw the same scene must ask the same.
+// Conditions that every pass over the scene tests first. All passes that draw the scene must test the same conditions.
 
-/// Whether a fragment takes part in the frame: it meets the constraints, and no opaque surface hides it. `position` is
-/// the fragment's, in pixels.
+/// Returns whether a fragment meets the constraints and no opaque surface hides it. `position` is the fragment's, in
+/// pixels.
 fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
     return admit(fragment) && !opaque_hides(position, fragment);
 }
 
-/// The same for the one pass of a frame that counts fragments.
+/// Returns the same, and counts the fragment. One pass of a frame calls this function.
 fn fragment_enters_counted(position: vec2<f32>, fragment: Fragment) -> bool {
     if !admit(fragment) {
         return false;

@@ -1,6 +1,6 @@
-// Fragments that are handed on one after the other, nearest first.
+// Composites fragments that a storage passes on one at a time, nearest first.
 
-/// `streamed`, a premultiplied colour, with what lies from `front` to `back` behind it.
+/// Returns `streamed`, a premultiplied colour, over the value of the neighbours `front` and `back`.
 fn stream_composite(streamed: vec4<f32>, front: Packed, back: Packed) -> vec4<f32> {
     let near = fragment_unpack(front);
     let far = fragment_unpack(back);

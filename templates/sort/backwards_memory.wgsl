@@ -1,8 +1,8 @@
-// Backwards memory allocation (Knowles, Leach & Zambetta 2013). What an array in private memory costs follows from its
-// length, not from its use: a long one leaves room for few pixels at a time. So the resolve pass runs once per class
-// of lengths, each with an array of its own, and every pixel is resolved in the pass of the shortest that holds its
-// fragments. The paper sends pixels to their class by stencil; here every pass counts, and leaves alone whom it does
-// not serve: a pixel without layers keeps what the target held.
+// Backwards memory allocation (Knowles, Leach & Zambetta 2013). The cost of an array in private memory depends on its
+// length, not on its use: a long array reduces the number of pixels in flight. So the resolve pass runs once per class
+// of lengths, each with its own array, and each pixel is resolved in the pass of the shortest array that holds its
+// fragments. The paper assigns pixels to classes by stencil. Here every pass counts the fragments and skips the pixels
+// of other classes: a pixel without layers keeps the content of the target.
 
 var<private> backwards_count: u32;
 

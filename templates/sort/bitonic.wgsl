@@ -1,7 +1,7 @@
-// Batcher's bitonic network (1968) for any number of fragments. Every comparison puts the nearer fragment at the
-// lower index, so the indices from the number of fragments up to the next power of two behave like fragments behind
-// all others: they never move, and comparisons with them are left out. Which places are compared depends on the
-// number alone.
+// Batcher's bitonic network (1968) for any number of fragments. Every comparison moves the nearer fragment to the
+// lower index, so indices from the number of fragments up to the next power of two behave like fragments behind all
+// others: they never move, and comparisons with them are omitted. Which indices are compared depends only on the
+// number.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);
@@ -9,7 +9,7 @@ fn sort_gather(entry: Packed) {
 
 fn sort_finish() {
     for (var block = 2u; block < 2u * gathered; block *= 2u) {
-        // Mirrored inside the block, two runs in order make one bitonic run; halving distances merge it.
+        // With one of them mirrored, two sorted runs are one bitonic run; halving distances merge it.
         bitonic_compare(block - 1u);
         for (var distance = block / 4u; distance > 0u; distance /= 2u) {
             bitonic_compare(distance);
@@ -17,7 +17,7 @@ fn sort_finish() {
     }
 }
 
-/// Compares every place with the one whose index differs in the bits of `mask`.
+/// Compares every index with the index that differs in the bits of `mask`.
 fn bitonic_compare(mask: u32) {
     for (var index = 0u; index < gathered; index++) {
         let partner = index ^ mask;

@@ -1,6 +1,6 @@
-// Register-based block sort (Knowles, Leach & Zambetta 2014). Private memory is slow where an index decides on the
-// word, so blocks of eight fragments are sorted in variables that no index reaches, which compilers keep in registers;
-// the blocks are merged as an effect goes along. An effect that goes back starts the merge over.
+// Register-based block sort (Knowles, Leach & Zambetta 2014). Private memory is slow if an index selects the word. So
+// blocks of eight fragments are sorted in variables that are never indexed, which compilers keep in registers. The
+// blocks are merged as an effect reads them. An effect that reads backwards restarts the merge.
 
 const BLOCK_LENGTH = 8u;
 const BLOCKS = (LAYERS + BLOCK_LENGTH - 1u) / BLOCK_LENGTH;
@@ -13,12 +13,12 @@ var<private> block_4: Packed;
 var<private> block_5: Packed;
 var<private> block_6: Packed;
 var<private> block_7: Packed;
-/// Fragments in the variables.
+/// The number of fragments in the variables.
 var<private> block_filled: u32;
-/// Of each block, how many are merged.
+/// For each block, the number of merged fragments.
 var<private> block_heads: array<u32, BLOCKS>;
 var<private> block_merged: u32;
-/// The last that was merged.
+/// The fragment that was merged last.
 var<private> block_current: Packed;
 
 fn sort_gather(entry: Packed) {
@@ -42,18 +42,18 @@ fn sorted_count() -> u32 {
 }
 
 fn sorted_layer(index: u32) -> Fragment {
-    // A helper lane, whose pixel has no fragment, may ask for one all the same.
-    let wanted = min(index, max(gathered, 1u) - 1u);
-    if wanted + 1u < block_merged {
+    // A helper invocation may read a layer of a pixel without fragments.
+    let clamped = min(index, max(gathered, 1u) - 1u);
+    if clamped + 1u < block_merged {
         block_restart();
     }
-    while block_merged <= wanted {
+    while block_merged <= clamped {
         block_merge_one();
     }
     return fragment_unpack(block_current);
 }
 
-/// Begins the merge, with nothing taken of any block.
+/// Restarts the merge at the first fragment of every block.
 fn block_restart() {
     block_merged = 0u;
     for (var block = 0u; block < BLOCKS; block++) {
@@ -61,7 +61,7 @@ fn block_restart() {
     }
 }
 
-/// Takes the nearest of the blocks' first.
+/// Merges the nearest of the blocks' next fragments.
 fn block_merge_one() {
     var nearest = BLOCKS;
     for (var block = 0u; block * BLOCK_LENGTH < gathered; block++) {
@@ -78,7 +78,7 @@ fn block_merge_one() {
     block_merged += 1u;
 }
 
-/// Insertion sort without an index: whoever is nearer takes the place, the other goes on.
+/// Inserts a fragment without an index: in each variable the nearer fragment stays, and the other moves on.
 fn block_insert(entry: Packed) {
     var moving = entry;
     block_pass(0u, &block_0, &moving);
@@ -92,10 +92,10 @@ fn block_insert(entry: Packed) {
     block_filled += 1u;
 }
 
-fn block_pass(place: u32, held: ptr<private, Packed>, moving: ptr<function, Packed>) {
-    let before = *held;
-    if place >= block_filled || nearer(*moving, before) {
-        *held = *moving;
+fn block_pass(slot: u32, resident: ptr<private, Packed>, moving: ptr<function, Packed>) {
+    let before = *resident;
+    if slot >= block_filled || nearer(*moving, before) {
+        *resident = *moving;
         *moving = before;
     }
 }

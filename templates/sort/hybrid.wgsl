@@ -1,5 +1,5 @@
-// Insertion sort for few fragments, Shell sort for many (K15 sec. 3.3: more than 16). Every pixel decides for itself,
-// by the fragments that it holds.
+// Insertion sort for few fragments, Shell sort for many (K15 sec. 3.3: more than 16). The number of fragments of each
+// pixel decides.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);

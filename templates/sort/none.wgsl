@@ -1,4 +1,4 @@
-// Fragments stay as the storage gives them. If there are more than fit, the farthest are left out.
+// Keeps the fragments in the order of the storage. If there are more than LAYERS, the farthest are dropped.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);

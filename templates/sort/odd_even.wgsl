@@ -1,6 +1,6 @@
 // Batcher's merge exchange (1968; Knuth, The Art of Computer Programming 3, sec. 5.2.2, Algorithm M) for any number of
-// fragments: sorts, then merges, sequences whose members lie ever closer together. It compares less often than the
-// bitonic network, and as there the number of fragments alone decides which places are compared.
+// fragments: sorts, then merges, sequences whose elements have decreasing distances. It needs fewer comparisons than
+// the bitonic network; as there, only the number of fragments decides which indices are compared.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);
@@ -12,7 +12,7 @@ fn sort_finish() {
         span *= 2u;
     }
     for (var block = span; block > 0u; block /= 2u) {
-        // The first comparisons are inside of a block, the others between blocks ever closer to each other.
+        // The first comparisons are inside a block, the others between blocks at decreasing distances.
         odd_even_compare(block, 0u, block);
         for (var distance = span; distance > block; distance /= 2u) {
             odd_even_compare(block, block, distance - block);
@@ -20,7 +20,7 @@ fn sort_finish() {
     }
 }
 
-/// Compares every place whose index has the bit `block` as in `bit` with the place `distance` behind it.
+/// Compares every index whose bit `block` equals that of `bit` with the index `distance` behind it.
 fn odd_even_compare(block: u32, bit: u32, distance: u32) {
     for (var index = 0u; index + distance < gathered; index++) {
         if (index & block) == bit && nearer(layers[index + distance], layers[index]) {

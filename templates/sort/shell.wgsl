@@ -1,4 +1,4 @@
-// Shell sort once all fragments are read: fewer moves than insertion where there are many.
+// Shell sort after all fragments are read: fewer moves than insertion sort if there are many.
 
 fn sort_gather(entry: Packed) {
     layers_append(entry);

@@ -1,11 +1,11 @@
-//! Axis `addressing`: where a pixel's words lie in memory. Rows that pad the frame say what `pixels` is in formulas: as many
-//! as the template's `pixel_count()`.
+//! Axis `addressing`: how pixels map to memory. Rows that pad the frame define the symbol `pixels` of formulas; it
+//! equals the template's `pixel_count()`.
 
 use crate::vocabulary::{Definition, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        Row { template: Some(template!("addressing/linear")), ..Row::new("addressing", "linear", "row after row", "") },
+        Row { template: Some(template!("addressing/linear")), ..Row::new("addressing", "linear", "row-major", "") },
         Row {
             template: Some(template!("addressing/tiled")),
             defines: pixels("ceil_div(width, 2) * ceil_div(height, 8) * 16"),

@@ -1,49 +1,49 @@
 //! Axis `counters`: what is counted while the passes run.
 
-use crate::vocabulary::{Access, Element, Fact, Resource, Row, Template, Use};
+use crate::vocabulary::{Access, Capability, Element, Resource, Row, Template, Use};
 
-/// The counters in the order of their words: name, whether it counts a loss, meaning. `shared/counter_names.wgsl` has the
-/// same order.
+/// The counters in the order of their words: name, whether it counts losses, meaning. `shared/counter_names.wgsl` has
+/// the same order.
 pub const COUNTERS: [(&str, bool, &str); 14] = [
     (
         "generated",
         false,
-        "fragments that reached a geometry pass's last stage, met the constraints and lay behind nothing opaque",
+        "fragments that a geometry pass shaded, that meet the constraints and that no opaque surface hides",
     ),
-    ("culled", false, "fragments turned away by the cull"),
-    ("displaced", true, "fragments rejected or replaced because better ones were there"),
-    ("pool_exhausted", true, "fragments that found no room in the storage"),
-    ("spin_exhausted", true, "fragments given up because the lock, a slot or a link was not free in time"),
-    ("layers_exceeded", true, "kept fragments beyond what the resolve pass can hold; the farthest are left out"),
-    ("equal_keys", true, "fragments dropped because one with an equal key was kept"),
-    ("emitted", false, "fragments that a stream composited while it was filled; those at its end are not counted"),
+    ("culled", false, "fragments that the cull rejected"),
+    ("displaced", true, "fragments rejected or evicted because better ones are kept"),
+    ("pool_exhausted", true, "fragments that did not fit in the storage"),
+    ("timed_out", true, "fragments that timed out waiting for the lock, a slot or a link"),
+    ("layers_exceeded", true, "kept fragments beyond the limit of the resolve pass; the farthest are dropped"),
+    ("equal_keys", true, "fragments dropped because one with an equal key is kept"),
+    ("emitted", false, "fragments that a stream composited in the store pass, not in the resolve pass"),
     (
         "out_of_order",
         false,
-        "fragments of those that came after one behind them had been composited; counted as losses are",
+        "emitted fragments that arrived after one behind them had been composited; counted like losses",
     ),
-    ("pages_leaked", false, "pages taken from a pool by a fragment that found room in another's"),
+    ("pages_leaked", false, "pages that a fragment took from the pool and did not use"),
     (
-        "unsettled",
+        "not_converged",
         true,
-        "fragments that still changed something in the last round of a loop: entries may be lost or double",
+        "fragments that still changed a slot in the last iteration of a loop: entries may be lost or duplicated",
     ),
-    ("samples_exhausted", true, "fragments that came when every sample of their pixel had one"),
-    ("occluded", false, "fragments that met the constraints, and were turned away behind something opaque"),
+    ("samples_exhausted", true, "fragments that arrived when every sample of their pixel was taken"),
+    ("occluded", false, "fragments that meet the constraints and that an opaque surface hides"),
     (
-        "partly_covered",
+        "partial_coverage",
         false,
-        "fragments of routing that cover some samples of their pixel: it may lose fragments there or store them twice; \
-         counted as losses are",
+        "fragments of stencil routing with partial coverage: their pixels may lose fragments or store them twice; \
+         counted like losses",
     ),
 ];
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        counting("losses", "losses only: memory is touched when a fragment is lost", template!("counters/losses")),
+        counting("losses", "losses only: no memory access unless a fragment is lost", template!("counters/losses")),
         Row {
-            offers: vec![Fact::CountsEvents],
-            ..counting("all", "everything, for statistics: every fragment pays for it", template!("counters/all"))
+            provides: vec![Capability::CountsEvents],
+            ..counting("all", "every event, for statistics: every fragment updates counters", template!("counters/all"))
         },
         Row { template: Some(template!("counters/none")), ..Row::new("counters", "none", "nothing", "") },
     ]

@@ -1,8 +1,8 @@
-//! Axis `cull`: which fragments are turned away before they reach the storage.
+//! Axis `cull`: which fragments are rejected before they reach the storage.
 
 use crate::conditions::{depth_key, keeps_one};
 use crate::vocabulary::{
-    Access, Capability, Compare, DepthState, Edit, Element, Fact, Parameter, Pass, Resource, Row, State, Step,
+    Access, Capability, Compare, DepthState, Edit, Element, Feature, Parameter, Pass, Resource, Row, State, Step,
     TextureFormat, Use,
 };
 
@@ -10,14 +10,14 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("cull/none")),
-            offers: vec![Fact::CullInShader, Fact::CullsNothing],
-            ..Row::new("cull", "none", "no fragment is turned away", "")
+            provides: vec![Capability::CullInShader, Capability::NoCull],
+            ..Row::new("cull", "none", "no fragment", "")
         },
         Row {
             template: Some(template!("cull/early")),
             calls: vec!["storage"],
-            offers: vec![Fact::CullInShader],
-            requires: vec![Fact::BoundAnyInstant],
+            provides: vec![Capability::CullInShader],
+            requires: vec![Capability::ConservativeBound],
             ..Row::new("cull", "early", "fragments worse than the worst kept one, tested before the lock", "K15 §3.2")
         },
         occupancy(),
@@ -26,47 +26,42 @@ pub(crate) fn rows() -> Vec<Row> {
     ]
 }
 
-/// By what one pass over the scene finds out before the store pass.
+/// Culls by the result of one pass over the scene before the store pass.
 fn z_prepass() -> Row {
-    let prepass = Resource::new("prepass", Element::Word, "the key of the pixel's best fragment; EMPTY: it has none");
-    let measure = Step::Pass(Pass::geometry("measure", "measure").uses("prepass", Access::Atomic));
+    let prepass = Resource::new("prepass", Element::Word, "the key of the pixel's best fragment; EMPTY: none");
+    let key_range = Step::Pass(Pass::geometry("key_range", "key_range").uses("prepass", Access::Atomic));
     Row {
         template: Some(template!("cull/z_prepass")),
         resources: vec![prepass.by("pixel", "pixels").cleared(u32::MAX)],
         uses: vec![Use::new("prepass", Access::Read)],
-        offers: vec![Fact::CullInShader],
-        requires: vec![Fact::BestSuffice],
+        provides: vec![Capability::CullInShader],
+        requires: vec![Capability::AcceptsKBestOnly],
         conditions: vec![keeps_one()],
-        needs: vec![Capability::FragmentAtomics],
-        edits: vec![Edit::Before("store".to_owned(), vec![measure])],
-        ..Row::new(
-            "cull",
-            "z_prepass",
-            "all but the best fragment, which one pass before finds; for `keep 1`",
-            "K15 §4.3",
-        )
+        needs: vec![Feature::FragmentAtomics],
+        edits: vec![Edit::Before("store".to_owned(), vec![key_range])],
+        ..Row::new("cull", "z_prepass", "all but the best fragment, which a pre-pass finds; for `keep 1`", "K15 §4.3")
     }
 }
 
-/// By what two passes over the scene find out before the store pass.
+/// Culls by the result of two passes over the scene before the store pass.
 fn occupancy() -> Row {
-    let narrow = Pass::compute("narrow", "narrow", "ceil_div(width, 8)", "ceil_div(height, 8)");
-    let narrow = narrow.uses("occupancy", Access::Plain);
+    let bound = Pass::compute("occupancy_bound", "occupancy_bound", "ceil_div(width, 8)", "ceil_div(height, 8)");
+    let bound = bound.uses("occupancy", Access::Plain);
     Row {
         template: Some(template!("cull/occupancy")),
         uses: vec![Use::new("occupancy", Access::Read)],
-        offers: vec![Fact::CullInShader],
-        requires: vec![Fact::BestSuffice],
-        needs: vec![Capability::FragmentAtomics],
-        edits: vec![before_store(narrow)],
-        ..by_occupancy("occupancy", "fragments beyond the k-th occupied bucket, which two passes before find")
+        provides: vec![Capability::CullInShader],
+        requires: vec![Capability::AcceptsKBestOnly],
+        needs: vec![Feature::FragmentAtomics],
+        edits: vec![before_store(bound)],
+        ..by_occupancy("occupancy", "fragments beyond the k-th occupied bucket of keys, which two pre-passes find")
     }
 }
 
-/// The same by a depth test, before the shader runs; what comes through it is tested as by `early`.
+/// Culls the same fragments by a depth test before the shader runs, and tests those that pass as `early` does.
 fn occupancy_early() -> Row {
     let limits =
-        Resource::new("limits", Element::Texture(TextureFormat::Depth32Float), "the farthest depth that may stay")
+        Resource::new("limits", Element::Texture(TextureFormat::Depth32Float), "the farthest depth that can be kept")
             .by("pixel", "pixels");
     let test = |compare: Compare, write: bool, early: bool| State {
         depth: Some(DepthState { resource: "limits".to_owned(), compare, write, early }),
@@ -74,26 +69,26 @@ fn occupancy_early() -> Row {
     };
     let mut limit = Pass::fullscreen("limit", "limit").uses("occupancy", Access::Read);
     limit.state = test(Compare::Always, true, false);
-    let row = by_occupancy("occupancy_early", "the same by a depth test before the shader, then as by `early`");
+    let row = by_occupancy("occupancy_early", "the same by an early depth test, then the `early` test");
     Row {
         template: Some(template!("cull/early")),
         resources: [row.resources, vec![limits]].concat(),
         calls: vec!["storage"],
-        // Keys are what is tested: the rasteriser's depth, which a caller's own shader may replace.
-        requires: vec![Fact::BestSuffice, Fact::BoundAnyInstant, Fact::OneSample],
+        // The depth test tests keys, so keys must be the rasteriser's depth, which a caller's shader may replace.
+        requires: vec![Capability::AcceptsKBestOnly, Capability::ConservativeBound, Capability::OneSample],
         conditions: vec![depth_key()],
-        needs: vec![Capability::FragmentAtomics, Capability::EarlyDepth, Capability::OwnEntryPoints],
+        needs: vec![Feature::FragmentAtomics, Feature::EarlyDepth, Feature::OwnEntryPoints],
         edits: vec![before_store(limit), Edit::SetState("store".to_owned(), test(Compare::LessEqual, false, true))],
         ..row
     }
 }
 
-/// What both keep and can be told.
+/// Returns the resources and parameters of both occupancy rows.
 fn by_occupancy(key: &str, summary: &'static str) -> Row {
     let map = Resource::new(
         "occupancy",
         Element::Word,
-        "the complement of the pixel's nearest key; the farthest that may stay; which buckets between are occupied",
+        "the complement of the pixel's nearest key; the farthest key that can be kept; a bit per occupied bucket",
     );
     Row {
         resources: vec![map.by("word", "OCCUPANCY_WORDS + 2").by("pixel", "pixels").cleared(0)],
@@ -102,18 +97,22 @@ fn by_occupancy(key: &str, summary: &'static str) -> Row {
             "OCCUPANCY_WORDS",
             "max(4, capacity / 8)",
             (1, 128),
-            "words of 32 buckets that the range of a pixel's keys is cut into; more than k / 32",
+            "words of 32 buckets that divide the range of a pixel's keys; more than k / 32",
         )],
         least: vec![("words".into(), "k / 32 + 1".into())],
         ..Row::new("cull", key, summary, "Vasilakis & Papaioannou 2015 (C15)")
     }
 }
 
-/// The passes over the scene, and the one that makes something of what they found.
+/// Inserts the two passes over the scene, and `last`, which evaluates them, before the store pass.
 fn before_store(last: Pass) -> Edit {
-    let survey = |anchor: &str| {
-        Step::Pass(Pass::geometry(anchor, anchor).uses("occupancy", Access::Atomic).role("cull", "occupancy", "cull"))
+    let scene_pass = |name: &str| {
+        Step::Pass(Pass::geometry(name, name).uses("occupancy", Access::Atomic).implementation(
+            "cull",
+            "occupancy",
+            "cull",
+        ))
     };
-    let last = Step::Pass(last.role("cull", "occupancy", "cull"));
-    Edit::Before("store".to_owned(), vec![survey("measure"), survey("occupy"), last])
+    let last = Step::Pass(last.implementation("cull", "occupancy", "cull"));
+    Edit::Before("store".to_owned(), vec![scene_pass("key_range"), scene_pass("occupancy_map"), last])
 }

@@ -1,18 +1,19 @@
-//! The registry of fragbuf: whole WGSL templates, each with the row of data that says what it needs and what it offers.
+//! The registry of fragbuf: complete WGSL templates, each with a row of data that declares what it requires and
+//! provides.
 //!
-//! [`vocabulary`] is what a row can say; one module per axis holds that axis's rows beside the text they include.
-//! [`Registry::builtin`] is all of them, and [`Registry::with`] adds a row of the user's own. Nothing here computes: the
-//! rules over rows are `fragbuf-model`'s, the passes made from them `fragbuf-codegen`'s.
+//! [`vocabulary`] defines what a row can declare; one module per axis holds the rows of that axis.
+//! [`Registry::builtin`] has all rows of fragbuf, and [`Registry::with`] adds a user row. This crate only holds data:
+//! `fragbuf-model` checks the rules over rows, and `fragbuf-codegen` generates passes from them.
 
 pub mod vocabulary;
 
-/// The whole WGSL file `templates/<path>.wgsl`, as a [`vocabulary::Template`].
+/// Includes the WGSL file `templates/<path>.wgsl` as a [`vocabulary::Template`].
 macro_rules! template {
     ($path:literal) => {
         $crate::vocabulary::Template {
             path: std::borrow::Cow::Borrowed(concat!($path, ".wgsl")),
-            text: std::borrow::Cow::Borrowed(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path, ".wgsl"))),
-            own: None,
+            source: std::borrow::Cow::Borrowed(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path, ".wgsl"))),
+            user_file: None,
         }
     };
 }

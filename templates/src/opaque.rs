@@ -1,21 +1,21 @@
-//! Axis `opaque`: what becomes of fragments behind opaque surfaces, whose depth buffer the caller brings.
+//! Axis `opaque`: how opaque surfaces occlude fragments. The caller supplies their depth buffer as an external texture.
 
 use crate::vocabulary::{
-    Access, Capability, Compare, DepthState, Edit, Element, Fact, Init, Resource, Row, TextureFormat, Use,
+    Access, Capability, Compare, DepthState, Edit, Element, Feature, Init, Resource, Row, TextureFormat, Use,
 };
 
 pub(crate) fn rows() -> Vec<Row> {
-    vec![none(), in_shader(), early()]
+    vec![none(), in_shader(), early_depth()]
 }
 
 fn none() -> Row {
     Row {
         template: Some(template!("opaque/none")),
-        ..Row::new("opaque", "none", "nothing: no depth buffer of opaque surfaces is asked for", "")
+        ..Row::new("opaque", "none", "not at all: the plan has no depth buffer of opaque surfaces", "")
     }
 }
 
-/// By every shader that takes fragments in.
+/// Tests the depth buffer in every shader of a geometry pass.
 fn in_shader() -> Row {
     Row {
         template: Some(template!("opaque/in_shader")),
@@ -25,25 +25,25 @@ fn in_shader() -> Row {
         ..Row::new(
             "opaque",
             "in_shader",
-            "they are turned away in every geometry pass, by the depth buffer as a texture; equal depths stay",
+            "every geometry pass reads the depth buffer as a texture and rejects hidden fragments, not equal depths",
             "",
         )
     }
 }
 
-/// By a depth test, before the shader runs. Depth is the rasteriser's, which a caller's own shader may replace.
-fn early() -> Row {
+/// Tests depth before the shader runs. The depth is the rasteriser's, which a caller's shader may replace.
+fn early_depth() -> Row {
     let test = DepthState { resource: DEPTH_BUFFER.to_owned(), compare: Compare::LessEqual, write: false, early: true };
     Row {
         template: Some(template!("opaque/none")),
         resources: vec![depth_buffer()],
-        requires: vec![Fact::LeftToShaders, Fact::CullInShader, Fact::OneSample],
-        needs: vec![Capability::EarlyDepth, Capability::OwnEntryPoints],
+        requires: vec![Capability::SyncInShader, Capability::CullInShader, Capability::OneSample],
+        needs: vec![Feature::EarlyDepth, Feature::OwnEntryPoints],
         edits: vec![Edit::TestDepth(test)],
         ..Row::new(
             "opaque",
-            "early",
-            "the same by a depth test before the shader, which counts nothing of what it turns away",
+            "early_depth",
+            "the same by a depth test before the shader; rejected fragments are not counted",
             "",
         )
     }
@@ -54,5 +54,5 @@ const DEPTH_BUFFER: &str = "opaque";
 fn depth_buffer() -> Resource {
     let summary = "depth of the nearest opaque surface; 1: none";
     let texture = Resource::new(DEPTH_BUFFER, Element::Texture(TextureFormat::Depth32Float), summary);
-    Resource { init: Init::Host, ..texture.by("pixel", "pixels") }
+    Resource { init: Init::External, ..texture.by("pixel", "pixels") }
 }

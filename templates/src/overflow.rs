@@ -1,14 +1,14 @@
-//! Axis `overflow`: what becomes of a fragment that finds no place.
+//! Axis `overflow`: what happens to a fragment that is not kept.
 
 use crate::conditions::{ADD_COLOR, color, depth_key};
 use crate::vocabulary::{
-    Access, Blended, Capability, Element, Fact, Hazard, Merges, Permits, PromisedKeys, Resource, Row, Template, Text,
-    Use,
+    Access, BlendedEntries, Capability, Element, Feature, Hazard, Merges, Permits, PromisedKeys, Resource, Row,
+    Template, Text, Use,
 };
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        row("drop", "it is dropped, and counted", "", template!("overflow/drop")),
+        row("drop", "it is dropped and counted", "", template!("overflow/drop")),
         Row {
             resources: vec![
                 Resource::new(
@@ -22,12 +22,12 @@ pub(crate) fn rows() -> Vec<Row> {
             ],
             uses: vec![Use::new("tail", Access::Atomic)],
             calls: vec!["counters", "samples"],
-            requires: vec![Fact::LosesWhole, Fact::OneResolve],
+            requires: vec![Capability::ReportsWholeFragments, Capability::OneResolve],
             conditions: vec![color(ADD_COLOR)],
-            needs: vec![Capability::FragmentAtomics],
+            needs: vec![Feature::FragmentAtomics],
             ..row(
                 "weighted_tail",
-                "it counts in a mean colour behind what is kept; the same for every order of arrival",
+                "it contributes to a mean colour behind the kept fragments; the same for every order of arrival",
                 "Maule et al. 2013; McGuire & Bavoil 2013",
                 template!("overflow/weighted_tail"),
             )
@@ -37,14 +37,13 @@ pub(crate) fn rows() -> Vec<Row> {
         merge_closest(),
         Row {
             resources: vec![
-                Resource::new("failed", Element::Word, "1: a fragment found no room, or a lock was not free")
-                    .cleared(0),
+                Resource::new("failed", Element::Word, "1: a fragment did not fit, or timed out at a lock").cleared(0),
             ],
             uses: vec![Use::new("failed", Access::Atomic)],
-            needs: vec![Capability::FragmentAtomics],
+            needs: vec![Feature::FragmentAtomics],
             ..row(
                 "fail",
-                "the whole frame is magenta if one found no room, or a lock was not free in time",
+                "the whole frame is magenta if a fragment does not fit or times out at a lock",
                 "",
                 template!("overflow/fail"),
             )
@@ -52,24 +51,29 @@ pub(crate) fn rows() -> Vec<Row> {
     ]
 }
 
-/// Plain words of a pixel, read and written by turns.
+/// Blends into plain words of a pixel inside the critical section.
 fn tail_blend() -> Row {
     let tail = Resource::new("blended", Element::Word, "the premultiplied colour of the fragments not kept, as floats");
     Row {
         resources: vec![tail.by("channel", "4").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("blended", Access::Coherent)],
-        requires: vec![Fact::LosesWhole, Fact::DisplacesInTurn, Fact::Critical, Fact::CullsNothing],
+        requires: vec![
+            Capability::ReportsWholeFragments,
+            Capability::DisplacesUnderLock,
+            Capability::MutualExclusion,
+            Capability::NoCull,
+        ],
         conditions: vec![color(ADD_COLOR)],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         calls: vec!["counters", "samples"],
         hazards: vec![Hazard::new(
-            "shows-arrival",
-            "what is not kept is blended in the order of arrival, as if whatever comes later lay before the rest",
-            Permits::SHOWS_ARRIVAL,
+            "order-dependent",
+            "fragments that are not kept are blended in the order of arrival, as if later ones were nearer",
+            Permits::ORDER_DEPENDENT,
         )],
         ..row(
             "tail_blend",
-            "it is blended behind what is kept, over those that came before it: approximate, by the order of arrival",
+            "it is blended behind the kept fragments, over earlier lost ones: approximate, depends on arrival order",
             "Maule et al. 2013; nvpro (vk_order_independent_transparency)",
             template!("overflow/tail_blend"),
         )
@@ -81,15 +85,15 @@ fn merge_last() -> Row {
         merges: Some(MERGED_FARTHEST),
         hazards: vec![Hazard::new(
             "merged-farthest",
-            "the colour of the farthest kept fragment is its own over those of fragments that are not kept, in an order \
-             that depends on arrival",
+            "the colour of the farthest kept fragment is blended over those of lost fragments, in an order that \
+             depends on arrival",
             Permits::NOTHING,
         )],
         ..merging(
-            Fact::CanReplace,
+            Capability::CanReplace,
             row(
                 "merge_last",
-                "it becomes one with the farthest that is kept: the pixel's transmittance stays, whatever the order",
+                "it is merged with the farthest kept fragment: transmittance does not depend on arrival order",
                 "Salvi & Vaidyanathan 2014 (MLAB)",
                 template!("overflow/merge_last"),
             ),
@@ -102,15 +106,15 @@ fn merge_closest() -> Row {
         merges: Some(MERGED_NEIGHBOURS),
         hazards: vec![Hazard::new(
             "merged-neighbours",
-            "where there are more than k, the two nearest to each other in depth become one, with the depth and the other \
-             attributes of the nearer; which two depends on arrival",
+            "if a pixel has more than k fragments, the two closest in depth are merged, with the depth and the other \
+             attributes of the nearer; which two depends on the order of arrival",
             Permits::NOTHING,
         )],
         ..merging(
-            Fact::OrderedSlots,
+            Capability::OrderedSlots,
             row(
                 "merge_closest",
-                "of it and those that are kept, the two closest in depth become one: the pixel's transmittance stays",
+                "of it and the kept fragments, the two closest in depth are merged: transmittance does not change",
                 "Jouppi & Chang 1999 (Z3)",
                 template!("overflow/merge_closest"),
             ),
@@ -118,28 +122,29 @@ fn merge_closest() -> Row {
     }
 }
 
-/// Colours of fragments that are not kept go into the farthest entry: which of them lies before which depends on arrival.
+/// The merging of lost fragments into the farthest entry. Their order of blending depends on arrival.
 pub(crate) const MERGED_FARTHEST: Merges =
-    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::All, blended: Blended::Worst };
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::All, blended: BlendedEntries::Worst };
 
-/// Of two neighbours the nearer stays, with the colours of both; the nearest of all is never gone.
+/// The merging of two neighbours: the nearer is kept, with the colours of both. The nearest of all is always kept.
 pub(crate) const MERGED_NEIGHBOURS: Merges =
-    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::Best, blended: Blended::Any };
+    Merges { attribute: Text::Borrowed("color"), keys: PromisedKeys::Best, blended: BlendedEntries::Any };
 
-/// What rows share that merge colours of kept fragments; `slots` is what they need of the storage.
-fn merging(slots: Fact, row: Row) -> Row {
+/// Adds what all rows share that merge colours of kept fragments; `slots` is the capability they require of the
+/// storage.
+fn merging(slots: Capability, row: Row) -> Row {
     Row {
         requires: vec![
-            Fact::LosesWhole,
-            Fact::DisplacesInTurn,
+            Capability::ReportsWholeFragments,
+            Capability::DisplacesUnderLock,
             slots,
-            // Two fragments that cover different samples are not one.
-            Fact::OneSample,
-            Fact::Critical,
-            Fact::CullsNothing,
+            // Two fragments that cover different samples cannot be merged.
+            Capability::OneSample,
+            Capability::MutualExclusion,
+            Capability::NoCull,
         ],
         conditions: vec![color(ADD_COLOR), depth_key()],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         calls: vec!["counters", "storage"],
         ..row
     }

@@ -1,4 +1,4 @@
-//! Axis `pass`: skeletons. Each holds the entry points of a pass and the order in which the other axes are called.
+//! Axis `pass`: skeletons. Each has the entry points of a pass and calls the contracts of the other axes in order.
 
 use crate::vocabulary::{Row, Template};
 
@@ -9,7 +9,7 @@ pub(crate) fn rows() -> Vec<Row> {
         row("fullscreen", "the vertex stage of every fullscreen pass", template!("pass/fullscreen"), vec![]),
         row(
             "reset",
-            "brings every pixel's storage to its empty state",
+            "resets every pixel's storage to its empty state",
             template!("pass/reset"),
             vec!["addressing", "storage"],
         ),
@@ -25,13 +25,13 @@ pub(crate) fn rows() -> Vec<Row> {
         drawn("store", "stores the scene's fragments", template!("pass/store"), &store),
         drawn(
             "store_reserving",
-            "stores the scene's fragments, without the lock those that have a place of their own",
+            "stores the scene's fragments; those that reserve a slot do not take the lock",
             template!("pass/store_reserving"),
             &store,
         ),
         drawn(
             "store_reserving_ordered",
-            "stores the scene's fragments, outside an interlock those that have a place of their own",
+            "stores the scene's fragments; those that reserve a slot do so outside the interlock",
             template!("pass/store_reserving_ordered"),
             &["addressing", "storage", "cull", "overflow", "counters"],
         ),
@@ -43,32 +43,32 @@ pub(crate) fn rows() -> Vec<Row> {
         ),
         drawn(
             "store_again",
-            "stores the scene's fragments once more in every round of a loop",
+            "stores the scene's fragments in every iteration of a loop",
             template!("pass/store_again"),
             &["addressing", "storage", "sync", "counters"],
         ),
         row("route", "sets the stencil of one sample of every pixel", template!("pass/route"), vec![]),
         drawn(
             "store_targets",
-            "stores the scene's fragments in targets, by tests that are fixed function",
+            "stores the scene's fragments in render targets, by fixed-function tests",
             template!("pass/store_targets"),
             &["counters"],
         ),
         drawn(
             "store_routed",
-            "stores the scene's fragments in targets, and counts those that cover their pixel in part",
+            "stores the scene's fragments in render targets, and counts those with partial coverage",
             template!("pass/store_routed"),
             &["counters"],
         ),
         row(
             "resolve",
-            "makes one colour of each pixel's fragments",
+            "computes one colour from each pixel's fragments",
             template!("pass/resolve"),
             vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
         row(
             "resolve_selected",
-            "chooses the k best of each pixel's fragments and makes one colour of them",
+            "selects the k best of each pixel's fragments and computes one colour from them",
             template!("pass/resolve_selected"),
             vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
@@ -79,49 +79,49 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "overflow", "resolve"],
         ),
         drawn(
-            "survey",
-            "draws the scene ahead of the store pass, for a storage that must know what will come",
-            template!("pass/survey"),
+            "prepass",
+            "draws the scene before the store pass, for a storage that needs data on all fragments first",
+            template!("pass/prepass"),
             &["addressing", "storage"],
         ),
         drawn(
-            "measure",
-            "draws the scene ahead of the store pass, for the range of each pixel's keys",
-            template!("pass/measure"),
+            "key_range",
+            "draws the scene before the store pass, to find the range of each pixel's keys",
+            template!("pass/key_range"),
             &["addressing", "cull"],
         ),
         drawn(
-            "occupy",
-            "draws the scene ahead of the store pass, for where in their range each pixel's keys lie",
-            template!("pass/occupy"),
+            "occupancy_map",
+            "draws the scene before the store pass, to mark the occupied parts of each pixel's key range",
+            template!("pass/occupancy_map"),
             &["addressing", "cull"],
         ),
         row(
-            "narrow",
-            "narrows the range of each pixel's keys to those that may stay",
-            template!("pass/narrow"),
+            "occupancy_bound",
+            "narrows the range of each pixel's keys to those that can be kept",
+            template!("pass/occupancy_bound"),
             vec!["addressing", "cull"],
         ),
         row(
             "limit",
-            "writes the depth beyond which each pixel's fragments are turned away",
+            "writes the depth beyond which each pixel's fragments are rejected",
             template!("pass/limit"),
             vec!["addressing", "cull"],
         ),
         drawn(
-            "settle",
-            "draws the scene again for what a storage could not settle in one pass",
-            template!("pass/settle"),
+            "refine",
+            "draws the scene again, so that a storage can write further words of stored fragments",
+            template!("pass/refine"),
             &["addressing", "storage"],
         ),
     ]
 }
 
-/// The axes that `shared/prologue.wgsl` calls. Every pass over the scene begins with it, so an axis that is asked there too
-/// is added here and in that file, and in no skeleton.
+/// The axes that `shared/prologue.wgsl` calls. Every pass over the scene begins with it, so a further axis is added
+/// here and in that file, and in no skeleton.
 const PROLOGUE: [&str; 1] = ["opaque"];
 
-/// A pass over the scene.
+/// Makes the row of a pass over the scene.
 fn drawn(key: &str, summary: &'static str, template: Template, calls: &[&'static str]) -> Row {
     row(key, summary, template, PROLOGUE.iter().chain(calls).copied().collect())
 }

@@ -1,13 +1,13 @@
-//! All rows, and the look-ups that checking and planning need. Order is the order of the tables: it decides the order of
-//! everything that is printed.
+//! All rows, and the look-ups that checking and planning need. Everything that is printed is in the order of these
+//! tables.
 
-use crate::vocabulary::{Axis, Fact, Row, Technique, Template};
+use crate::vocabulary::{Axis, Capability, Row, Technique, Template};
 use crate::{
     addressing, counters, cull, host, opaque, overflow, pass, resolve, samples, select, shared, sort, storage, sync,
     technique, ties,
 };
 
-/// Rows by axis, techniques, and shared texts.
+/// The registry: axes, rows, techniques and shared templates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Registry {
     axes: Vec<Axis>,
@@ -18,24 +18,20 @@ pub struct Registry {
 
 /// The axes, in the order in which their edits apply.
 const AXES: [Axis; 14] = [
-    axis("storage", "where the fragments of a pixel are kept", None),
-    axis("sync", "how writers of the same pixel are kept apart", Some("none")),
-    axis("cull", "which fragments are turned away before they reach the storage", Some("none")),
-    axis("opaque", "what becomes of fragments behind opaque surfaces", Some("none")),
-    axis("select", "when the k best are chosen", Some("on_store")),
-    axis("overflow", "what becomes of a fragment that finds no place", Some("drop")),
+    axis("storage", "where the fragments of a pixel are stored", None),
+    axis("sync", "how concurrent fragments of the same pixel are synchronised", Some("none")),
+    axis("cull", "which fragments are rejected before they reach the storage", Some("none")),
+    axis("opaque", "how opaque surfaces occlude fragments", Some("none")),
+    axis("select", "when the k best are selected", Some("on_store")),
+    axis("overflow", "what happens to a fragment that is not kept", Some("drop")),
     axis("ties", "which of two fragments with equal keys is better", Some("payload")),
-    axis("addressing", "where a pixel's words lie in memory", Some("linear")),
+    axis("addressing", "how pixels map to memory", Some("linear")),
     axis("counters", "what is counted while the passes run", Some("losses")),
-    axis(
-        "samples",
-        "how many samples a pixel has, and what is kept of a fragment that covers some of them",
-        Some("one"),
-    ),
-    axis("sort", "how the kept fragments are put in the order of depth", Some("insertion")),
-    axis("resolve", "what is made of the kept fragments", Some("over")),
+    axis("samples", "how many samples a pixel has, and whether fragments store coverage", Some("one")),
+    axis("sort", "how the kept fragments are sorted by depth", Some("insertion")),
+    axis("resolve", "what is computed from the kept fragments", Some("over")),
     Axis { key: "pass", summary: "the entry points of a pass", default: None, chosen: false },
-    Axis { key: "host", summary: "what the host decides between two submissions", default: None, chosen: false },
+    Axis { key: "host", summary: "decisions of the host between two submissions", default: None, chosen: false },
 ];
 
 const fn axis(key: &'static str, summary: &'static str, default: Option<&'static str>) -> Axis {
@@ -43,13 +39,13 @@ const fn axis(key: &'static str, summary: &'static str, default: Option<&'static
 }
 
 impl Registry {
-    /// The value on the axis `resolve` that stands for the description's own closure.
-    pub const CLOSURE: &str = "closure";
+    /// The value on the axis `resolve` that stands for the closure of the description.
+    pub const CLOSURE: &str = resolve::CLOSURE;
 
-    /// The axis on which a closure stands for a value.
+    /// The axis on which a closure is a value.
     pub const CLOSURE_AXIS: &str = "resolve";
 
-    /// Every row of fragbuf's own.
+    /// Makes the registry of all rows of fragbuf.
     pub fn builtin() -> Self {
         let rows = [
             storage::rows(),
@@ -75,70 +71,70 @@ impl Registry {
         }
     }
 
-    /// The same with one row more, or another in place of the row of that axis and key.
+    /// Adds a row. It replaces the row of the same axis and key.
     pub fn with(mut self, row: Row) -> Self {
         self.rows.retain(|old| (&old.axis, &old.key) != (&row.axis, &row.key));
         self.rows.push(row);
         self
     }
 
-    /// The same with one technique more, or another in place of the technique of that key.
+    /// Adds a technique. It replaces the technique of the same key.
     pub fn with_technique(mut self, technique: Technique) -> Self {
         self.techniques.retain(|old| old.key != technique.key);
         self.techniques.push(technique);
         self
     }
 
-    /// The same with one axis more, before the axis `before` in the order of edits; at the end where there is none.
+    /// Adds an axis before the axis `before` in the order of edits, or at the end if there is no such axis.
     pub fn with_axis(mut self, axis: Axis, before: &str) -> Self {
         let index = self.axes.iter().position(|other| other.key == before).unwrap_or(self.axes.len());
         self.axes.insert(index, axis);
         self
     }
 
-    /// The axes, in the order in which their edits apply.
+    /// Returns the axes, in the order in which their edits apply.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The axis of this name.
+    /// Returns the axis of this name.
     pub fn axis(&self, key: &str) -> Option<&Axis> {
         self.axes.iter().find(|axis| axis.key == key)
     }
 
-    /// Every row of every axis.
+    /// Returns every row of every axis.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// The rows of one axis.
+    /// Returns the rows of one axis.
     pub fn rows_of<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |row| row.axis == axis)
     }
 
-    /// One row.
+    /// Returns the row of this axis and key.
     pub fn row(&self, axis: &str, key: &str) -> Option<&Row> {
         self.rows.iter().find(|row| row.axis == axis && row.key == key)
     }
 
-    /// The rows that offer `fact`, on axes that a user chooses on.
-    pub fn offering(&self, fact: Fact) -> impl Iterator<Item = &Row> {
-        self.rows
-            .iter()
-            .filter(move |row| row.offers.contains(&fact) && self.axis(&row.axis).is_some_and(|axis| axis.chosen))
+    /// Returns the rows that provide `capability`, on axes whose value a description chooses.
+    pub fn providers_of(&self, capability: Capability) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| {
+            row.provides.contains(&capability) && self.axis(&row.axis).is_some_and(|axis| axis.chosen)
+        })
     }
 
-    /// The techniques.
+    /// Returns the techniques.
     pub fn techniques(&self) -> &[Technique] {
         &self.techniques
     }
 
-    /// One technique.
+    /// Returns the technique of this key.
     pub fn technique(&self, key: &str) -> Option<&Technique> {
         self.techniques.iter().find(|technique| technique.key == key)
     }
 
-    /// Texts that any template may call.
+    /// Returns the templates that any template may call.
     pub fn shared(&self) -> &[Template] {
         &self.shared
     }

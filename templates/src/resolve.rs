@@ -1,34 +1,36 @@
-//! Axis `resolve`: what is made of the kept fragments.
+//! Axis `resolve`: what is computed from the kept fragments.
 
-use crate::Registry;
 use crate::conditions::color;
-use crate::vocabulary::{Fact, Parameter, Row};
+use crate::vocabulary::{Capability, Parameter, Row};
+
+/// The value that stands for the closure of the description.
+pub(crate) const CLOSURE: &str = "closure";
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("resolve/over")),
             calls: vec!["samples"],
-            requires: vec![Fact::Sorted],
+            requires: vec![Capability::Sorted],
             conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
             parameters: vec![Parameter::number(
                 "opaque",
                 "OPAQUE_THOUSANDTHS",
                 "0",
                 (0, 1000),
-                "thousandths of the light behind, and of a channel's error: blending ends when fewer pass; 0: never",
+                "thousandths of the light behind, and of a channel's error: blending stops when less passes; 0: never",
             )],
             ..Row::new("resolve", "over", "colours blended front to back", "Porter & Duff 1984; K15 §4.4")
         },
         Row {
             template: Some(template!("resolve/stream")),
-            requires: vec![Fact::Streams],
+            requires: vec![Capability::Streams],
             conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
-            offers: vec![Fact::ValuesPairs],
+            provides: vec![Capability::PairValues],
             ..Row::new(
                 "resolve",
                 "stream",
-                "colours blended front to back while they are handed on",
+                "colours blended front to back as the storage passes them on",
                 "B06 §4.3; Porter & Duff 1984",
             )
         },
@@ -40,16 +42,16 @@ pub(crate) fn rows() -> Vec<Row> {
                 "COMPLEXITY_MOST",
                 "capacity",
                 (1, 4096),
-                "fragments of a pixel from which on it is red",
+                "number of fragments from which a pixel is red",
             )],
-            ..Row::new("resolve", "complexity", "how many fragments there are, as a heat map from blue to red", "")
+            ..Row::new("resolve", "complexity", "the number of fragments, as a heat map from blue to red", "")
         },
         Row {
             calls: vec!["samples"],
-            ..Row::new("resolve", Registry::CLOSURE, "the description's own `resolve |fragments, u| { … }`", "")
+            ..Row::new("resolve", CLOSURE, "the closure of the description, `resolve |fragments, u| { … }`", "")
         },
     ]
 }
 
-/// Effects on colours have a closure in their place.
+/// The fix for effects on colours, which a closure can replace.
 const ADD_COLOR_OR_CLOSURE: &str = "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`";

@@ -1,20 +1,20 @@
-//! Axis `select`: when the k best are chosen, where a description keeps no more.
+//! Axis `select`: when the k best are selected, if a description limits the fragments kept.
 
 use crate::conditions::limited;
-use crate::vocabulary::{Edit, Fact, Row};
+use crate::vocabulary::{Capability, Edit, Row};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        Row::new("select", "on_store", "as fragments are stored", ""),
+        Row::new("select", "on_store", "when fragments are stored", ""),
         Row {
-            requires: vec![Fact::KeepsAll],
+            requires: vec![Capability::KeepsAll],
             conditions: vec![limited()],
-            offers: vec![Fact::SelectsBest],
+            provides: vec![Capability::SelectsBest],
             edits: vec![Edit::SetSkeleton("resolve".to_owned(), "resolve_selected".to_owned())],
             ..Row::new(
                 "select",
                 "on_resolve",
-                "by the resolve pass, among all that the storage kept",
+                "in the resolve pass, among all fragments that the storage kept",
                 "K15 §2 (KB-AB); Yu et al. 2012",
             )
         },

@@ -1,4 +1,4 @@
-//! Texts that any template may call; what is not called is not linked.
+//! Templates that any template may call. Functions that no template calls are not linked.
 
 use crate::vocabulary::Template;
 

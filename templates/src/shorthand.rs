@@ -1,24 +1,25 @@
-//! Names of hazards that stand for a part of the reference model in the head of a user's file, which has no other words for it.
+//! Names of hazards that stand for a part of the reference model in the header of a user's file, which has no other
+//! syntax for it.
 //!
-//! In: a name. Out: what the rows of fragbuf that have a hazard of this name state. No check reads names.
+//! Input: a name. Output: what the rows of fragbuf with a hazard of this name declare. The checker never reads names.
 
 use crate::overflow::{MERGED_FARTHEST, MERGED_NEIGHBOURS};
 use crate::storage::DEPTH_RANGE;
-use crate::vocabulary::{Kept, Merges, Permits};
+use crate::vocabulary::{KeptFragments, Merges, Permits};
 
-/// What the name of a hazard stands for in the head of a user's file.
+/// The part of the reference model that a hazard's name stands for in the header of a user's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shorthand {
-    /// What may go wrong.
+    /// What can go wrong.
     Permits(Permits),
-    /// Which fragments stay.
-    Keeps(Kept),
-    /// How entries become one.
+    /// Which fragments are kept.
+    Keeps(KeptFragments),
+    /// How entries are merged.
     Merges(Merges),
 }
 
 impl Shorthand {
-    /// Every name that stands for something.
+    /// Every name with a meaning.
     pub const ALL: [(&str, Shorthand); 16] = [
         ("lost-update", Shorthand::Permits(Permits::LOST)),
         ("duplicate", Shorthand::Permits(Permits::DUPLICATE)),
@@ -30,15 +31,15 @@ impl Shorthand {
         ("torn-equal-keys", Shorthand::Permits(Permits::TORN_EQUAL_KEYS)),
         ("uncounted", Shorthand::Permits(Permits::UNCOUNTED)),
         ("counted-twice", Shorthand::Permits(Permits::COUNTED_TWICE)),
-        ("given-up", Shorthand::Permits(Permits::GIVES_UP)),
-        ("unsettled", Shorthand::Permits(Permits::UNSETTLED)),
-        ("shows-arrival", Shorthand::Permits(Permits::SHOWS_ARRIVAL)),
-        ("one-per-range", Shorthand::Keeps(Kept::best_of_each(DEPTH_RANGE))),
+        ("timed-out", Shorthand::Permits(Permits::TIMED_OUT)),
+        ("not-converged", Shorthand::Permits(Permits::NOT_CONVERGED)),
+        ("order-dependent", Shorthand::Permits(Permits::ORDER_DEPENDENT)),
+        ("one-per-range", Shorthand::Keeps(KeptFragments::best_of_each(DEPTH_RANGE))),
         ("merged-farthest", Shorthand::Merges(MERGED_FARTHEST)),
         ("merged-neighbours", Shorthand::Merges(MERGED_NEIGHBOURS)),
     ];
 
-    /// What this name stands for; `None`: nothing that can be checked.
+    /// Returns the meaning of a name; `None` if it is not a shorthand.
     pub fn of(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, shorthand)| shorthand)
     }

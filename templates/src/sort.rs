@@ -1,6 +1,6 @@
-//! Axis `sort`: how the kept fragments are put in the order of depth before they are resolved.
+//! Axis `sort`: how the kept fragments are sorted by depth before they are resolved.
 
-use crate::vocabulary::{Edit, Fact, Parameter, Role, Row, Split};
+use crate::vocabulary::{Capability, Edit, Implementation, Parameter, Row, Split};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
@@ -8,36 +8,36 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("sort/none")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::StableSort, Fact::OneResolve],
-            ..Row::new("sort", "none", "not at all: as the storage gives them", "")
+            provides: vec![Capability::StableSort, Capability::OneResolve],
+            ..Row::new("sort", "none", "not at all: in the order of the storage", "")
         },
         Row {
             template: Some(template!("sort/insertion")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted, Fact::StableSort, Fact::OneResolve],
-            ..Row::new("sort", "insertion", "each into its place as it is read", "K15 §3.3")
+            provides: vec![Capability::Sorted, Capability::StableSort, Capability::OneResolve],
+            ..Row::new("sort", "insertion", "by insertion while the fragments are read", "K15 §3.3")
         },
         Row {
             template: Some(template!("sort/shell")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
-            ..Row::new("sort", "shell", "all at once, over ever shorter distances", "Shell 1959; Knuth 1973; K15 §3.3")
+            provides: vec![Capability::Sorted, Capability::OneResolve],
+            ..Row::new("sort", "shell", "at the end, over decreasing distances", "Shell 1959; Knuth 1973; K15 §3.3")
         },
         Row {
             template: Some(template!("sort/hybrid")),
             calls: vec!["counters"],
             parameters: vec![layers(), insertion_most()],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
-            ..Row::new("sort", "hybrid", "by insertion for few, by Shell sort for many", "K15 §3.3")
+            provides: vec![Capability::Sorted, Capability::OneResolve],
+            ..Row::new("sort", "hybrid", "by insertion for few fragments, by Shell sort for many", "K15 §3.3")
         },
         Row {
             template: Some(template!("sort/bitonic")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
-            ..Row::new("sort", "bitonic", "all at once, by a network that depends on the count alone", "Batcher 1968")
+            provides: vec![Capability::Sorted, Capability::OneResolve],
+            ..Row::new("sort", "bitonic", "at the end, by a network that depends only on the count", "Batcher 1968")
         },
         Row {
             template: Some(template!("sort/lplus")),
@@ -46,38 +46,38 @@ pub(crate) fn rows() -> Vec<Row> {
                 "LPLUS_BATCH",
                 "32",
                 (1, 4096),
-                "fragments that are ordered each time that the pixel is read",
+                "fragments that are sorted each time the pixel is read",
             )],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
+            provides: vec![Capability::Sorted, Capability::OneResolve],
             ..Row::new(
                 "sort",
                 "lplus",
-                "in batches, the pixel read again for each: no array for all, and none is left out",
-                "K15 §4.4, Alg. 4, mended",
+                "in batches, reading the pixel again for each: no array for all fragments, and none is dropped",
+                "K15 §4.4, Alg. 4, corrected",
             )
         },
         Row {
             template: Some(template!("sort/backwards_memory")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted],
+            provides: vec![Capability::Sorted],
             edits: vec![Edit::Split(Split {
-                anchor: "resolve".to_owned(),
-                // Arrays of 8, of twice that, and so on below the parameter's own length, and of that at last.
+                name: "resolve".to_owned(),
+                // Arrays of 8, 16, 32, … below the length of the parameter, and last one of that length.
                 copies: "log2_ceil(ceil_div(LAYERS, 8)) + 1".into(),
                 constants: vec![
                     ("LAYERS".to_owned(), "min(8 * pow2(copy), LAYERS)".into()),
-                    // Each serves the pixels of more fragments than the array before holds, the last all others.
+                    // Each copy serves the pixels that overflow the previous array; the last serves all others.
                     ("CLASS_ABOVE".to_owned(), "(copy > 0) * 4 * pow2(copy)".into()),
                     ("CLASS_MOST".to_owned(), "max(8 * pow2(copy), (copy + 1 == copies) * 4294967295)".into()),
                 ],
-                // Every pass reads every pixel: what is lost there is counted by the last alone.
-                before_last: vec![Role::of("counters", "none")],
+                // Every pass reads every pixel, so only the last counts losses.
+                before_last: vec![Implementation::of("counters", "none")],
             })],
             ..Row::new(
                 "sort",
                 "backwards_memory",
-                "by insertion, in one resolve pass for each of few lengths of its array",
+                "by insertion, in one resolve pass per class of array lengths",
                 "Knowles et al. 2013; K15 §3.3",
             )
         },
@@ -85,11 +85,11 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("sort/block")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
+            provides: vec![Capability::Sorted, Capability::OneResolve],
             ..Row::new(
                 "sort",
                 "block",
-                "in blocks of eight that registers hold, merged as they are asked for",
+                "in blocks of eight in registers, merged as they are read",
                 "Knowles et al. 2014",
             )
         },
@@ -97,11 +97,11 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("sort/odd_even")),
             calls: vec!["counters"],
             parameters: vec![layers()],
-            offers: vec![Fact::Sorted, Fact::OneResolve],
+            provides: vec![Capability::Sorted, Capability::OneResolve],
             ..Row::new(
                 "sort",
                 "odd_even",
-                "all at once, by a network of fewer comparisons than `bitonic`",
+                "at the end, by a network with fewer comparisons than `bitonic`",
                 "Batcher 1968; Knuth 1973, Algorithm M",
             )
         },
@@ -114,7 +114,7 @@ fn insertion_most() -> Parameter {
         "INSERTION_MOST",
         "16",
         (0, 4096),
-        "the most fragments of a pixel that are sorted by insertion",
+        "the greatest number of fragments that is sorted by insertion",
     )
 }
 
@@ -124,6 +124,6 @@ fn layers() -> Parameter {
         "LAYERS",
         "capacity",
         (1, 4096),
-        "fragments that the resolve pass can hold; the farthest beyond are left out, and counted",
+        "the limit of fragments in the resolve pass; the farthest beyond it are dropped and counted",
     )
 }

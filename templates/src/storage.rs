@@ -1,18 +1,21 @@
-//! Axis `storage`: where the fragments of a pixel are kept. Each row is what a plan starts from: memory and passes.
+//! Axis `storage`: where the fragments of a pixel are stored. A plan starts from the resources and passes of a storage
+//! row.
 
-mod checked;
+mod checksummed;
 mod fixed_function;
 mod list;
 mod lists;
 mod minima;
+mod multipass;
+mod parts;
 mod ranges;
 mod regions;
-mod repeated;
 mod stream;
 mod worst_first;
 
 use crate::conditions::keeps_one;
-use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Permits, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Feature, Hazard, Pass, Permits, Resource, Row, Step};
+use parts::{REPLACES_WORST, array_resources, reset, resolve};
 
 pub(crate) use ranges::DEPTH_RANGE;
 
@@ -34,8 +37,8 @@ pub(crate) fn rows() -> Vec<Row> {
         lists::paged_list(),
         lists::bucket_lists(),
         stream::stream_array(),
-        checked::checked_array(),
-        repeated::repeated_array(),
+        checksummed::checksummed_array(),
+        multipass::multipass_array(),
         fixed_function::depth_tested(),
         fixed_function::stencil_routed(),
         single(),
@@ -52,10 +55,16 @@ fn single() -> Row {
             resolve(&["entries"]),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::KeepsBest, Fact::BestSuffice, Fact::BoundAnyInstant, Fact::LosesWhole, Fact::Sorted],
-        requires: vec![Fact::Critical, Fact::OneSample],
+        provides: vec![
+            Capability::KeepsBest,
+            Capability::AcceptsKBestOnly,
+            Capability::ConservativeBound,
+            Capability::ReportsWholeFragments,
+            Capability::Sorted,
+        ],
+        requires: vec![Capability::MutualExclusion, Capability::OneSample],
         conditions: vec![keeps_one()],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),
             ("cull".into(), "early".into()),
@@ -64,7 +73,7 @@ fn single() -> Row {
         ..Row::new(
             "storage",
             "single",
-            "the best fragment of a pixel: any criterion, a payload of any size",
+            "the best fragment of a pixel, for any criterion and a payload of any size",
             "K15 §4.3",
         )
     }
@@ -80,41 +89,36 @@ fn sorted_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        offers: [OF_THE_K_BEST.as_slice(), &[Fact::SurvivesRaces, Fact::KeepsArrival]].concat(),
-        // Entries are in the order of their keys.
-        implies: vec![("depth_key".into(), Fact::Sorted), ("depth_key".into(), Fact::OrderedSlots)],
-        needs: vec![Capability::FragmentAtomics],
+        provides: [REPLACES_WORST.as_slice(), &[Capability::RaceTolerant, Capability::KeepsArrival]].concat(),
+        // Entries are sorted by key.
+        implies: vec![("depth_key".into(), Capability::Sorted), ("depth_key".into(), Capability::OrderedSlots)],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "none".into()), ("sort".into(), "none".into())],
         hazards: vec![
             Hazard::new(
                 "lost-update",
-                "two fragments read the same entry and the later store wins: one is lost, unseen and uncounted",
+                "two fragments read the same entry and the later store wins: one is lost, undetected and uncounted",
                 Permits::LOST,
             )
-            .unless(Fact::Critical),
+            .unless(Capability::MutualExclusion),
             Hazard::new(
                 "duplicate",
-                "an entry moved by one fragment while another moves it too stands in two slots",
+                "two fragments move the same entry concurrently, and it is then in two slots",
                 Permits::DUPLICATE,
             )
-            .unless(Fact::Critical),
+            .unless(Capability::MutualExclusion),
             Hazard::new("torn", "key and payload of a slot come from two fragments", Permits::TORN)
-                .unless(Fact::Critical),
+                .unless(Capability::MutualExclusion),
             Hazard::new(
                 "stale",
-                "a key is seen before what stands beside it, and moves on with what the slot held before",
+                "a key is visible before its value words, and moves on with the previous words of the slot",
                 Permits::STALE,
             )
-            .unless(Fact::Critical),
-            Hazard::new("unsorted", "the entries of a pixel are not in the order of their keys", Permits::UNSORTED)
-                .unless(Fact::Critical),
+            .unless(Capability::MutualExclusion),
+            Hazard::new("unsorted", "the entries of a pixel are not sorted by key", Permits::UNSORTED)
+                .unless(Capability::MutualExclusion),
         ],
-        ..Row::new(
-            "storage",
-            "sorted_array",
-            "k entries per pixel, kept in order by insertion",
-            "B06 §3; Bavoil et al. 2007",
-        )
+        ..Row::new("storage", "sorted_array", "k entries per pixel, sorted by insertion", "B06 §3; Bavoil et al. 2007")
     }
 }
 
@@ -122,7 +126,7 @@ fn fixed_array() -> Row {
     Row {
         template: Some(template!("storage/fixed_array")),
         resources: vec![
-            Resource::new("counts", Element::Word, "fragments of the pixel, those included that found no slot")
+            Resource::new("counts", Element::Word, "fragments of the pixel, including those without a slot")
                 .by("pixel", "pixels")
                 .cleared(0),
             Resource::new("entries", Element::Entry, "the fragments, in the order of arrival")
@@ -134,51 +138,20 @@ fn fixed_array() -> Row {
             resolve(&["counts", "entries"]),
         ],
         calls: vec!["overflow"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::Indexed, Fact::LosesWhole],
-        implies: vec![("limited".into(), Fact::BestSuffice)],
-        needs: vec![Capability::FragmentAtomics],
+        provides: vec![
+            Capability::LockFree,
+            Capability::KeepsAll,
+            Capability::Indexed,
+            Capability::ReportsWholeFragments,
+        ],
+        implies: vec![("limited".into(), Capability::AcceptsKBestOnly)],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..Row::new(
             "storage",
             "fixed_array",
-            "n slots per pixel, filled by a counter",
+            "n slots per pixel, reserved by an atomic counter",
             "Liu et al. 2010 (FreePipe); K15 §2",
         )
     }
-}
-
-/// Keys apart from the rest: the early cull reads one atomic word, the critical section reads the others plainly.
-fn array_resources(keys: &'static str) -> Vec<Resource> {
-    vec![
-        Resource::new("keys", Element::Word, keys).by("slot", "k").by("pixel", "pixels"),
-        Resource::new("entries", Element::Beside, "what the fragments carry beside their keys")
-            .by("slot", "k")
-            .by("pixel", "pixels"),
-    ]
-}
-
-/// What arrays of the k best offer, whose worst entry gives way inside a critical section.
-const OF_THE_K_BEST: [Fact; 7] = [
-    Fact::KeepsBest,
-    Fact::BestSuffice,
-    Fact::BoundAnyInstant,
-    Fact::DisplacesInTurn,
-    Fact::CanReplace,
-    Fact::Indexed,
-    Fact::LosesWhole,
-];
-
-/// The pass that empties every pixel, by writing these.
-fn reset(resources: &[&str]) -> Step {
-    Step::Pass(resources.iter().fold(reset_pass(), |pass, resource| pass.uses(resource, Access::Plain)))
-}
-
-/// The pass that makes a colour of every pixel, by reading these.
-fn resolve(resources: &[&str]) -> Step {
-    let pass = Pass::fullscreen("resolve", "resolve").target("output", Blend::Over);
-    Step::Pass(resources.iter().fold(pass, |pass, resource| pass.uses(resource, Access::Read)))
-}
-
-fn reset_pass() -> Pass {
-    Pass::compute("reset", "reset", "ceil_div(width, 8)", "ceil_div(height, 8)")
 }

@@ -1,6 +1,6 @@
-//! Axis `sync`: how writers of the same pixel are kept apart.
+//! Axis `sync`: how concurrent fragments of the same pixel are synchronised.
 
-use crate::vocabulary::{Access, Capability, Edit, Element, Fact, Parameter, Resource, Row, Soundness, Use};
+use crate::vocabulary::{Access, Capability, Edit, Element, Feature, Parameter, Resource, Row, Soundness, Use};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![none(), slot_counter(), spin_lock(), interlock(), interlock_ordered(), fixed_function()]
@@ -10,10 +10,10 @@ fn none() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
-        offers: vec![Fact::Race, Fact::LeftToShaders],
-        requires: vec![Fact::SurvivesRaces],
+        provides: vec![Capability::Unsynchronised, Capability::SyncInShader],
+        requires: vec![Capability::RaceTolerant],
         soundness: Soundness::Racy,
-        ..Row::new("sync", "none", "not at all: the hazards of the storage are kept", "B06 §3.1")
+        ..Row::new("sync", "none", "not at all: the hazards of the storage remain", "B06 §3.1")
     }
 }
 
@@ -21,26 +21,21 @@ fn slot_counter() -> Row {
     Row {
         template: Some(template!("sync/none")),
         calls: vec!["storage"],
-        offers: vec![Fact::LeftToShaders],
-        requires: vec![Fact::OwnAtomics],
+        provides: vec![Capability::SyncInShader],
+        requires: vec![Capability::LockFree],
         soundness: Soundness::Atomics,
-        ..Row::new(
-            "sync",
-            "slot_counter",
-            "by the storage's own counters: every fragment gets a place of its own",
-            "K15 §2",
-        )
+        ..Row::new("sync", "slot_counter", "by the atomic operations of the storage, without a lock", "K15 §2")
     }
 }
 
 fn fixed_function() -> Row {
     Row {
-        offers: vec![Fact::LeftToTests],
-        requires: vec![Fact::FixedFunction],
+        provides: vec![Capability::SyncByFixedFunction],
+        requires: vec![Capability::FixedFunction],
         ..Row::new(
             "sync",
             "fixed_function",
-            "by depth test, stencil or blending, in the order of submission",
+            "by depth test, stencil test or blending, in submission order",
             "Catmull 1974; Myers & Bavoil 2007",
         )
     }
@@ -52,41 +47,36 @@ fn spin_lock() -> Row {
         resources: vec![Resource::new("locks", Element::Word, "0: free, 1: taken").by("pixel", "pixels").cleared(0)],
         uses: vec![Use::new("locks", Access::Atomic)],
         calls: vec!["storage", "overflow", "counters"],
-        offers: vec![Fact::Critical, Fact::LeftToShaders],
-        needs: vec![Capability::FragmentAtomics],
+        provides: vec![Capability::MutualExclusion, Capability::SyncInShader],
+        needs: vec![Feature::FragmentAtomics],
         parameters: vec![Parameter::number(
             "limit",
             "SPIN_LIMIT",
             "4096",
             (1, 1 << 24),
-            "tries before a fragment is given up and counted",
+            "tries before a fragment times out and is counted",
         )],
         soundness: Soundness::Lock,
-        ..Row::new("sync", "spin_lock", "by a lock word per pixel, tried a bounded number of times", "K15 §3.2")
+        ..Row::new("sync", "spin_lock", "by a lock word per pixel, with a bounded number of tries", "K15 §3.2")
     }
 }
 
-/// Writers of one pixel come in the order of their primitives: the order of submission, which ties may then follow.
+/// Fragments of one pixel run in the order of their primitives, which is the submission order; ties may then follow it.
 fn interlock_ordered() -> Row {
     let any = interlock();
     Row {
-        offers: vec![Fact::Critical, Fact::OrderedCritical, Fact::LeftToShaders],
-        needs: [any.needs.as_slice(), &[Capability::OrderedInterlock]].concat(),
+        provides: vec![Capability::MutualExclusion, Capability::OrderedMutualExclusion, Capability::SyncInShader],
+        needs: [any.needs.as_slice(), &[Feature::OrderedInterlock]].concat(),
         key: "interlock_ordered".to_owned(),
-        summary: "by fragment shader interlock, in the order of submission".into(),
+        summary: "by fragment shader interlock, in submission order".into(),
         ..any
     }
 }
 
 fn interlock() -> Row {
     Row {
-        offers: vec![Fact::Critical, Fact::LeftToShaders],
-        needs: vec![
-            Capability::Interlock,
-            Capability::Coherent,
-            Capability::FragmentAtomics,
-            Capability::OwnEntryPoints,
-        ],
+        provides: vec![Capability::MutualExclusion, Capability::SyncInShader],
+        needs: vec![Feature::Interlock, Feature::Coherent, Feature::FragmentAtomics, Feature::OwnEntryPoints],
         edits: vec![Edit::FormOfSkeleton("store".to_owned(), "ordered".to_owned())],
         soundness: Soundness::Interlock,
         ..Row::new(

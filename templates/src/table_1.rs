@@ -1,22 +1,22 @@
-//! Table 1 of the k⁺-buffer paper (Vasilakis, Papaioannou & Fudos 2015), as far as the text at hand can be read: what the paper
-//! says of each technique, to stand beside what the plans say.
+//! Table 1 of the k⁺-buffer paper (Vasilakis, Papaioannou & Fudos 2015), as far as the available copy is legible: the
+//! paper's properties of each technique, for comparison with those of the plans.
 
 /// One row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PaperRow {
-    /// The technique here.
+    /// The key of the technique.
     pub key: &'static str,
     /// The paper's name for it.
     pub name: &'static str,
-    /// Times that the scene is drawn.
+    /// The number of geometry passes.
     pub geometry_passes: &'static str,
-    /// Whether primitives should come in order.
+    /// Whether primitives should be sorted.
     pub sorted_primitives: &'static str,
-    /// When fragments are put in order: `store` or `resolve`.
+    /// When fragments are sorted: `store` or `resolve`.
     pub sorted_fragments: &'static str,
     /// The greatest k, without and with attributes packed; `?`: illegible.
     pub most: &'static str,
-    /// What may be wrong in the picture.
+    /// Possible artefacts of the image.
     pub artifacts: &'static str,
     /// Words per pixel, without and with attributes packed.
     pub words: &'static str,

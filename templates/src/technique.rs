@@ -1,5 +1,5 @@
-//! The techniques of the papers as points on the axes. A choice that is not named is the default of the storage, or of
-//! the axis; `a else b` takes `b` on targets that cannot express `a`.
+//! The techniques of the papers as points on the axes. An axis that is not listed has the default of the storage, or
+//! of the axis; `a else b` uses `b` on targets that do not support `a`.
 
 use crate::vocabulary::{KeepDefault, Technique};
 
@@ -9,7 +9,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb".to_owned(),
             title: "KB",
             paper: "B06 §3; Bavoil et al. 2007",
-            summary: "the k nearest by unsynchronised read-modify-write of a sorted array; hazards kept",
+            summary: "the k nearest by unsynchronised read-modify-write of a sorted array, with its hazards",
             keep: KeepDefault::Best(8),
             choices: vec![("storage", "sorted_array"), ("sync", "none"), ("sort", "none")],
         },
@@ -17,7 +17,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_ps".to_owned(),
             title: "KB-PS",
             paper: "Salvi 2013 (pixel synchronization); K15 §2",
-            summary: "the k nearest by sorted insertion inside an interlock, or a lock",
+            summary: "the k nearest by sorted insertion inside an interlock or a lock",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "sorted_array"),
@@ -30,7 +30,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kplus_array".to_owned(),
             title: "K⁺B-Array",
             paper: "K15 §3.2",
-            summary: "the k best by a criterion, in an array whose worst entry stands at slot 0",
+            summary: "the k best by a criterion, in an array with the worst entry at slot 0",
             keep: KeepDefault::Best(8),
             choices: vec![("storage", "max_array"), ("sync", "spin_lock"), ("cull", "early"), ("sort", "insertion")],
         },
@@ -38,7 +38,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kplus_heap".to_owned(),
             title: "K⁺B-Heap",
             paper: "K15 §3.2",
-            summary: "the k best by a criterion, in a heap whose worst entry stands at slot 0",
+            summary: "the k best by a criterion, in a heap with the worst entry at slot 0",
             keep: KeepDefault::Best(32),
             choices: vec![("storage", "max_heap"), ("sync", "spin_lock"), ("cull", "early"), ("sort", "insertion")],
         },
@@ -46,7 +46,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "mdt32_coplanar".to_owned(),
             title: "MDT with equal depths",
             paper: "after Liu et al. 2010; K15 §2",
-            summary: "the k best without a lock, equal depths included: the same on every target, browsers too",
+            summary: "the k best without a lock, equal depths included; the same on every target, including browsers",
             keep: KeepDefault::Best(8),
             choices: vec![("storage", "cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
         },
@@ -54,7 +54,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "ab_array".to_owned(),
             title: "AB_Array (FreePipe, FAB)",
             paper: "Liu et al. 2010; K15 §2",
-            summary: "every fragment, in an array per pixel until it is full",
+            summary: "every fragment, in an array per pixel, until the array is full",
             keep: KeepDefault::All,
             choices: vec![("storage", "fixed_array"), ("sync", "slot_counter"), ("sort", "insertion")],
         },
@@ -70,7 +70,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "ab_sb".to_owned(),
             title: "AB_SB (S-buffer)",
             paper: "Vasilakis & Fudos 2012; K15 §4.2",
-            summary: "every fragment, in regions of exactly the size that each pixel needs",
+            summary: "every fragment, in a region of exactly the required size per pixel",
             keep: KeepDefault::All,
             choices: vec![("storage", "exact_regions"), ("sync", "slot_counter"), ("sort", "insertion")],
         },
@@ -78,7 +78,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_ab_array".to_owned(),
             title: "KB-AB_Array",
             paper: "K15 §2",
-            summary: "the k best of all fragments in an array per pixel, chosen on resolve",
+            summary: "the k best of all fragments in an array per pixel, selected in the resolve pass",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "fixed_array"),
@@ -91,7 +91,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_ab_ll".to_owned(),
             title: "KB-AB_LL",
             paper: "K15 §2; Yu et al. 2012",
-            summary: "the k best of all fragments in a linked list per pixel, chosen on resolve",
+            summary: "the k best of all fragments in a linked list per pixel, selected in the resolve pass",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "linked_list"),
@@ -104,7 +104,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_ab_sb".to_owned(),
             title: "KB-AB_SB",
             paper: "K15 §2",
-            summary: "the k best of all fragments in exact regions, chosen on resolve",
+            summary: "the k best of all fragments in exact regions, selected in the resolve pass",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "exact_regions"),
@@ -117,7 +117,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_mdt32".to_owned(),
             title: "KB-MDT₃₂",
             paper: "Liu et al. 2010; K15 §2",
-            summary: "the k nearest distinct depths by atomic minima, the rest in a second pass; equal depths drop",
+            summary: "the k nearest distinct depths by atomic minima, payloads in a second pass; drops equal depths",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "distinct_cascade"),
@@ -138,7 +138,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
         Technique {
             key: "kplus_array_revised".to_owned(),
             title: "K⁺B-Array-R",
-            paper: "K15 §3.2.1, Alg. 2, mended",
+            paper: "K15 §3.2.1, Alg. 2, corrected",
             summary: "the k best by a criterion, the worst at slot 0; the first k-1 are stored without the lock",
             keep: KeepDefault::Best(8),
             choices: vec![
@@ -152,7 +152,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_ll".to_owned(),
             title: "KB-LL",
             paper: "Yu et al. 2012; K15 §2",
-            summary: "the k nearest in a list that is kept in order by compare and exchange",
+            summary: "the k nearest in a list that compare-exchange keeps sorted",
             keep: KeepDefault::Best(8),
             choices: vec![("storage", "ordered_list"), ("sync", "slot_counter"), ("sort", "none")],
         },
@@ -172,8 +172,8 @@ pub(crate) fn techniques() -> Vec<Technique> {
         Technique {
             key: "kplus_ab_sb".to_owned(),
             title: "K⁺B-AB_SB",
-            paper: "K15 §4.1, Alg. 3, mended",
-            summary: "the k best by a criterion in exact regions of min(f, k); a lock only where f > k",
+            paper: "K15 §4.1, Alg. 3, corrected",
+            summary: "the k best by a criterion in exact regions of min(f, k) slots; a lock only if f > k",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "bounded_regions"),
@@ -202,7 +202,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_stream".to_owned(),
             title: "KB as a stream",
             paper: "B06 §3, §4.3; Callahan et al. 2005",
-            summary: "every fragment composited in order through k entries, if none comes more than k places late",
+            summary: "every fragment composited in order through k entries, if none arrives more than k positions late",
             keep: KeepDefault::Best(8),
             choices: vec![
                 ("storage", "stream_array"),
@@ -215,15 +215,15 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_mha".to_owned(),
             title: "KB-MHA",
             paper: "after Zhang 2014, internals ours; K15 §2",
-            summary: "the k nearest by racing writers that notice and mend most of what races break",
+            summary: "the k nearest by unsynchronised fragments that detect and repair most races",
             keep: KeepDefault::Best(8),
-            choices: vec![("storage", "checked_array"), ("sync", "none"), ("sort", "insertion")],
+            choices: vec![("storage", "checksummed_array"), ("sync", "none"), ("sort", "insertion")],
         },
         Technique {
             key: "z_buffer".to_owned(),
             title: "Z-buffer",
             paper: "Catmull 1974; K15 §4.3",
-            summary: "the nearest, by the depth test, its words in targets: one draw, no atomic operation",
+            summary: "the nearest by the depth test, with its words in render targets: one draw, no atomic operation",
             keep: KeepDefault::Best(1),
             choices: vec![
                 ("storage", "depth_tested"),
@@ -236,7 +236,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_sr".to_owned(),
             title: "KB-SR (stencil routing)",
             paper: "Myers & Bavoil 2007; K15 §2",
-            summary: "the first k, each in a sample of a multisampled pixel: one draw, no lock; not exact at borders",
+            summary: "the first k, each in a sample of a multisampled pixel: one draw, no lock; not exact at edges",
             keep: KeepDefault::Best(4),
             choices: vec![
                 ("storage", "stencil_routed"),
@@ -249,10 +249,10 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_multi".to_owned(),
             title: "KB-Multi",
             paper: "Liu et al. 2009; K15 §2",
-            summary: "the k nearest distinct depths without any lock: drawn again until a pass changes nothing",
+            summary: "the k nearest distinct depths without a lock: drawn again until a pass changes nothing",
             keep: KeepDefault::Best(8),
             choices: vec![
-                ("storage", "repeated_array"),
+                ("storage", "multipass_array"),
                 ("sync", "none"),
                 ("ties", "unordered"),
                 ("sort", "insertion"),

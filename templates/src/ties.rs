@@ -1,40 +1,40 @@
 //! Axis `ties`: which of two fragments with equal keys is better.
 
-use crate::vocabulary::{Fact, Order, Parameter, Row, Takes};
+use crate::vocabulary::{Capability, Parameter, ParameterType, Row, TieBreak};
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
-            order: Some(Order::Payload),
+            order: Some(TieBreak::Payload),
             ..Row::new(
                 "ties",
                 "payload",
-                "the one with lesser packed words: the result does not depend on any order",
+                "the one with lesser packed words: the result does not depend on the order of arrival",
                 "",
             )
         },
         Row {
-            order: Some(Order::Attribute),
+            order: Some(TieBreak::Attribute),
             parameters: vec![Parameter {
                 name: "by".into(),
                 constant: "TIES_BY".into(),
-                takes: Takes::Attribute,
+                kind: ParameterType::Attribute,
                 default: "0".into(),
                 range: (0, u32::MAX),
-                summary: "the attribute that decides, by its packed words; the first if nothing is said".into(),
+                summary: "the attribute that decides, by its packed words [default: the first]".into(),
             }],
             ..Row::new(
                 "ties",
                 "attribute",
-                "the one whose attribute has lesser words, then as `payload`: `attribute { by: id }`",
+                "the one whose attribute has lesser packed words, then as `payload`: `attribute { by: id }`",
                 "",
             )
         },
         Row {
-            order: Some(Order::Submission),
-            requires: vec![Fact::OrderedCritical, Fact::KeepsArrival, Fact::StableSort],
+            order: Some(TieBreak::Submission),
+            requires: vec![Capability::OrderedMutualExclusion, Capability::KeepsArrival, Capability::StableSort],
             ..Row::new("ties", "submission", "the one that was submitted first", "")
         },
-        Row { order: Some(Order::Unordered), ..Row::new("ties", "unordered", "whichever came first", "") },
+        Row { order: Some(TieBreak::Unordered), ..Row::new("ties", "unordered", "the one that arrived first", "") },
     ]
 }

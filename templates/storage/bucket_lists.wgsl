@@ -1,25 +1,26 @@
-// Lists per depth bucket (D13 sec. 3.1.4, BUN-LL): the depths of each pixel are cut into BUCKETS equal parts, and each
-// part has a list of its own through one pool of nodes. The resolve pass goes from the nearest bucket to the farthest,
-// so a fragment is never put before one of another bucket: a sort by insertion moves it past those of its own alone.
+// Lists per depth bucket (D13 sec. 3.1.4, BUN-LL). The depth range of each pixel is divided into BUCKETS equal parts,
+// and each part has a list of its own; all lists share one pool of nodes. The resolve pass reads the buckets from the
+// nearest to the farthest, so an insertion sort moves a fragment only past fragments of the same bucket.
 //
-// Invariant: the bucket of a fragment never falls as its depth rises, whatever the range of the pixel is. Depths are
-// cut down to whole parts of 2^24 and compared as whole numbers, on every device alike. Links are written by their
-// owner alone and read only after the pass.
+// Invariant: the bucket of a fragment never decreases as its depth increases, whatever the range of the pixel is.
+// Depths are rounded down to multiples of 2^-24 and compared as integers, equally on every device. Only the owner of a
+// link writes it, and links are read only after the pass.
 //
-// The paper takes the range from the scene's box, splits it into five, and gives every bucket a pool of its own, of
-// which those of rare buckets stay empty. Here a pass over the scene itself finds each pixel's range, which is the
-// tightest, and all buckets share one pool.
+// The paper takes the range from the bounding box of the scene, splits it into five and gives every bucket a pool of
+// its own; the pools of rare buckets stay empty. Here a pass over the scene finds the tightest range of each pixel,
+// and all buckets share one pool.
 //
-// Memory: entry_words + 1 words per fragment, BUCKETS + 2 per pixel. (The paper's 3f+8 has a counter per bucket where
-// this has two words of range per pixel and one counter for all pixels.)
+// Memory: entry_words + 1 words per fragment, BUCKETS + 2 per pixel. (The paper's 3f+8 has a counter per bucket; this
+// has two words of range per pixel and one counter for all pixels.)
 
 const BUCKETS = 5u;
 
-/// The words of a range. The nearest key is stored with its bits flipped, so that both grow from 0, the empty range.
+/// The words of a range. The nearest key is stored with its bits inverted, so that both words grow from 0, the empty
+/// range.
 const NEAREST = 0u;
 const FARTHEST = 1u;
 
-fn storage_survey(pixel: u32, entry: Packed) {
+fn storage_prepass(pixel: u32, entry: Packed) {
     ranges_atomic_max(NEAREST, pixel, ~entry.key);
     ranges_atomic_max(FARTHEST, pixel, entry.key);
 }
@@ -50,7 +51,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return nodes_load(cursor);
 }
 
-/// The first node of the nearest bucket from `bucket` on that has one.
+/// Returns the first node of the nearest non-empty bucket from `bucket` on.
 fn bucket_lists_seek(pixel: u32, bucket: u32) -> u32 {
     for (var cursor = bucket; cursor < BUCKETS; cursor++) {
         let head = heads_load(cursor, pixel);
@@ -61,7 +62,7 @@ fn bucket_lists_seek(pixel: u32, bucket: u32) -> u32 {
     return END;
 }
 
-/// The bucket of a key. One outside the pixel's range counts as its nearer or its farther end.
+/// Returns the bucket of a key. A key outside the pixel's range counts as the nearer or the farther end of it.
 fn bucket_lists_bucket(pixel: u32, key: u32) -> u32 {
     let begin = bucket_lists_depth(~ranges_load(NEAREST, pixel));
     let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 1u;
@@ -69,7 +70,7 @@ fn bucket_lists_bucket(pixel: u32, key: u32) -> u32 {
     return min(beyond, span - 1u) * BUCKETS / span;
 }
 
-/// The depth of a key in whole parts of 2^24. Beyond 1 it counts as 1.
+/// Returns the depth of a key in units of 2^-24. A depth beyond 1 counts as 1.
 fn bucket_lists_depth(key: u32) -> u32 {
     return u32(bitcast<f32>(min(key, 0x3f800000u)) * 16777216.0);
 }

@@ -1,23 +1,23 @@
 // Multidepth in portable WGSL, without a lock and for any payload (after Liu et al. 2010; K15 sec. 2). A cascade of
-// atomic minima brings the k least keys into order: each slot keeps the lesser of what it holds and what comes, the
-// greater goes on to the next slot. Equal keys each take a slot of their own. Then the scene is drawn once for every
-// word beside the key, and each time the same cascade runs among those slots whose earlier words are the fragment's:
-// they have been settled by a pass before, and no pass changes what it compares.
+// atomic minima sorts the k least keys: each slot keeps the lesser of its key and the incoming key, and passes the
+// greater to the next slot. Each of several equal keys takes a slot. Then the scene is drawn once for every value
+// word. In each of these passes the same cascade runs over the slots whose preceding words equal the fragment's:
+// earlier passes have made these words final, and no pass changes a word that it compares.
 //
-// So the slots end up with the k least fragments in the order of all their words, whatever the order of arrival: ties
-// at the edge are decided as everywhere, and no fragment is torn. The 32-bit multidepth buffer of the papers drops
-// equal depths, and writes payloads of equal depths over each other.
+// So the slots hold the k least fragments in the order of all their words, for any order of arrival: ties at the k-th
+// slot are resolved as everywhere, and no fragment is torn. The papers' 32-bit multidepth buffer drops equal depths
+// and lets the payloads of equal depths overwrite each other.
 //
-// Invariant: the key of slot k-1 only ever falls, and never below the k-th least: it may be read at any time.
+// Invariant: the key of slot k-1 only decreases, and is never below the k-th least: it can be read at any time.
 //
 // Memory: k * entry_words words per pixel. Geometry passes: entry_words.
 
 fn storage_reset(pixel: u32) {
     for (var slot = 0u; slot < frame.k; slot++) {
         keys_store(slot, pixel, EMPTY);
-        for (var word = 0u; word < BESIDE_WORDS; word++) {
-            // No word is greater: a slot that a fragment of such words owns need not be written.
-            tails_store(slot, pixel, word, EMPTY);
+        for (var word = 0u; word < VALUE_WORDS; word++) {
+            // EMPTY is the greatest word, so a value word that equals it need not be written.
+            value_words_store(slot, pixel, word, EMPTY);
         }
     }
 }
@@ -34,11 +34,11 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    // Only the key of the one that falls out is known here.
+    // Only the key of the evicted fragment is known here.
     count_loss(DISPLACED);
 }
 
-fn storage_settle(pixel: u32, entry: Packed) {
+fn storage_refine(pixel: u32, entry: Packed) {
     let word = frame.iteration;
     var carried = packed_word(entry, word);
     for (var slot = 0u; slot < frame.k; slot++) {
@@ -47,7 +47,7 @@ fn storage_settle(pixel: u32, entry: Packed) {
             return;
         }
         if key == entry.key && cascade_is_prefix(pixel, slot, entry, word) {
-            carried = max(carried, tails_atomic_min(slot, pixel, word, carried));
+            carried = max(carried, value_words_atomic_min(slot, pixel, word, carried));
         }
     }
 }
@@ -62,16 +62,16 @@ fn storage_next(pixel: u32, cursor: u32) -> u32 {
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {
     var entry = packed_of_key(keys_load(cursor, pixel));
-    for (var word = 0u; word < BESIDE_WORDS; word++) {
-        entry = packed_with(entry, word, tails_load(cursor, pixel, word));
+    for (var word = 0u; word < VALUE_WORDS; word++) {
+        entry = packed_with(entry, word, value_words_load(cursor, pixel, word));
     }
     return entry;
 }
 
-/// Whether the slot's words before `end` are the fragment's.
+/// Returns whether the value words of the slot before `end` equal the fragment's.
 fn cascade_is_prefix(pixel: u32, slot: u32, entry: Packed, end: u32) -> bool {
     for (var word = 0u; word < end; word++) {
-        if tails_load(slot, pixel, word) != packed_word(entry, word) {
+        if value_words_load(slot, pixel, word) != packed_word(entry, word) {
             return false;
         }
     }

@@ -1,10 +1,10 @@
-// Depth partitioning (B06 sec. 4.2): the depths from NEAR_MILLIONTHS to FAR_MILLIONTHS are cut into k equal ranges,
-// and each keeps its nearest fragment, in one pass. Range i holds the depths from its beginning to just before the
-// next one's; what lies before the first or beyond the last counts as theirs. Borders are exact: depths are cut down
-// to whole millionths and compared as whole numbers, on every device alike.
+// Depth partitioning (B06 sec. 4.2): the depths from NEAR_MILLIONTHS to FAR_MILLIONTHS are divided into k equal
+// ranges, and each range keeps its nearest fragment, in one pass. A range includes its lower end and excludes its
+// upper end; depths before the first or beyond the last range belong to that range. Boundaries are exact: depths are
+// rounded down to whole millionths and compared as integers, equally on every device.
 //
-// Invariant: a slot only ever changes to a better fragment, inside the critical section, and holds nothing but
-// fragments of its range. No one key bounds all ranges, so there is no early cull.
+// Invariant: a slot only changes to a better fragment, inside the critical section, and holds only fragments of its
+// range. No single key bounds all ranges, so there is no early cull.
 //
 // Memory: k * entry_words words per pixel, and the lock's.
 
@@ -40,7 +40,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return depth_ranges_read(pixel, cursor);
 }
 
-/// The range that the fragment's depth, its key, lies in.
+/// Returns the range of the fragment's depth, which is its key.
 fn depth_ranges_slot(entry: Packed) -> u32 {
     let depth = u32(min(bitcast<f32>(entry.key), 1.0) * 1000000.0);
     let beyond = max(depth, NEAR_MILLIONTHS) - NEAR_MILLIONTHS;
@@ -52,7 +52,7 @@ fn depth_ranges_read(pixel: u32, slot: u32) -> Packed {
     return entries_load(slot, pixel, keys_load(slot, pixel));
 }
 
-/// The first range from `slot` on that holds a fragment.
+/// Returns the first range from `slot` on that holds a fragment.
 fn depth_ranges_seek(pixel: u32, slot: u32) -> u32 {
     for (var cursor = slot; cursor < frame.k; cursor++) {
         if keys_load(cursor, pixel) != EMPTY {

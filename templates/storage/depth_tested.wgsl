@@ -1,10 +1,10 @@
-// The Z-buffer (Catmull 1974), as the k-buffer of k = 1 (K15 sec. 4.3): the depth test keeps the nearest fragment,
-// and the same draw leaves its other words in targets, one word each. The depth attachment is the key: no word is
-// kept twice.
+// The Z-buffer (Catmull 1974), as the k-buffer with k = 1 (K15 sec. 4.3): the depth test keeps the nearest fragment,
+// and the same draw writes its other words to render targets, one word each. The depth attachment is the key: no word
+// is stored twice.
 //
-// Depth test and targets are fixed function: fragments of one pixel come one after the other in the order of
-// submission, and of equal depths the first stays. Nothing counts what the test turns away. Depths end at 1.0, which
-// the attachment is cleared to: a fragment at exactly 1.0, on the far plane, is not less, and is not kept.
+// Depth test and targets are fixed function: fragments of one pixel are processed in submission order, and the first
+// of equal depths is kept. Fragments that fail the test are not counted. The attachment is cleared to 1.0, so a
+// fragment at exactly 1.0, on the far plane, is not less and is not kept.
 //
 // Memory: entry_words words per pixel, in textures.
 
@@ -15,7 +15,7 @@ fn storage_first(pixel: u32) -> u32 {
     return END;
 }
 
-/// There is one fragment.
+/// Returns END: there is one fragment.
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
     return END;
 }

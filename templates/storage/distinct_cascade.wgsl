@@ -1,14 +1,14 @@
-// The 32-bit multidepth buffer (Liu et al. 2010; K15 sec. 2, KB-MDT32). A cascade of atomic minima brings the k least
-// keys into order: each slot keeps the lesser of what it holds and what comes, the greater goes on to the next slot.
-// Of equal keys one slot is kept. The scene is then drawn once more, and each fragment whose key stands in a slot
-// writes what it carries beside it. Keys are the bits of the depth, whole: no precision is lost.
+// The 32-bit multidepth buffer (Liu et al. 2010; K15 sec. 2, KB-MDT32). A cascade of atomic minima sorts the k least
+// keys: each slot keeps the lesser of its key and the incoming key, and passes the greater to the next slot. Equal
+// keys share one slot. The scene is then drawn again, and each fragment whose key is in a slot writes its value words
+// there. Keys are all bits of the depth: no precision is lost.
 //
-// Fragments with equal keys write to the same slot: the last one wins, word by word, so that an entry of several
-// words may be of several fragments. storage/cascade keeps equal keys, and settles them.
+// Fragments with equal keys write to the same slot: the last one wins word by word, so the value words of an entry may
+// come from several fragments. storage/cascade keeps equal keys and refines them.
 //
-// Invariant: slots only fall, and a key that has gone past a slot stays greater than what the slot holds. So no key
-// ever stands in two slots, no key of the k least distinct ones is dropped, and the key of slot k-1 is never below
-// the k-th of them: it may be read at any time.
+// Invariant: keys in slots only decrease, and a key that has passed a slot stays greater than the slot's. So no key is
+// in two slots, none of the k least distinct keys is dropped, and the key of slot k-1 is never below the k-th of them:
+// it can be read at any time.
 //
 // Memory: k * entry_words words per pixel. Geometry passes: 2.
 
@@ -27,7 +27,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
     for (var slot = 0u; slot < frame.k; slot++) {
         let resident = keys_atomic_min(slot, pixel, carried);
         if resident == carried {
-            // It stands here already, and whoever moves it on carries one for both.
+            // The key is stored already; if a fragment moves it, one copy moves for both.
             count_loss(EQUAL_KEYS);
             return;
         }
@@ -36,11 +36,11 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    // Only the key of the one that falls out is known here.
+    // Only the key of the evicted fragment is known here.
     count_loss(DISPLACED);
 }
 
-fn storage_settle(pixel: u32, entry: Packed) {
+fn storage_refine(pixel: u32, entry: Packed) {
     for (var slot = 0u; slot < frame.k; slot++) {
         let key = keys_load(slot, pixel);
         if key == entry.key {
@@ -53,18 +53,18 @@ fn storage_settle(pixel: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    return distinct_cursor(pixel, 0u);
+    return distinct_cascade_cursor(pixel, 0u);
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
-    return distinct_cursor(pixel, cursor + 1u);
+    return distinct_cascade_cursor(pixel, cursor + 1u);
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return entries_load(cursor, pixel, keys_load(cursor, pixel));
 }
 
-fn distinct_cursor(pixel: u32, slot: u32) -> u32 {
+fn distinct_cascade_cursor(pixel: u32, slot: u32) -> u32 {
     if slot < frame.k && keys_load(slot, pixel) != EMPTY {
         return slot;
     }

@@ -1,7 +1,7 @@
-// The S-buffer (Vasilakis & Fudos 2012): one geometry pass counts, a prefix sum turns counts into offsets, a second
-// geometry pass stores. Regions lie one after the other in the order of pixels, so the end of one is the offset of
-// the next. The store pass counts each pixel's count down again, which gives every fragment a place of its own; a
-// fragment that the first pass did not see finds none, and never writes into a neighbour.
+// The S-buffer (Vasilakis & Fudos 2012): one geometry pass counts fragments, a prefix sum turns the counts into
+// offsets, and a second geometry pass stores. Regions are contiguous in the order of pixels, so the end of one is the
+// offset of the next. In the store pass each fragment decrements the pixel's count, which reserves a slot for it. A
+// fragment that the first pass did not count gets no slot, so it never writes into the next region.
 //
 // Memory: entry_words words per fragment, 2 per pixel.
 
@@ -16,13 +16,13 @@ fn storage_size(pixel: u32) -> u32 {
 fn storage_insert(pixel: u32, entry: Packed) {
     let begin = offsets_load(pixel);
     let size = offsets_load(pixel + 1u) - begin;
-    let place = counts_atomic_sub(pixel, 1u) - 1u;
-    // Counting below 0 wraps around to places far beyond any region.
-    if place >= size || begin + place >= frame.fragments {
+    let slot = counts_atomic_sub(pixel, 1u) - 1u;
+    // Decrementing below 0 wraps around to slots far beyond any region.
+    if slot >= size || begin + slot >= frame.fragments {
         on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
-    entries_store(begin + place, entry);
+    entries_store(begin + slot, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {

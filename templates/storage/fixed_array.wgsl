@@ -1,5 +1,5 @@
-// The A-buffer of fixed arrays (FreePipe, Liu et al. 2010; FAB): a counter per pixel gives every fragment a slot of
-// its own, as long as there are any. The counter goes on counting, so that it says how many there would have been.
+// The A-buffer of fixed arrays (FreePipe, Liu et al. 2010; FAB): an atomic counter per pixel reserves a slot for every
+// fragment until the slots are used up. The counter keeps counting, so it also gives the number of fragments.
 //
 // Memory: n * entry_words + 1 words per pixel, for n slots.
 

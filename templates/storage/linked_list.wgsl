@@ -1,7 +1,7 @@
-// A list per pixel through one pool of nodes (Yang et al. 2010). A fragment takes the next node of the pool, then
-// becomes the head of its pixel's list by one exchange. Links are written by their owner alone and read only after
-// the pass, so the lists are whole whatever the order. They are stored plus one: memory cleared to 0 is a frame of
-// empty lists.
+// A list per pixel through one pool of nodes (Yang et al. 2010). A fragment takes the next node of the pool and makes
+// it the head of its pixel's list by one atomic exchange. Only the owner of a link writes it, and links are read only
+// after the pass, so every list is complete for any order of arrival. Links are stored plus one, so that memory
+// cleared to 0 is empty lists.
 //
 // Memory: entry_words + 1 words per fragment, 1 per pixel.
 
@@ -16,7 +16,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    // 0, the empty list, becomes END.
+    // 0, the empty list, wraps around to END.
     return heads_load(pixel) - 1u;
 }
 

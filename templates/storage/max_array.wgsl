@@ -1,15 +1,15 @@
-// The k+-buffer's array (K15 sec. 3.2). Slots k-1, k-2, ... fill first; slot 0 comes last and from then on holds
-// the worst kept fragment. Until it is written its key is EMPTY, which nothing exceeds.
+// The k+-buffer's array (K15 sec. 3.2). Slots k-1, k-2, ... fill first. Slot 0 is written last and then holds the
+// worst kept fragment. Until then its key is EMPTY, which no key exceeds.
 //
-// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. So a fragment may be turned
-// away by reading that one word outside the lock. It holds because slot 0 is written once per insert, straight to
-// the new worst, which is found first; the hole that the new worst leaves is filled afterwards.
+// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. So a fragment can be culled by
+// reading this one word outside the lock. The insert first finds the new worst fragment, writes it to slot 0 once, and
+// then fills the slot that it left.
 //
 // Memory: k * entry_words + 1 words per pixel, and the lock's.
 
 fn storage_reset(pixel: u32) {
     keys_store(0u, pixel, EMPTY);
-    filled_store(pixel, 0u);
+    kept_counts_store(pixel, 0u);
 }
 
 fn storage_bound(pixel: u32) -> u32 {
@@ -17,14 +17,14 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
-    let filled_before = filled_load(pixel);
-    if filled_before + 1u < frame.k {
-        max_array_write(pixel, frame.k - 1u - filled_before, entry);
-        filled_store(pixel, filled_before + 1u);
+    let kept_before = kept_counts_load(pixel);
+    if kept_before + 1u < frame.k {
+        max_array_write(pixel, frame.k - 1u - kept_before, entry);
+        kept_counts_store(pixel, kept_before + 1u);
         return;
     }
-    if filled_before < frame.k {
-        filled_store(pixel, frame.k);
+    if kept_before < frame.k {
+        kept_counts_store(pixel, frame.k);
     }
     let worst = max_array_read(pixel, 0u);
     if !better(entry, worst) {
@@ -32,7 +32,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         return;
     }
     max_array_replace_worst(pixel, entry);
-    // Whoever is handed what was displaced finds the others in place.
+    // After the stores, so that the overflow row reads the kept fragments in their final slots.
     if worst.key != EMPTY {
         on_lost(pixel, worst, DISPLACED);
     }
@@ -47,7 +47,7 @@ fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    return max_array_cursor(frame.k - filled_load(pixel));
+    return max_array_cursor(frame.k - kept_counts_load(pixel));
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
@@ -58,7 +58,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return max_array_read(pixel, cursor);
 }
 
-/// Puts `entry` among slots 1 ... k-1 and the worst of all into slot 0, whose fragment is given up.
+/// Replaces the fragment of slot 0: `entry` joins slots 1 ... k-1, and the worst of them all moves to slot 0.
 fn max_array_replace_worst(pixel: u32, entry: Packed) {
     var worst = entry;
     var worst_slot = 0u;

@@ -1,16 +1,16 @@
-// The k+-buffer's heap (K15 sec. 3.2): for large k, where looking through an array for the new worst costs more than
-// sifting. Until k fragments are in, they fill slots k-1, k-2, ... in any order; the k-th insert makes a heap of them.
-// From then on slot 0 holds the worst kept fragment, and no slot a better one than the two under it.
+// The k+-buffer's heap (K15 sec. 3.2), for large k, where a search through an array for the new worst costs more than
+// sifting. The first fragments fill slots k-1, k-2, ... in any order; the k-th insert builds the heap. From then on
+// slot 0 holds the worst kept fragment, and no slot holds a better one than its two children.
 //
-// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. It is EMPTY until all of the
-// heap is one, and is then written once per insert, straight to the new worst; the hole that this leaves sifts down.
-// (The paper sifts up while the heap fills: slot 0 would hold a key that is no bound yet.)
+// Invariant: at every instant the key of slot 0 is at least the k-th best key so far. It is EMPTY until the heap is
+// built. Each later insert writes it once, with the new worst, and sifts the hole down. (The paper sifts up while the
+// heap fills; slot 0 would then hold a key that is no bound yet.)
 //
 // Memory: k * entry_words + 1 words per pixel, and the lock's.
 
 fn storage_reset(pixel: u32) {
     keys_store(0u, pixel, EMPTY);
-    filled_store(pixel, 0u);
+    kept_counts_store(pixel, 0u);
 }
 
 fn storage_bound(pixel: u32) -> u32 {
@@ -18,15 +18,15 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
-    let filled_before = filled_load(pixel);
-    if filled_before + 1u < frame.k {
-        max_heap_write(pixel, frame.k - 1u - filled_before, entry);
-        filled_store(pixel, filled_before + 1u);
+    let kept_before = kept_counts_load(pixel);
+    if kept_before + 1u < frame.k {
+        max_heap_write(pixel, frame.k - 1u - kept_before, entry);
+        kept_counts_store(pixel, kept_before + 1u);
         return;
     }
-    if filled_before < frame.k {
-        filled_store(pixel, frame.k);
-        // All that have children, the deepest first; slot 0 comes last, with the new fragment.
+    if kept_before < frame.k {
+        kept_counts_store(pixel, frame.k);
+        // Sifts every slot with children, the deepest first; slot 0 follows below, with the new fragment.
         for (var parent = frame.k / 2u; parent > 1u; parent--) {
             max_heap_sift(pixel, parent - 1u, max_heap_read(pixel, parent - 1u));
         }
@@ -37,7 +37,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         return;
     }
     max_heap_sift(pixel, 0u, entry);
-    // Whoever is handed what was displaced finds the others in place.
+    // After the stores, so that the overflow row reads the kept fragments in their final slots.
     if worst.key != EMPTY {
         on_lost(pixel, worst, DISPLACED);
     }
@@ -52,7 +52,7 @@ fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    return max_heap_cursor(frame.k - filled_load(pixel));
+    return max_heap_cursor(frame.k - kept_counts_load(pixel));
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
@@ -63,7 +63,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return max_heap_read(pixel, cursor);
 }
 
-/// Puts `entry` into the heap under `top`, whose own fragment is given up: worse ones move up into the hole.
+/// Replaces the fragment of slot `top` by `entry`: worse fragments below it move up into the hole.
 fn max_heap_sift(pixel: u32, top: u32, entry: Packed) {
     var hole = top;
     var child = 2u * hole + 1u;

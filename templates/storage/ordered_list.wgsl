@@ -1,28 +1,29 @@
-// A list per pixel that is in order at every instant (Yu et al. 2012; K15 sec. 2, KB-LL). A fragment goes along the
-// list from the best on, past all that are no worse, and is linked in there by one compare and exchange. If another
-// came first, it looks again from the same node. Once k nodes are ahead of it, it is dropped.
+// A list per pixel that is sorted at every instant (Yu et al. 2012; K15 sec. 2, KB-LL). A fragment walks the list from
+// the best node past all nodes that are no worse, and inserts itself there by one compare-exchange. If the exchange
+// fails, it continues from the same node. A fragment with k nodes ahead of it is dropped.
 //
-// Invariant: the list only grows, nodes never move, are never freed and never change but for their link; a link is
-// only ever replaced by that of a node which belongs between its two ends. So what is ahead of a fragment stays ahead
-// of it, the k best are the first k nodes at the end, and a link that is seen unchanged is unchanged (no ABA).
+// Invariant: the list only grows; nodes are never moved or freed, and only their links change. A link is only replaced
+// by the link of a node that belongs between its two ends. So nodes ahead of a fragment stay ahead of it, the k best
+// fragments are the first k nodes at the end of the pass, and an unchanged link value means an unchanged list there
+// (no ABA).
 //
-// A node is stored before it is linked, and a link is read before the node: the fences keep it so. Plain WGSL has
-// none in a fragment shader (tier T4). Tries are bounded, because each failure is another's success, but no one
-// promises that one's own turn comes; a fragment that is given up is counted, and its node stays unused.
+// A node is stored before it is linked, and a link is read before the node: fences enforce both. Plain WGSL has no
+// fence in fragment shaders (tier T4). Insertion is lock-free but not wait-free: a failed compare-exchange means
+// another fragment succeeded. Attempts are bounded, and a fragment that times out is counted; its node stays unused.
 //
-// Memory: entry_words + 1 words per fragment that is linked, 1 per pixel. (The papers' two sentinel nodes, 6 words
-// per pixel, are a head of one word here, and a fragment that is dropped takes no node.)
+// Memory: entry_words + 1 words per linked fragment, 1 per pixel. (The papers' two sentinel nodes, 6 words per pixel,
+// are one head word here, and a dropped fragment takes no node.)
 
-/// No node, as links are stored: plus one.
+/// The link to no node; links are node indices plus one.
 const NO_NODE = 0u;
 
-/// Nodes that the resolve pass has read, since it began with the first.
+/// The number of nodes that the resolve pass has read since the first.
 var<private> nodes_read: u32;
-/// Whether it has been at the end: a sort may read the list again, and what is lost is counted once.
+/// Whether the resolve pass has reached the end before. A sort may read the list again, but losses are counted once.
 var<private> end_reached: bool;
 
 fn storage_insert(pixel: u32, entry: Packed) {
-    // A helper lane's exchange has no effect: it would try to the end.
+    // The exchange of a helper invocation has no effect: it would use all attempts.
     if is_helper_lane() {
         return;
     }
@@ -58,12 +59,12 @@ fn storage_insert(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(pixel, entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, TIMED_OUT);
 }
 
 fn storage_first(pixel: u32) -> u32 {
     nodes_read = 1u;
-    // No node becomes END.
+    // NO_NODE wraps around to END.
     return heads_load(pixel) - 1u;
 }
 
@@ -77,7 +78,7 @@ fn storage_next(pixel: u32, cursor: u32) -> u32 {
         return END;
     }
     end_reached = true;
-    // Better fragments came after these were linked.
+    // Better fragments were inserted after these.
     for (var beyond = next; beyond != NO_NODE; beyond = links_load(beyond - 1u)) {
         on_lost(pixel, nodes_load(beyond - 1u), DISPLACED);
     }
@@ -88,7 +89,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return nodes_load(cursor);
 }
 
-/// The node after `previous`, which is the pixel's head where there is no node.
+/// Returns the link after `previous`; for NO_NODE, the head of the pixel's list.
 fn ordered_list_link(pixel: u32, previous: u32) -> u32 {
     if previous == NO_NODE {
         return heads_load(pixel);

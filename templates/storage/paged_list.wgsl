@@ -1,33 +1,33 @@
-// Lists of pages (after Crassin 2010): a page holds PAGE_ENTRIES fragments of one pixel, and pages are linked, not
-// fragments. Every pixel has a first page of its own; a fragment that finds the last page full takes another from the
-// pool, links it back to that page and moves the pixel's cursor there by one compare and exchange. The cursor is the
-// place after the pixel's last fragment, and 0 where there is none.
+// Lists of pages (after Crassin 2010): a page holds PAGE_ENTRIES fragments of one pixel, and pages are linked instead
+// of fragments. The first page of every pixel is reserved for it. A fragment that finds the last page full takes a
+// page from the pool, links it back to that page, and moves the pixel's cursor to it by one compare-exchange. The
+// cursor is one past the slot of the pixel's last fragment; 0 means that the pixel has none.
 //
-// Invariant: places below the cursor in its page are taken, each by the fragment that moved the cursor past it; all
-// pages that the links lead back to are full. A link is written by its page's owner before the cursor leads there, and
-// places are read only after the pass, so no order of writers shows.
+// Invariant: in the cursor's page, each slot below the cursor belongs to the fragment that moved the cursor past it;
+// all pages before it are full. The owner of a page writes its link before the cursor moves to the page, and slots are
+// read only after the pass, so the order of fragments has no effect.
 //
-// Where several fragments find the page full at once, one page is used and the others leak: they are counted, and what
-// they hold is missing from the pool. Printed designs lock the page instead. A fragment keeps its page over retries, so
-// it takes one at most.
+// If several fragments find the page full at the same time, one page is used and the others leak: they are counted,
+// and their slots are missing from the pool. Published designs lock the page instead. A fragment keeps its page over
+// retries, so it takes at most one.
 //
-// Memory: a page per pixel and one for every PAGE_ENTRIES fragments, of PAGE_ENTRIES * entry_words words; 1 word per
-// page of the pool, 1 per pixel. So as many fragments as there is room for fit however they lie, unless pages leak.
+// Memory: a page per pixel and one per PAGE_ENTRIES fragments, each of PAGE_ENTRIES * entry_words words; 1 word per
+// page of the pool, 1 per pixel. So every fragment that the pool is sized for fits, unless pages leak.
 
-/// No page of its own, for a fragment.
+/// The page of a fragment that has not taken one.
 const NO_PAGE = 0xffffffffu;
 
 fn storage_insert(pixel: u32, entry: Packed) {
-    // A helper lane's exchange has no effect: it would try to the end.
+    // The exchange of a helper invocation has no effect: it would use all attempts.
     if is_helper_lane() {
         return;
     }
     var page = NO_PAGE;
     for (var attempt = 0u; attempt < PAGE_TRIES; attempt++) {
         let cursor = cursors_load(pixel);
-        var place = cursor;
+        var slot = cursor;
         if cursor == 0u {
-            place = pixel * PAGE_ENTRIES;
+            slot = pixel * PAGE_ENTRIES;
         } else if cursor % PAGE_ENTRIES == 0u {
             if page == NO_PAGE {
                 page = pool_atomic_add(1u);
@@ -37,22 +37,22 @@ fn storage_insert(pixel: u32, entry: Packed) {
                 return;
             }
             links_store(page, cursor);
-            place = (pixel_count() + page) * PAGE_ENTRIES;
+            slot = (pixel_count() + page) * PAGE_ENTRIES;
         }
-        if cursors_atomic_compare_exchange(pixel, cursor, place + 1u) {
-            entries_store(place, entry);
-            // A page is begun at its first place.
-            if page != NO_PAGE && place % PAGE_ENTRIES != 0u {
+        if cursors_atomic_compare_exchange(pixel, cursor, slot + 1u) {
+            entries_store(slot, entry);
+            // The fragment that takes the first slot of a page uses its own page.
+            if page != NO_PAGE && slot % PAGE_ENTRIES != 0u {
                 count_event(PAGES_LEAKED);
             }
             return;
         }
     }
-    on_lost(pixel, entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, TIMED_OUT);
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    // 0, the empty list, becomes END.
+    // 0, the empty list, wraps around to END.
     return cursors_load(pixel) - 1u;
 }
 

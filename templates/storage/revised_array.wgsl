@@ -1,14 +1,15 @@
-// The revised k+-buffer's array (K15 sec. 3.2.1, Alg. 2, mended). A counter gives the first k-1 fragments slots k-1,
-// k-2, ... 1 of their own, stored without a lock; those after them take turns and keep the worst at slot 0.
+// The revised k+-buffer's array (K15 sec. 3.2.1, Alg. 2, corrected). An atomic counter reserves slots k-1, k-2, ... 1
+// for the first k-1 fragments, which are stored without the lock. Later fragments take the lock and keep the worst at
+// slot 0.
 //
-// As printed, who is inside reads slots that have been given out and not yet stored, and loses fragments. So every
-// slot begins EMPTY, what stands beside a key is stored before the key, and whoever comes after the first k-1 waits,
-// before the lock, until no slot but slot 0 is EMPTY. The wait is bounded, because no API promises that the others
-// ever run again; a fragment that is given up is counted. (The printed index k-counter-2 is mended too.)
+// The published algorithm reads slots inside the lock that are reserved but not stored yet, and loses fragments. So
+// here every slot begins EMPTY, value words are stored before the key, and each fragment after the first k-1 waits,
+// before the lock, until only slot 0 can be EMPTY. The wait is bounded, because no API guarantees forward progress of
+// the other fragments; a fragment that times out is counted. (The published index k-counter-2 is corrected too.)
 //
-// Invariants. Slots 1 ... k-1 are each written by one invocation outside the lock, and by those inside only after
-// they have been seen written. At every instant the key of slot 0 is EMPTY, or at least the k-th best key so far: it
-// is written once per insert, straight to the new worst, which is found first, and not before slots 1 ... k-1 are
+// Invariants. One invocation writes each of slots 1 ... k-1 outside the lock; fragments inside the lock write a slot
+// only after it has been seen written. At every instant the key of slot 0 is EMPTY, or at least the k-th best key so
+// far: an insert first finds the new worst fragment and then writes slot 0 once, and only when slots 1 ... k-1 are
 // full.
 //
 // Memory: k * entry_words + 1 words per pixel, and the lock's.
@@ -25,7 +26,7 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_reserve(pixel: u32, entry: Packed) -> bool {
-    // A helper lane's ticket is worth nothing, and nothing that it stores arrives.
+    // The atomics and stores of a helper invocation have no effect.
     if is_helper_lane() {
         return true;
     }
@@ -37,12 +38,12 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
         memory_fence();
         keys_store(slot, pixel, entry.key);
     }
-    // Apart from the branch above, so that lanes with a slot have stored before others of their wave begin to wait.
+    // A branch of its own, so that lanes with a slot store before other lanes of their wave begin to wait.
     if has_slot {
         return true;
     }
     if !revised_array_wait(pixel) {
-        on_lost(pixel, entry, SPIN_EXHAUSTED);
+        on_lost(pixel, entry, TIMED_OUT);
         return true;
     }
     memory_fence();
@@ -56,7 +57,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         return;
     }
     revised_array_replace_worst(pixel, entry);
-    // Whoever is handed what was displaced finds the others in place.
+    // After the stores, so that the overflow row reads the kept fragments in their final slots.
     if worst.key != EMPTY {
         on_lost(pixel, worst, DISPLACED);
     }
@@ -82,7 +83,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return revised_array_read(pixel, cursor);
 }
 
-/// Waits until slots 1 ... k-1 are written; false: not in time. Slots that have been seen written stay written.
+/// Waits until slots 1 ... k-1 are written and returns false on timeout. Written slots stay written.
 fn revised_array_wait(pixel: u32) -> bool {
     var slot = 1u;
     for (var attempt = 0u; attempt < WAIT_LIMIT; attempt++) {
@@ -96,7 +97,7 @@ fn revised_array_wait(pixel: u32) -> bool {
     return false;
 }
 
-/// Puts `entry` among slots 1 ... k-1 and the worst of all into slot 0, whose fragment is given up.
+/// Replaces the fragment of slot 0: `entry` joins slots 1 ... k-1, and the worst of them all moves to slot 0.
 fn revised_array_replace_worst(pixel: u32, entry: Packed) {
     var worst = entry;
     var worst_slot = 0u;
@@ -122,7 +123,7 @@ fn revised_array_write(pixel: u32, slot: u32, entry: Packed) {
     keys_store(slot, pixel, entry.key);
 }
 
-/// The first slot from `slot` on that holds a fragment.
+/// Returns the first slot from `slot` on that holds a fragment.
 fn revised_array_seek(pixel: u32, slot: u32) -> u32 {
     for (var cursor = slot; cursor < frame.k; cursor++) {
         if keys_load(cursor, pixel) != EMPTY {

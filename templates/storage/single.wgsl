@@ -1,8 +1,8 @@
-// A k-buffer of one entry: the best fragment of a pixel (K15 sec. 4.3, k = 1). Unlike a depth test it takes any
-// criterion and a payload of any size. Memory cleared to ones is a frame of empty pixels: their key is EMPTY, which
-// every fragment beats.
+// A k-buffer of one entry: the best fragment of a pixel (K15 sec. 4.3, k = 1). Unlike a depth test it supports any
+// criterion and a payload of any size. Memory cleared to ones is empty pixels: their key is EMPTY, and every fragment
+// is better.
 //
-// Invariant: the key in memory only ever falls, and is never below the best key so far, so the early cull may read it
+// Invariant: the key in memory only decreases, and is never below the best key so far, so the early cull can read it
 // without the lock.
 //
 // Memory: entry_words words per pixel, and the lock's.

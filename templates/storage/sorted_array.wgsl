@@ -1,11 +1,10 @@
-// The k-buffer (Bavoil et al. 2007): k entries per pixel in the order of their keys. A fragment walks the array
-// from the best entry on; where it is better it takes the slot, and what stood there walks on in its place.
+// The k-buffer (Bavoil et al. 2007): k entries per pixel, sorted by key. A fragment walks the array from the best
+// entry on. At the first worse entry it takes the slot, and that entry and all behind it move on by one slot.
 //
-// Without a critical section two fragments of one pixel may walk at once. Every word is atomic, so that what they
-// read is always some word that was written; but entries can be lost, doubled, torn and left unsorted.
+// Without a critical section two fragments of one pixel may walk the array concurrently. Every word is atomic, so each
+// read returns a word that was written; but entries can be lost, duplicated, torn and left unsorted.
 //
-// Behind the slot that it takes every entry moves on, compared or not: those with equal keys stay in the order in which
-// they came.
+// Entries behind the taken slot move without a comparison, so entries with equal keys stay in the order of arrival.
 //
 // Memory: k * entry_words words per pixel.
 
@@ -65,7 +64,7 @@ fn sorted_array_write(pixel: u32, slot: u32, entry: Packed) {
     keys_store(slot, pixel, entry.key);
 }
 
-/// The first slot from `slot` on that holds a fragment: races can leave holes.
+/// Returns the first slot from `slot` on that holds a fragment: races can leave holes.
 fn sorted_array_seek(pixel: u32, slot: u32) -> u32 {
     for (var cursor = slot; cursor < frame.k; cursor++) {
         if keys_load(cursor, pixel) != EMPTY {

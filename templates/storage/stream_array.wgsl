@@ -1,11 +1,11 @@
-// The k-buffer as a stream (B06 sec. 3, second type; sec. 4.3): k entries per pixel in the order of their keys. Once
-// there are k, every fragment that comes pushes the nearest of all k + 1 out: it is composited, with the next behind
-// it, into the pixel's colour, and leaves. The resolve pass streams what is still there.
+// The k-buffer as a stream (B06 sec. 3, second type; sec. 4.3): k entries per pixel, sorted by key. When the array is
+// full, every new fragment evicts the nearest of all k + 1: it is composited, with the next one behind it, into the
+// pixel's colour. The resolve pass streams the remaining entries.
 //
-// Invariant: inside the critical section the entries are in order without a gap, and `emitted` is the farthest key that
-// has left. A fragment nearer than that is nearer than all entries, leaves at once, and comes out of order: that is
-// counted. So nothing is counted where no fragment comes more than k places late, and where nothing is counted the
-// picture is that of all fragments in order; but for those of equal keys, which may leave in the order of arrival.
+// Invariant: inside the critical section the entries are sorted without a gap, and `emitted` is the farthest key that
+// has left. A fragment nearer than `emitted` is nearer than all entries, leaves at once and is out of order, which is
+// counted. So nothing is counted if no fragment arrives more than k positions late. If nothing is counted, the image
+// is that of all fragments in depth order, except that fragments with equal keys may leave in the order of arrival.
 //
 // Memory: k * entry_words + 5 words per pixel, and the lock's: entries, a colour of four floats, the key that left.
 
@@ -25,7 +25,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         stream_array_emit(pixel, entry, nearest);
         return;
     }
-    // The nearest leaves slot 0, and those before the new fragment move up.
+    // The nearest leaves slot 0, and the entries nearer than the new fragment move up.
     var slot = 0u;
     while slot + 1u < frame.k {
         let next = stream_array_read(pixel, slot + 1u);
@@ -60,7 +60,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return stream_array_read(pixel, cursor);
 }
 
-/// Puts a fragment into its place where not all slots are taken.
+/// Inserts a fragment in order. A slot must be free.
 fn stream_array_add(pixel: u32, entry: Packed) {
     var carried = entry;
     for (var slot = 0u; slot < frame.k; slot++) {
@@ -75,7 +75,7 @@ fn stream_array_add(pixel: u32, entry: Packed) {
     }
 }
 
-/// Composites `front`, which leaves, with `back`, the next behind it.
+/// Composites `front`, which leaves; `back` is the next fragment behind it.
 fn stream_array_emit(pixel: u32, front: Packed, back: Packed) {
     count_event(EMITTED);
     if front.key < emitted_load(pixel) {

@@ -1,11 +1,11 @@
-// The 64-bit multidepth buffer (K15 sec. 2, KB-MDT64). A slot is one word of 64 bits: the key, and below it the one
-// word that a fragment may carry beside it. A cascade of atomic minima brings the k least into order: each slot keeps
-// the lesser of what it holds and what comes, the greater goes on to the next slot. A fragment moves whole, so that
-// none is torn and one pass does. Equal keys are decided by the word below, and equal fragments each take a slot of
-// their own.
+// The 64-bit multidepth buffer (K15 sec. 2, KB-MDT64). A slot is one word of 64 bits: the key in the upper half and at
+// most one value word in the lower half. A cascade of atomic minima sorts the k least: each slot keeps the lesser of
+// its word and the incoming word, and passes the greater to the next slot. A fragment moves as a whole, so none is
+// torn and one pass is enough. The value word breaks ties between equal keys, and each of several equal fragments
+// takes a slot.
 //
-// Invariant: slots only fall, and every fragment that has come is in one slot or carried by one invocation; so slot
-// k-1 is never below the k-th least, and its key may be read at any time.
+// Invariant: slots only decrease, and every fragment that has arrived is in one slot or held by one invocation. So
+// slot k-1 is never below the k-th least, and its key can be read at any time.
 //
 // Memory: 2k words per pixel. A target needs 64-bit atomics that return the old value.
 
@@ -58,7 +58,7 @@ fn wide_cascade_key(wide: u64) -> u32 {
 }
 
 fn wide_cascade_unpack(wide: u64) -> Packed {
-    // The lower word is what is left when the upper one is taken off.
+    // The subtraction removes the upper half and leaves the value word.
     let key = wide_cascade_key(wide);
     return packed_with(packed_of_key(key), 0u, u32(wide - (u64(key) << 32u)));
 }

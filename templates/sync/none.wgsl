@@ -1,5 +1,4 @@
-// No lock. Sound where the storage gives each fragment a place of its own (`slot_counter`); a race where it does
-// not (`none`).
+// No lock. Sound if the storage reserves a slot for each fragment (`slot_counter`); a race otherwise (`none`).
 
 fn sync_store(pixel: u32, entry: Packed) {
     storage_insert(pixel, entry);

@@ -1,14 +1,14 @@
-// One lock word per pixel (K15 sec. 3.2). The number of tries is bounded, because no API promises that the holder
-// ever runs again; a fragment that is given up is counted. Memory: 1 word per pixel.
+// One lock word per pixel (K15 sec. 3.2). The number of tries is bounded, because no API guarantees forward progress
+// of the lock holder; a fragment that times out is counted. Memory: 1 word per pixel.
 //
-// The fences make what the last holder wrote visible to the next. Plain WGSL has none in a fragment shader: there
-// the order rests on what GPUs happen to do (tier T4).
+// The fences make the stores of the last holder visible to the next. Plain WGSL has no fence in fragment shaders: there
+// the order depends on what GPUs happen to do (tier T4).
 
 const FREE = 0u;
 const TAKEN = 1u;
 
 fn sync_store(pixel: u32, entry: Packed) {
-    // A helper lane never sees the lock free: its exchange has no effect.
+    // The exchange of a helper invocation has no effect: it would never see the lock free.
     if is_helper_lane() {
         return;
     }
@@ -21,5 +21,5 @@ fn sync_store(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(pixel, entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, TIMED_OUT);
 }

@@ -1,5 +1,5 @@
-//! What a first build costs: each crate with everything under it, in an empty target folder, as wall time and as time of
-//! all processors. The DSL crates stand beside those that bring naga in; nothing here is asserted.
+//! Measures a first build of each crate with its dependencies, in an empty target folder, as wall time and as time of
+//! all processors. It compares the DSL crates with those that depend on naga, and asserts nothing.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench prints, and fails by panicking")]
 
 use std::path::Path;
@@ -17,7 +17,7 @@ const BUILDS: [(&str, &[&str]); 6] = [
 ];
 
 fn main() {
-    // `cargo test --benches` passes this, and wants nothing measured.
+    // `cargo test --benches` passes this argument; nothing is measured then.
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }

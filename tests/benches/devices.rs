@@ -1,4 +1,4 @@
-//! The CPU device beside the software driver: milliseconds of each pass, of all passes, and of the whole command, as ratios.
+//! Compares the CPU device with the software driver: milliseconds of each pass, of all passes, and of the whole command, as ratios.
 //! The whole command has everything in it: the scene, compilation, opening the device, the PNG.
 //!
 //! `FRAGBUF_SCENE=dragon.ply.gz cargo bench --bench devices` measures a model instead of the generated scenes.
@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-/// Technique, scene, size, what it stands for.
+/// Technique, scene, size, and its description.
 const CASES: [(&str, &str, &str, &str); 5] = [
     ("kplus_array", "builtin:cubes", "512x512", "36 triangles"),
     ("ab_ll", "builtin:cubes", "512x512", "36 triangles"),

@@ -19,7 +19,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 fn generated(variant: &Variant, target: &'static Target, registry: &Registry) -> Generation {
     let request = Request { targets: &[target], form: Form::Program, prefix: "", group: 0 };
-    generate(variant, &request, registry).unwrap_or_else(|faults| panic!("{faults}"))
+    generate(variant, &request, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
 /// The linked texts of a profile: the floor reads the same ones.
@@ -116,7 +116,7 @@ fn ratios(criterion: &mut Criterion) {
     criterion.bench_function("most_visible.fragbuf to a variant", |bencher| {
         bencher.iter(|| load(&described, &[], &[], &registry).variant.unwrap());
     });
-    let own = Description::read(Path::new("examples/own_storage/first_k.fragbuf")).unwrap();
+    let own = Description::read(Path::new("examples/user_storage/first_k.fragbuf")).unwrap();
     criterion.bench_function("first_k.fragbuf with its own storage to a variant", |bencher| {
         bencher.iter(|| load(&own, &[], &[], &registry).variant.unwrap());
     });

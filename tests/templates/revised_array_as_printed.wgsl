@@ -1,10 +1,10 @@
-// K15 Alg. 2 as printed, to be refused by whoever checks interleavings: slots are given out by the counter and stored
-// later, while the holder of the lock may read them. With k = 2 two fragments suffice: the first has slot 1 and has not
-// stored; the second, inside, finds EMPTY there, takes that for the worst, moves it to slot 0 and itself to slot 1,
-// where the first one's late store overwrites it.
+// K15 Alg. 2 as published, which the checker must reject: the counter reserves slots that are stored later, while the
+// lock holder may read them. With k = 2 two fragments suffice. The first has reserved slot 1 and has not stored it. The
+// second, inside the lock, finds EMPTY there, treats it as the worst, moves it to slot 0 and stores itself in slot 1,
+// where the late store of the first overwrites it.
 //
-// The index is mended (the printed k-counter-2 is beyond the array), and every slot begins EMPTY; nothing else is. It
-// takes the place of storage/revised_array, in the same row.
+// The index is corrected (the published k-counter-2 is outside the array), and every slot begins EMPTY; nothing else is
+// changed. It replaces storage/revised_array, in the same row.
 
 fn storage_reset(pixel: u32) {
     for (var slot = 0u; slot < frame.k; slot++) {
@@ -18,7 +18,7 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_reserve(pixel: u32, entry: Packed) -> bool {
-    // A helper lane's ticket is worth nothing, and nothing that it stores arrives.
+    // The atomics and stores of a helper invocation have no effect.
     if is_helper_lane() {
         return true;
     }
@@ -56,7 +56,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return revised_array_read(pixel, cursor);
 }
 
-/// Puts `entry` among slots 1 ... k-1 and the worst of all into slot 0, whose fragment is given up.
+/// Replaces the fragment of slot 0: `entry` joins slots 1 ... k-1, and the worst of them all moves to slot 0.
 fn revised_array_replace_worst(pixel: u32, entry: Packed) {
     var worst = entry;
     var worst_slot = 0u;
@@ -82,7 +82,7 @@ fn revised_array_write(pixel: u32, slot: u32, entry: Packed) {
     keys_store(slot, pixel, entry.key);
 }
 
-/// The first slot from `slot` on that holds a fragment.
+/// Returns the first slot from `slot` on that holds a fragment.
 fn revised_array_seek(pixel: u32, slot: u32) -> u32 {
     for (var cursor = slot; cursor < frame.k; cursor++) {
         if keys_load(cursor, pixel) != EMPTY {

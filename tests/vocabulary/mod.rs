@@ -1,19 +1,18 @@
-//! Rows that are data only: techniques whose templates are not written yet, planned from the vocabulary alone. What does
-//! not fit here would have to change the vocabulary, and so every row after it.
+//! Plans rows without templates. They test whether the vocabulary can express techniques that have no templates, and plans built-in rows with unusual passes.
 
 mod rows;
 
 use fragbuf_codegen::{Plan, plan};
-use fragbuf_model::{Draft, Origin, check};
+use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_templates::Registry;
 
 fn planned(key: &str) -> Plan {
     let registry = rows::registry();
-    let draft = Draft::from_technique(key, &Origin::new(key, 1, 1));
-    let variant = check(&draft, &registry).unwrap_or_else(|faults| panic!("{faults}"));
-    let everything = fragbuf_templates::vocabulary::Capability::ALL;
-    let selection = variant.select(everything).unwrap_or_else(|refusal| panic!("{refusal}"));
-    plan(&variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"))
+    let draft = Draft::from_technique(key, &SourceSpan::new(key, 1, 1));
+    let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let everything = fragbuf_templates::vocabulary::Feature::ALL;
+    let selection = variant.select(everything).unwrap_or_else(|missing| panic!("{missing}"));
+    plan(&variant, &selection, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
 #[test]
@@ -64,7 +63,7 @@ fn a_host_decision_fits() {
 }
 
 #[test]
-fn an_edit_of_an_unknown_pass_is_refused() {
+fn an_edit_of_an_unknown_pass_is_rejected() {
     use fragbuf_templates::vocabulary::{Edit, Row};
     let row = Row {
         template: rows::registry().row("cull", "none").and_then(|row| row.template.clone()),
@@ -72,33 +71,36 @@ fn an_edit_of_an_unknown_pass_is_refused() {
         ..Row::new("cull", "none", "", "")
     };
     let registry = Registry::builtin().with(row);
-    let draft = Draft::from_technique("ab_ll", &Origin::new("ab_ll", 1, 1));
+    let draft = Draft::from_technique("ab_ll", &SourceSpan::new("ab_ll", 1, 1));
     let variant = check(&draft, &registry).unwrap();
-    let selection = variant.select(fragbuf_templates::vocabulary::Capability::ALL).unwrap();
-    let faults = plan(&variant, &selection, &registry).unwrap_err();
-    assert!(faults.to_string().contains("`no_such_pass`"), "{faults}");
+    let selection = variant.select(fragbuf_templates::vocabulary::Feature::ALL).unwrap();
+    let diagnostics = plan(&variant, &selection, &registry).unwrap_err();
+    assert!(diagnostics.to_string().contains("`no_such_pass`"), "{diagnostics}");
 }
 
-/// Rules refuse it first; a row of one's own that states no facts meets the plan.
+/// The rules reject it first; the plan rejects a user row without capabilities.
 #[test]
-fn a_second_depth_test_is_refused() {
-    use fragbuf_templates::vocabulary::{Capability, Row};
+fn a_second_depth_test_is_rejected() {
+    use fragbuf_templates::vocabulary::{Feature, Row};
     let builtin = Registry::builtin();
-    let early = builtin.row("opaque", "early").unwrap().clone();
+    let early = builtin.row("opaque", "early_depth").unwrap().clone();
     for (key, set, pass) in [
         ("z_buffer", ("sort", "none"), "store"),
         ("kb_sr", ("sort", "insertion"), "store"),
         ("kplus_array", ("cull", "occupancy_early"), "store"),
     ] {
         let registry =
-            builtin.clone().with(Row { requires: Vec::new(), needs: vec![Capability::EarlyDepth], ..early.clone() });
-        let origin = Origin::new(key, 1, 1);
-        let mut draft = Draft::from_technique(key, &origin);
-        draft.set("opaque", "early", &origin).unwrap();
-        draft.set(set.0, set.1, &origin).unwrap();
+            builtin.clone().with(Row { requires: Vec::new(), needs: vec![Feature::EarlyDepth], ..early.clone() });
+        let span = SourceSpan::new(key, 1, 1);
+        let mut draft = Draft::from_technique(key, &span);
+        draft.set("opaque", "early_depth", &span).unwrap();
+        draft.set(set.0, set.1, &span).unwrap();
         let variant = check(&draft, &registry).unwrap();
-        let selection = variant.select(Capability::ALL).unwrap();
-        let faults = plan(&variant, &selection, &registry).unwrap_err().to_string();
-        assert!(faults.contains(&format!("`{pass}`, which has a test of its own")), "{key}: {faults}");
+        let selection = variant.select(Feature::ALL).unwrap();
+        let diagnostics = plan(&variant, &selection, &registry).unwrap_err().to_string();
+        assert!(
+            diagnostics.contains(&format!("`{pass}`, which already has a depth or stencil test")),
+            "{key}: {diagnostics}"
+        );
     }
 }

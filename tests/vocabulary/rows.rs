@@ -1,17 +1,21 @@
-//! The rows, and the techniques that choose them.
+//! The rows and their techniques.
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Capability, Compare, DepthState, Edit, Element, Fact, Host, HostCall, HostFunction,
+    Access, Axis, Blend, Capability, Compare, DepthState, Edit, Element, Feature, Host, HostCall, HostFunction,
     KeepDefault, Pass, Repeat, Resource, Row, Step, Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
-    let allocation =
-        Axis { key: "allocation", summary: "who decides how much is kept", default: Some("as_said"), chosen: true };
+    let allocation = Axis {
+        key: "allocation",
+        summary: "how much memory is allocated",
+        default: Some("as_described"),
+        chosen: true,
+    };
     Registry::builtin()
         .with_axis(allocation, "overflow")
-        .with(Row::new("allocation", "as_said", "what the description says", ""))
+        .with(Row::new("allocation", "as_described", "as the description specifies", ""))
         .with(predict_k())
         .with(Row { host: Some(HostFunction(deepest)), ..Row::new("host", "deepest", "the last bin with a pixel", "") })
         .with(front_to_back())
@@ -25,7 +29,7 @@ pub(super) fn registry() -> Registry {
         ))
 }
 
-/// The last bin of a histogram that has a pixel, plus one.
+/// Returns the index of the last non-empty bin of a histogram, plus one.
 fn deepest(call: &HostCall<'_>) -> Vec<u64> {
     let last = call.reads.first().and_then(|bins| bins.iter().rposition(|pixels| *pixels > 0));
     last.map(|bin| bin as u64 + 1).into_iter().collect()
@@ -39,7 +43,7 @@ fn texture(name: &str, format: TextureFormat, summary: &'static str) -> Resource
     Resource::new(name, Element::Texture(format), summary).by("pixel", "pixels")
 }
 
-/// Everitt 2001: each round draws what lies behind the last round's nearest.
+/// Everitt 2001: each iteration draws what is behind the nearest layer of the previous one.
 fn front_to_back() -> Row {
     let mut peel = Pass::geometry("peel", "peel").uses("last_depth", Access::Sampled).target("layer", Blend::Replace);
     peel.state.depth =
@@ -61,13 +65,13 @@ fn front_to_back() -> Row {
             until: Until::NoSamples("peel".to_owned()),
             at_most: "1024".into(),
         })],
-        offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
+        provides: vec![Capability::FixedFunction, Capability::KeepsAll, Capability::Sorted],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
-        ..Row::new("storage", "front_to_back", "one layer a round", "Everitt 2001")
+        ..Row::new("storage", "front_to_back", "one layer per iteration", "Everitt 2001")
     }
 }
 
-/// Bavoil & Myers 2008: nearest and farthest of what is left, by maximum blending of (-z, z).
+/// Bavoil & Myers 2008: nearest and farthest remaining fragments, by maximum blending of (-z, z).
 fn dual() -> Row {
     let first = Pass::geometry("bounds", "bounds").target("last_bounds", Blend::Max);
     let peel = Pass::geometry("peel", "peel_both")
@@ -82,12 +86,12 @@ fn dual() -> Row {
         .target("output", Blend::Over);
     Row {
         resources: vec![
-            texture("last_bounds", TextureFormat::Rg32Float, "(-nearest, farthest) of what is left")
+            texture("last_bounds", TextureFormat::Rg32Float, "(-nearest, farthest) of the remaining fragments")
                 .cleared(0xff80_0000),
-            texture("next_bounds", TextureFormat::Rg32Float, "the same for the next round"),
+            texture("next_bounds", TextureFormat::Rg32Float, "the same for the next iteration"),
             texture("front", TextureFormat::Rgba8Unorm, "layers from the front").cleared(0),
             texture("back", TextureFormat::Rgba8Unorm, "layers from the back").cleared(0),
-            Resource::new("left", Element::Word, "fragments between the bounds, of this round"),
+            Resource::new("left", Element::Word, "fragments between the bounds in this iteration"),
         ],
         steps: vec![
             Step::Pass(first),
@@ -98,15 +102,15 @@ fn dual() -> Row {
                     Step::Pass(peel),
                     Step::Swap("last_bounds".to_owned(), "next_bounds".to_owned()),
                 ],
-                until: Until::Zero("left".to_owned()),
+                until: Until::WordIsZero("left".to_owned()),
                 at_most: "512".into(),
             }),
             Step::Pass(composite),
         ],
-        offers: vec![Fact::FixedFunction, Fact::KeepsAll, Fact::Sorted],
-        needs: vec![Capability::MinMaxBlend],
+        provides: vec![Capability::FixedFunction, Capability::KeepsAll, Capability::Sorted],
+        needs: vec![Feature::MinMaxBlend],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
-        ..Row::new("storage", "dual", "two layers a round", "Bavoil & Myers 2008")
+        ..Row::new("storage", "dual", "two layers per iteration", "Bavoil & Myers 2008")
     }
 }
 
@@ -123,7 +127,7 @@ fn predict_k() -> Row {
             ),
             Edit::After("count".to_owned(), vec![Step::Pass(histogram), Step::Host(decide)]),
         ],
-        requires: vec![Fact::Counted],
+        requires: vec![Capability::Counted],
         ..Row::new("allocation", "predict_k", "k from a budget and a hit ratio", "K15 Eq. 4-7")
     }
 }

@@ -1,12 +1,12 @@
-//! Bindings and accessors: the one place that knows where an element lies, how a pass may touch it and how wide it is.
-//! Templates never index a buffer.
+//! Generates the bindings and accessors of buffers. Only this file computes the index, access and size of an element; templates never
+//! index a buffer.
 
 use std::fmt::Write;
 
 use fragbuf_model::mangled;
 use fragbuf_templates::vocabulary::{Access, Element, Pass, Resource, Use};
 
-use crate::{Linking, Plan, PlanValue, Planned, Profile, SymbolId, Term, is_truth};
+use crate::{Linking, Plan, PlanValue, PlannedResource, Profile, SymbolId, Term, is_boolean};
 
 pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> String {
     let mut text = uniform_blocks(plan, linking);
@@ -26,13 +26,13 @@ fn is_buffer(resource: &Resource, usage: &Use) -> bool {
 }
 
 fn uniform_blocks(plan: &Plan, linking: &Linking) -> String {
-    let mut text = String::from("/// The size of the frame and what else the host sets for it.\nstruct Frame {\n");
+    let mut text = String::from("/// The size of the frame and other values that the host sets.\nstruct Frame {\n");
     for field in &plan.fields {
         let _ = writeln!(text, "    {}: u32,", plan.symbols.get(*field).name);
     }
     let _ = writeln!(text, "}}\n\n@group({}) @binding(0) var<uniform> frame: Frame;\n", linking.group);
     if !plan.variant.uniforms.is_empty() {
-        text.push_str("/// The description's own uniforms.\nstruct Uniforms {\n");
+        text.push_str("/// The uniforms of the description.\nstruct Uniforms {\n");
         for uniform in &plan.variant.uniforms {
             let _ = writeln!(text, "    {}: {},", mangled(&uniform.name.value), uniform.kind.value.wgsl_type());
         }
@@ -41,7 +41,7 @@ fn uniform_blocks(plan: &Plan, linking: &Linking) -> String {
     text
 }
 
-/// How a shader touches a buffer.
+/// The access of a shader to a buffer.
 #[derive(Clone, Copy, PartialEq)]
 enum ShaderAccess {
     Read,
@@ -50,7 +50,7 @@ enum ShaderAccess {
     Atomic,
 }
 
-/// Coherent words are atomic where the target has no coherent buffers.
+/// Returns the access in shaders. Coherent words are atomic if the profile has no coherent buffers.
 fn shader_access(access: Access, profile: Profile) -> ShaderAccess {
     match (access, profile) {
         (Access::Plain, _) => ShaderAccess::Plain,
@@ -60,11 +60,12 @@ fn shader_access(access: Access, profile: Profile) -> ShaderAccess {
     }
 }
 
+/// The accessors of one buffer.
 struct Accessors<'a> {
     plan: &'a Plan,
-    planned: &'a Planned,
+    planned: &'a PlannedResource,
     access: ShaderAccess,
-    /// The atomic accessors that somebody calls.
+    /// The atomic accessors that templates call.
     atomics: &'a [String],
 }
 
@@ -97,16 +98,16 @@ impl Accessors<'_> {
         &self.planned.resource.name
     }
 
-    /// Words of one element.
+    /// Returns the words of an element.
     fn words(&self) -> u64 {
         match self.planned.resource.element {
             Element::Entry => self.plan.layout.entry_words().into(),
-            Element::Beside => self.plan.layout.beside_words().into(),
+            Element::Value => self.plan.layout.value_words().into(),
             _ => 1,
         }
     }
 
-    /// The type of an element that is a number; fragments have none.
+    /// Returns the type of an element that is a number, or `None` for a fragment.
     fn scalar(&self) -> Option<&'static str> {
         match self.planned.resource.element {
             Element::Word => Some("u32"),
@@ -136,17 +137,17 @@ impl Accessors<'_> {
 
     fn load(&self, text: &mut String) {
         let name = self.name();
-        let beside = self.planned.resource.element == Element::Beside;
-        let parameters = self.parameters(if beside { &["key: u32"] } else { &[] });
+        let is_value = self.planned.resource.element == Element::Value;
+        let parameters = self.parameters(if is_value { &["key: u32"] } else { &[] });
         if let Some(scalar) = self.scalar() {
-            let read = self.read(&self.place(None));
+            let read = self.read(&self.reference(None));
             let _ = writeln!(text, "fn {name}_load({parameters}) -> {scalar} {{\n    return {read};\n}}\n");
             return;
         }
         let _ = writeln!(text, "fn {name}_load({parameters}) -> Packed {{");
         let _ = write!(text, "{}", self.base());
-        let words = (0..self.words()).map(|word| self.read(&self.place(Some(word))));
-        let parts: Vec<String> = beside.then(|| "key".to_owned()).into_iter().chain(words).collect();
+        let words = (0..self.words()).map(|word| self.read(&self.reference(Some(word))));
+        let parts: Vec<String> = is_value.then(|| "key".to_owned()).into_iter().chain(words).collect();
         let _ = writeln!(text, "    return Packed({});\n}}\n", parts.join(", "));
     }
 
@@ -154,22 +155,23 @@ impl Accessors<'_> {
         let name = self.name();
         if let Some(scalar) = self.scalar() {
             let parameters = self.parameters(&[&format!("value: {scalar}")]);
-            let write = self.stored(&self.place(None), "value");
+            let write = self.write_statement(&self.reference(None), "value");
             let _ = writeln!(text, "fn {name}_store({parameters}) {{\n    {write}\n}}\n");
             return;
         }
         let _ = writeln!(text, "fn {name}_store({}) {{", self.parameters(&["entry: Packed"]));
         let _ = write!(text, "{}", self.base());
         let key = (self.planned.resource.element == Element::Entry).then_some("key");
-        let beside = self.plan.layout.beside.iter().map(|word| word.field.as_str());
-        for (word, field) in (0..).zip(key.into_iter().chain(beside)) {
-            let _ = writeln!(text, "    {}", self.stored(&self.place(Some(word)), &format!("entry.{field}")));
+        let values = self.plan.layout.values.iter().map(|word| word.field.as_str());
+        for (word, field) in (0..).zip(key.into_iter().chain(values)) {
+            let _ =
+                writeln!(text, "    {}", self.write_statement(&self.reference(Some(word)), &format!("entry.{field}")));
         }
         text.push_str("}\n\n");
     }
 
     fn atomics(&self, text: &mut String) {
-        let (name, place) = (self.name(), self.place(None));
+        let (name, reference) = (self.name(), self.reference(None));
         let scalar = self.scalar().unwrap_or("u32");
         let parameters = self.parameters(&[&format!("value: {scalar}")]);
         for (operation, function) in OPERATIONS {
@@ -177,14 +179,14 @@ impl Accessors<'_> {
                 continue;
             }
             let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> {scalar} {{");
-            let _ = writeln!(text, "    return {function}(&{place}, value);\n}}\n");
+            let _ = writeln!(text, "    return {function}(&{reference}, value);\n}}\n");
         }
         if !self.is_called("compare_exchange") {
             return;
         }
         let parameters = self.parameters(&[&format!("expected: {scalar}"), &format!("value: {scalar}")]);
         let _ = writeln!(text, "fn {name}_atomic_compare_exchange({parameters}) -> bool {{");
-        let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{place}, expected, value).exchanged;\n}}\n");
+        let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{reference}, expected, value).exchanged;\n}}\n");
     }
 
     fn is_called(&self, operation: &str) -> bool {
@@ -199,7 +201,7 @@ impl Accessors<'_> {
         index.chain(more.iter().map(|parameter| (*parameter).to_owned())).collect::<Vec<_>>().join(", ")
     }
 
-    /// `let at = …;` for an element of several words.
+    /// Returns `let at = …;`, the first word of an element of several words.
     fn base(&self) -> String {
         match self.words() {
             0 | 1 => String::new(),
@@ -207,7 +209,8 @@ impl Accessors<'_> {
         }
     }
 
-    fn place(&self, word: Option<u64>) -> String {
+    /// Returns the WGSL reference to a word of an element.
+    fn reference(&self, word: Option<u64>) -> String {
         let name = self.name();
         match word {
             _ if self.is_single_word() => name.to_owned(),
@@ -217,21 +220,21 @@ impl Accessors<'_> {
         }
     }
 
-    /// The element's number: the first index part is slowest.
+    /// Returns the index of an element. The first extent varies slowest.
     fn index(&self) -> String {
         let mut index = String::from("0u");
         let extents = self.planned.resource.extents.iter().zip(&self.planned.lengths);
         for (position, (extent, length)) in extents.enumerate() {
             index = match position {
                 0 => extent.name.clone(),
-                _ => format!("{} * {} + {}", parenthesised(&index), self.written(length.term()), extent.name),
+                _ => format!("{} * {} + {}", parenthesised(&index), self.expression(length.term()), extent.name),
             };
         }
         index
     }
 
-    /// A length as WGSL. Symbols of generation time are numbers, the others the frame's fields.
-    fn written(&self, term: &Term) -> String {
+    /// Returns a length as WGSL. Symbols that are known at generation are numbers, the others are fields of the frame.
+    fn expression(&self, term: &Term) -> String {
         match term {
             Term::Number(number) => format!("{number}u"),
             Term::Symbol(SymbolId::PIXELS) => "pixel_count()".to_owned(),
@@ -239,9 +242,9 @@ impl Accessors<'_> {
                 PlanValue::Number(number) => format!("{number}u"),
                 _ => format!("frame.{}", self.plan.symbols.get(*id).name),
             },
-            Term::Apply(operator, _) if is_truth(operator) => format!("u32{}", self.holding(term)),
+            Term::Apply(operator, _) if is_boolean(operator) => format!("u32{}", self.condition(term)),
             Term::Apply(operator, arguments) => {
-                let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
+                let parts: Vec<String> = arguments.iter().map(|argument| self.expression(argument)).collect();
                 match (*operator, parts.as_slice()) {
                     ("ceil_div", [a, b]) => format!("(({a} + {b} - 1u) / {b})"),
                     ("pow2", [a]) => format!("(1u << {a})"),
@@ -253,29 +256,29 @@ impl Accessors<'_> {
         }
     }
 
-    /// Whether a length holds, in parentheses.
-    fn holding(&self, term: &Term) -> String {
+    /// Returns a term as a condition in parentheses.
+    fn condition(&self, term: &Term) -> String {
         match term {
             Term::Apply(operator @ ("&&" | "||"), arguments) => {
-                let parts: Vec<String> = arguments.iter().map(|argument| self.holding(argument)).collect();
+                let parts: Vec<String> = arguments.iter().map(|argument| self.condition(argument)).collect();
                 format!("({})", parts.join(&format!(" {operator} ")))
             }
-            Term::Apply(operator, arguments) if is_truth(operator) => {
-                let parts: Vec<String> = arguments.iter().map(|argument| self.written(argument)).collect();
+            Term::Apply(operator, arguments) if is_boolean(operator) => {
+                let parts: Vec<String> = arguments.iter().map(|argument| self.expression(argument)).collect();
                 format!("({})", parts.join(&format!(" {operator} ")))
             }
-            _ => format!("({} != 0u)", self.written(term)),
+            _ => format!("({} != 0u)", self.expression(term)),
         }
     }
 
-    fn read(&self, place: &str) -> String {
-        if self.access == ShaderAccess::Atomic { format!("atomicLoad(&{place})") } else { place.to_owned() }
+    fn read(&self, reference: &str) -> String {
+        if self.access == ShaderAccess::Atomic { format!("atomicLoad(&{reference})") } else { reference.to_owned() }
     }
 
-    fn stored(&self, place: &str, value: &str) -> String {
+    fn write_statement(&self, reference: &str, value: &str) -> String {
         match self.access {
-            ShaderAccess::Atomic => format!("atomicStore(&{place}, {value});"),
-            _ => format!("{place} = {value};"),
+            ShaderAccess::Atomic => format!("atomicStore(&{reference}, {value});"),
+            _ => format!("{reference} = {value};"),
         }
     }
 }

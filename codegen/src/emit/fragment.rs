@@ -1,13 +1,13 @@
-//! The payload: what closures see (`Fragment`), what memory holds (`Packed`), the way from one to the other, the two
-//! orders, and the constraints.
+//! Generates the fragment: its attributes (`Fragment`), its words in memory (`Packed`), packing and unpacking, the two orders and the
+//! constraints.
 
 use std::fmt::Write;
 
 use fragbuf_model::Format;
-use fragbuf_templates::vocabulary::Order;
+use fragbuf_templates::vocabulary::TieBreak;
 
 use crate::Plan;
-use crate::layout::{Key, Layout, Source, Word};
+use crate::layout::{Key, Layout, MemberSource, Word};
 
 pub(super) fn text(plan: &Plan) -> String {
     let mut text = String::new();
@@ -25,17 +25,17 @@ pub(super) fn text(plan: &Plan) -> String {
 }
 
 fn structs(plan: &Plan, text: &mut String) {
-    text.push_str("/// What a fragment carries.\nstruct Fragment {\n");
+    text.push_str("/// The attributes of a fragment.\nstruct Fragment {\n");
     for member in &plan.layout.members {
         let _ = writeln!(text, "    {}: {},", member.name, member.format.wgsl_type());
     }
-    text.push_str("}\n\n/// The same as words in memory. Fragments are ordered by `key`, the least is the best: ");
+    text.push_str("}\n\n/// The words of a fragment in memory. The smallest `key` is the best: ");
     text.push_str(match plan.layout.key {
-        Key::Depth => "it holds the bits of the depth.\n",
-        Key::Criterion => "it holds the ordered\n/// bits of the criterion.\n",
+        Key::Depth => "it stores the bits of the depth.\n",
+        Key::Criterion => "it stores the ordered bits\n/// of the criterion.\n",
     });
     text.push_str("struct Packed {\n    key: u32,\n");
-    for word in &plan.layout.beside {
+    for word in &plan.layout.values {
         let _ = writeln!(text, "    {}: u32,", word.field);
     }
     text.push_str("}\n\n");
@@ -46,14 +46,13 @@ fn pack(plan: &Plan, text: &mut String) {
         Key::Depth => "depth_bits(fragment.depth)",
         Key::Criterion => "ordered_bits(user_criterion(fragment))",
     };
-    let beside = plan.layout.beside.iter();
-    let values = beside.map(|word| packed(word, &format!("fragment.{}", word.member.name)));
+    let values = plan.layout.values.iter().map(|word| packed(word, &format!("fragment.{}", word.member.name)));
     let fields = std::iter::once(key.to_owned()).chain(values);
     let _ = writeln!(text, "fn fragment_pack(fragment: Fragment) -> Packed {{");
     let _ = writeln!(text, "    return {};\n}}\n", construct("Packed", fields));
 }
 
-/// A constructor call, one field a line where there are more than two.
+/// Returns a constructor call, with one field per line if there are more than two.
 pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> String {
     let fields: Vec<String> = fields.collect();
     match fields.len() {
@@ -62,12 +61,12 @@ pub(super) fn construct(name: &str, fields: impl Iterator<Item = String>) -> Str
     }
 }
 
-/// A word of a member's `value`.
+/// Returns the expression that packs a word of a member's `value`.
 fn packed(word: &Word, value: &str) -> String {
     match (word.member.format, word.components) {
         (Format::Rgba16, Some(pair)) => format!("pack2x16unorm({value}.{pair})"),
         (_, Some(component)) => format!("bitcast<u32>({value}.{component})"),
-        (Format::F32, None) if word.member.source == Source::Depth => format!("depth_bits({value})"),
+        (Format::F32, None) if word.member.source == MemberSource::Depth => format!("depth_bits({value})"),
         (Format::U32, None) => value.to_owned(),
         (Format::Rgba8, None) => format!("pack4x8unorm({value})"),
         (Format::Octahedral, None) => format!("octahedral_pack({value})"),
@@ -78,25 +77,25 @@ fn packed(word: &Word, value: &str) -> String {
 /// The member that effects blend.
 const COLOR: &str = "color";
 
-/// Another colour for an entry whose other words stay as they are, to the bit.
+/// Generates the function that changes the colour of an entry. The other words keep their bits.
 fn recolored(plan: &Plan, text: &mut String) {
-    let words = plan.layout.beside.iter().filter(|word| word.member.name == COLOR);
+    let words = plan.layout.values.iter().filter(|word| word.member.name == COLOR);
     let changes: String =
         words.map(|word| format!("    changed.{} = {};\n", word.field, packed(word, "color"))).collect();
     let Some(color) = plan.layout.members.iter().find(|member| member.name == COLOR) else { return };
     let kind = color.format.wgsl_type();
     let _ = writeln!(
         text,
-        "/// The same entry with another colour.\nfn packed_recolored(entry: Packed, color: {kind}) -> Packed {{\n    var changed = entry;\n{changes}    return changed;\n}}\n"
+        "/// Returns the entry with another colour.\nfn packed_recolored(entry: Packed, color: {kind}) -> Packed {{\n    var changed = entry;\n{changes}    return changed;\n}}\n"
     );
 }
 
 fn unpack(plan: &Plan, text: &mut String) {
     let fields = plan.layout.members.iter().map(|member| {
-        let fields: Vec<String> = if plan.layout.key == Key::Depth && member.source == Source::Depth {
+        let fields: Vec<String> = if plan.layout.key == Key::Depth && member.source == MemberSource::Depth {
             vec!["entry.key".to_owned()]
         } else {
-            let words = plan.layout.beside.iter().filter(|word| word.member == *member);
+            let words = plan.layout.values.iter().filter(|word| word.member == *member);
             words.map(|word| format!("entry.{}", word.field)).collect()
         };
         unpacked(member.format, &fields)
@@ -119,9 +118,9 @@ fn unpacked(format: Format, fields: &[String]) -> String {
     }
 }
 
-/// Access to the words of an entry by number, for storages that handle them one by one.
+/// Generates access to value words by number, for storages that process them one by one.
 fn words(plan: &Plan, text: &mut String) {
-    let fields: Vec<&str> = plan.layout.beside.iter().map(|word| word.field.as_str()).collect();
+    let fields: Vec<&str> = plan.layout.values.iter().map(|word| word.field.as_str()).collect();
     let cases = |case: &dyn Fn(&str) -> String| -> String {
         (0..)
             .zip(&fields)
@@ -131,7 +130,7 @@ fn words(plan: &Plan, text: &mut String) {
     let read = cases(&|field| format!("return entry.{field};"));
     let _ = writeln!(
         text,
-        "/// A word beside the key, by its number.\nfn packed_word(entry: Packed, word: u32) -> u32 {{\n    switch word {{\n{read}        default: {{\n            return 0u;\n        }}\n    }}\n}}\n"
+        "/// Returns a value word by its number.\nfn packed_word(entry: Packed, word: u32) -> u32 {{\n    switch word {{\n{read}        default: {{\n            return 0u;\n        }}\n    }}\n}}\n"
     );
     let written = cases(&|field| format!("changed.{field} = value;"));
     let _ = writeln!(
@@ -145,26 +144,26 @@ fn words(plan: &Plan, text: &mut String) {
 fn orders(plan: &Plan, text: &mut String) {
     let order = plan.selection.rows.iter().find_map(|selected| selected.row.order);
     let words = match order {
-        Some(Order::Unordered | Order::Submission) => vec!["key"],
-        Some(Order::Payload | Order::Attribute) | None => keep_order(&plan.layout),
+        Some(TieBreak::Unordered | TieBreak::Submission) => vec!["key"],
+        Some(TieBreak::Payload | TieBreak::Attribute) | None => keep_order(&plan.layout),
     };
-    text.push_str("/// Whether `a` is kept rather than `b`: the lesser key");
-    text.push_str(if words.len() > 1 { ", of equal keys the lesser words.\n" } else { ".\n" });
+    text.push_str("/// Tests whether `a` is better than `b`: the smaller key");
+    text.push_str(if words.len() > 1 { ", then the smaller words.\n" } else { ".\n" });
     less("better", &words, text);
-    text.push_str("/// Whether `a` comes before `b` when the kept fragments are resolved: nearest first.\n");
+    text.push_str("/// Tests whether `a` is resolved before `b`: nearest first.\n");
     let nearer = match order {
-        // The storage gives them in the order of submission, and the sort leaves them there.
-        Some(Order::Submission) => vec![plan.layout.depth_field()],
+        // The storage returns them in submission order, and the sort keeps this order.
+        Some(TieBreak::Submission) => vec![plan.layout.depth_field()],
         _ => resolve_order(&plan.layout),
     };
     less("nearer", &nearer, text);
 }
 
 fn keep_order(layout: &Layout) -> Vec<&str> {
-    std::iter::once("key").chain(layout.beside.iter().map(|word| word.field.as_str())).collect()
+    std::iter::once("key").chain(layout.values.iter().map(|word| word.field.as_str())).collect()
 }
 
-/// Depth, then the payload, then the key: a total order on entries.
+/// Returns depth, then the payload, then the key: a total order on entries.
 fn resolve_order(layout: &Layout) -> Vec<&str> {
     let depth = layout.depth_field();
     let others = keep_order(layout).into_iter().filter(|field| *field != depth && *field != "key");
@@ -172,7 +171,7 @@ fn resolve_order(layout: &Layout) -> Vec<&str> {
     std::iter::once(depth).chain(others).chain(key).collect()
 }
 
-/// The lexicographic order over `words`.
+/// Generates the lexicographic order over `words`.
 fn less(name: &str, words: &[&str], text: &mut String) {
     let _ = writeln!(text, "fn {name}(a: Packed, b: Packed) -> bool {{");
     if let Some((last, first)) = words.split_last() {
@@ -187,6 +186,6 @@ fn less(name: &str, words: &[&str], text: &mut String) {
 fn admit(plan: &Plan, text: &mut String) {
     let calls: Vec<String> = plan.variant.constraints.iter().map(|c| format!("{}(fragment)", c.name)).collect();
     let condition = if calls.is_empty() { "true".to_owned() } else { calls.join(" && ") };
-    text.push_str("/// Whether a fragment meets every constraint.\n");
+    text.push_str("/// Tests whether a fragment meets every constraint.\n");
     let _ = writeln!(text, "fn admit(fragment: Fragment) -> bool {{\n    return {condition};\n}}\n");
 }

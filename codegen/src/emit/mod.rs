@@ -1,5 +1,5 @@
-//! What is generated: declarations, the packing of a fragment into words, the two orders over packed fragments, and the
-//! accessors of buffers and textures. Any other statement belongs in a template.
+//! Generates declarations, the packing of a fragment into words, the two orders over packed fragments, and the accessors of buffers
+//! and textures. Any other statement belongs in a template.
 
 mod buffers;
 mod fragment;
@@ -11,8 +11,8 @@ use fragbuf_templates::vocabulary::{Kind, Pass};
 use crate::link::Source;
 use crate::{Linking, Plan};
 
-/// The generated sources of one pass. `atomics` are the atomic accessors that its templates mention; other
-/// declarations that nothing reaches are dropped by the linker.
+/// Returns the generated sources of one pass. `atomics` are the atomic accessors that its templates mention. The linker removes other
+/// unused declarations.
 pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> Vec<Source> {
     let mut sources = vec![
         Source::generated("constants", constants(plan, pass)),
@@ -34,9 +34,9 @@ fn closures(plan: &Plan) -> impl Iterator<Item = &fragbuf_model::UserFunction> {
     variant.criterion.iter().chain(&variant.constraints).chain(&variant.resolve)
 }
 
-/// The plan's constants, but for those of which the pass has its own.
+/// Generates the constants of the pass, and those of the plan that the pass does not replace.
 fn constants(plan: &Plan, pass: &Pass) -> String {
-    let is_own = |name: &String| pass.constants.iter().any(|(own, _)| own == name);
-    let others = plan.constants.iter().filter(|(name, _)| !is_own(name));
+    let is_replaced = |name: &String| pass.constants.iter().any(|(other, _)| other == name);
+    let others = plan.constants.iter().filter(|(name, _)| !is_replaced(name));
     others.chain(&pass.constants).map(|(name, value)| format!("const {name} = {value}u;\n")).collect()
 }

@@ -1,45 +1,46 @@
-//! What a geometry pass draws, in program form: a vertex per position with one input per attribute, carried to the
-//! fragment as it is. Depth is the rasteriser's, and so is what a fragment carries beside its attributes.
+//! Generates the vertex interface of geometry passes in program form: one vertex input per attribute, passed to the fragment stage
+//! unchanged. Depth and implicit attributes come from the rasteriser.
 
 use std::fmt::Write;
 
 use fragbuf_model::Format;
 
 use super::fragment::construct;
-use crate::layout::{Member, Source};
+use crate::layout::{Member, MemberSource};
 use crate::{Linking, Plan};
 
 pub(super) fn text(plan: &Plan, linking: &Linking) -> String {
     let members = &plan.layout.members;
-    let inputs: Vec<&Member> = members.iter().filter(|member| member.source == Source::Vertex).collect();
+    let inputs: Vec<&Member> = members.iter().filter(|member| member.source == MemberSource::Vertex).collect();
     let mut text = String::from("struct Vertex {\n    @location(0) position: vec3<f32>,\n");
     for (location, member) in (1..).zip(&inputs) {
         let _ = writeln!(text, "    @location({location}) {}: {},", input(member), member.format.wgsl_type());
     }
     text.push_str("}\n\n");
-    varyings("Varyings", &inputs, members, &mut text);
+    varyings("FragmentInput", &inputs, members, &mut text);
     if members.iter().any(is_built_in) {
-        // A vertex shader cannot give what the rasteriser finds out.
-        varyings("Placed", &inputs, &[], &mut text);
+        // A vertex shader cannot output fragment built-ins.
+        varyings("VertexOutput", &inputs, &[], &mut text);
     } else {
-        text.push_str("alias Placed = Varyings;\n\n");
+        text.push_str("alias VertexOutput = FragmentInput;\n\n");
     }
     text.push_str("struct Camera {\n    view_projection: mat4x4<f32>,\n}\n\n");
     let _ = writeln!(text, "@group({}) @binding(2) var<uniform> camera: Camera;\n", linking.group);
     let position = "camera.view_projection * vec4<f32>(vertex.position, 1.0)".to_owned();
-    let carried = inputs.iter().map(|member| format!("vertex.{}", input(member)));
-    text.push_str("/// A vertex, where the camera sees it.\nfn vertex_placed(vertex: Vertex) -> Placed {\n");
-    let _ = writeln!(text, "    return {};\n}}\n", construct("Placed", std::iter::once(position).chain(carried)));
+    let attributes = inputs.iter().map(|member| format!("vertex.{}", input(member)));
+    text.push_str("/// Transforms a vertex by the camera.\nfn vertex_output(vertex: Vertex) -> VertexOutput {\n");
+    let _ =
+        writeln!(text, "    return {};\n}}\n", construct("VertexOutput", std::iter::once(position).chain(attributes)));
     let fields = members.iter().map(|member| match member.source {
-        Source::Depth => "varyings.position.z".to_owned(),
-        Source::Vertex | Source::BuiltIn(_) => format!("varyings.{}", input(member)),
+        MemberSource::Depth => "inputs.position.z".to_owned(),
+        MemberSource::Vertex | MemberSource::BuiltIn(_) => format!("inputs.{}", input(member)),
     });
-    text.push_str("fn varyings_fragment(varyings: Varyings) -> Fragment {\n");
+    text.push_str("fn fragment_from_inputs(inputs: FragmentInput) -> Fragment {\n");
     let _ = writeln!(text, "    return {};\n}}", construct("Fragment", fields));
     text
 }
 
-/// What goes from the vertex stage to the fragment stage, and those of `members` that only the latter is given.
+/// Generates a struct of the interface between vertex and fragment stage, with those of `members` that are fragment built-ins.
 fn varyings(name: &str, inputs: &[&Member], members: &[Member], text: &mut String) {
     let _ = writeln!(text, "struct {name} {{\n    @builtin(position) @invariant position: vec4<f32>,");
     for (location, member) in inputs.iter().enumerate() {
@@ -47,7 +48,7 @@ fn varyings(name: &str, inputs: &[&Member], members: &[Member], text: &mut Strin
         let _ = writeln!(text, "    @location({location}){flat} {}: {},", input(member), member.format.wgsl_type());
     }
     for member in members {
-        if let Source::BuiltIn(built_in) = &member.source {
+        if let MemberSource::BuiltIn(built_in) = &member.source {
             let _ = writeln!(text, "    @builtin({built_in}) {}: u32,", member.name);
         }
     }
@@ -55,10 +56,10 @@ fn varyings(name: &str, inputs: &[&Member], members: &[Member], text: &mut Strin
 }
 
 fn is_built_in(member: &Member) -> bool {
-    matches!(member.source, Source::BuiltIn(_))
+    matches!(member.source, MemberSource::BuiltIn(_))
 }
 
-/// The vertex input of a member. The name `position` is the vertex's own.
+/// Returns the vertex input of a member. The name `position` is reserved for the vertex.
 fn input(member: &Member) -> &str {
     if member.name == "position" { "position_" } else { &member.name }
 }

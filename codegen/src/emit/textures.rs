@@ -1,4 +1,4 @@
-//! Textures that a pass reads, and the targets that it writes a fragment's words to. Templates never name a texel.
+//! Generates the textures that a pass reads, and the targets to which it writes the words of a fragment. Templates never name a texel.
 
 use std::fmt::Write;
 
@@ -6,11 +6,11 @@ use fragbuf_templates::vocabulary::{Access, Element, Pass, TextureFormat};
 
 use super::buffers::capitalised;
 use super::fragment::construct;
-use crate::{Linking, Plan, Planned};
+use crate::{Linking, Plan, PlannedResource};
 
 pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking) -> String {
     let mut text = String::new();
-    let is_sampled = |planned: &&Planned| {
+    let is_sampled = |planned: &&PlannedResource| {
         pass.uses.iter().any(|u| u.resource == planned.resource.name && u.access == Access::Sampled)
     };
     let textures: Vec<Texture<'_>> = plan.resources.iter().filter(is_sampled).filter_map(Texture::of).collect();
@@ -20,20 +20,20 @@ pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking) -> String {
             texture.load(&mut text);
         }
     }
-    let mut wholes: Vec<&str> = textures.iter().filter_map(|t| Some(t.planned.part.as_ref()?.of.as_str())).collect();
-    wholes.dedup();
-    for whole in wholes {
-        entry(whole, &textures, &mut text);
+    let mut resources: Vec<&str> = textures.iter().filter_map(|t| Some(t.planned.part.as_ref()?.of.as_str())).collect();
+    resources.dedup();
+    for resource in resources {
+        entry_load(resource, &textures, &mut text);
     }
-    keys_alone(plan, &mut text);
+    key_only_loads(plan, &mut text);
     targets(plan, pass, &mut text);
     text
 }
 
-/// `X_load` where a fragment has no words beside its key, and so no texture.
-fn keys_alone(plan: &Plan, text: &mut String) {
+/// Generates `X_load` of a fragment without value words, and so without textures.
+fn key_only_loads(plan: &Plan, text: &mut String) {
     for resource in plan.selection.rows.iter().flat_map(|selected| &selected.row.resources) {
-        if plan.layout.beside.is_empty() && matches!(resource.element, Element::BesideTextures(_)) {
+        if plan.layout.values.is_empty() && matches!(resource.element, Element::ValueTextures(_)) {
             let name = &resource.name;
             let index: String = resource.extents.iter().map(|extent| format!("{}: u32, ", extent.name)).collect();
             let _ = writeln!(text, "fn {name}_load({index}key: u32) -> Packed {{\n    return Packed(key);\n}}\n");
@@ -41,14 +41,14 @@ fn keys_alone(plan: &Plan, text: &mut String) {
     }
 }
 
-/// A texture as a pass reads it.
+/// A texture that a pass reads.
 struct Texture<'a> {
-    planned: &'a Planned,
+    planned: &'a PlannedResource,
     format: TextureFormat,
 }
 
 impl<'a> Texture<'a> {
-    fn of(planned: &'a Planned) -> Option<Self> {
+    fn of(planned: &'a PlannedResource) -> Option<Self> {
         match planned.resource.element {
             Element::Texture(format) => Some(Texture { planned, format }),
             _ => None,
@@ -77,7 +77,7 @@ impl<'a> Texture<'a> {
         let _ = writeln!(text, "@group({group}) @binding({binding}) var {}: {kind};\n", self.name());
     }
 
-    /// `X_load`, of what a texel holds.
+    /// Generates `X_load`, which returns the value of a texel.
     fn load(&self, text: &mut String) {
         let kind = match self.format {
             TextureFormat::R32Uint | TextureFormat::Rg16Uint | TextureFormat::Depth24PlusStencil8 => "u32",
@@ -94,10 +94,10 @@ impl<'a> Texture<'a> {
         index.collect::<Vec<_>>().join(", ")
     }
 
-    /// What the texel at `place` holds.
-    fn read(&self, place: &str) -> String {
+    /// Returns the expression that loads a texel.
+    fn read(&self, position: &str) -> String {
         let last = if self.is_multisampled() { SAMPLE } else { "0" };
-        let texel = format!("textureLoad({}, {place}, {last})", self.name());
+        let texel = format!("textureLoad({}, {position}, {last})", self.name());
         match self.format {
             TextureFormat::Depth32Float | TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float => texel,
             TextureFormat::R32Uint | TextureFormat::R32Float | TextureFormat::Depth24PlusStencil8 => {
@@ -109,34 +109,34 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// The extent of a texture's samples.
+/// The name of the extent that counts samples.
 const SAMPLE: &str = "sample";
 
-/// `X_load` of a fragment whose words are in a texture each. Without its key it is given that.
-fn entry(whole: &str, textures: &[Texture<'_>], text: &mut String) {
+/// Generates `X_load` of a fragment with one texture per word. The key is a parameter if no texture stores it.
+fn entry_load(resource: &str, textures: &[Texture<'_>], text: &mut String) {
     let field =
-        |texture: &Texture<'_>| texture.planned.part.as_ref().filter(|p| p.of == whole).map(|p| p.field.clone());
+        |texture: &Texture<'_>| texture.planned.part.as_ref().filter(|p| p.of == resource).map(|p| p.field.clone());
     let parts: Vec<&Texture<'_>> = textures.iter().filter(|texture| field(texture).is_some()).collect();
     let Some(first) = parts.first() else { return };
     let has_key = field(first).as_deref() == Some("key");
     let key = if has_key { "" } else { ", key: u32" };
-    let _ = writeln!(text, "fn {whole}_load({}{key}) -> Packed {{", first.parameters());
+    let _ = writeln!(text, "fn {resource}_load({}{key}) -> Packed {{", first.parameters());
     text.push_str("    let texel = pixel_texel(pixel);\n");
     let words = parts.iter().map(|texture| texture.read("texel"));
     let words = (!has_key).then(|| "key".to_owned()).into_iter().chain(words);
     let _ = writeln!(text, "    return {};\n}}\n", construct("Packed", words));
 }
 
-/// The outputs of a pass whose targets are a fragment's words.
+/// Generates the outputs of a pass whose targets store the words of a fragment.
 fn targets(plan: &Plan, pass: &Pass, text: &mut String) {
     let parts = pass.state.targets.iter().filter_map(|target| {
         let planned = plan.resource(&target.resource)?;
         Some((planned.part.as_ref()?.field.as_str(), Texture::of(planned)?.format))
     });
     let parts: Vec<(&str, TextureFormat)> = parts.collect();
-    text.push_str("/// The words of a fragment, one for each target.\nstruct Targets {\n");
+    text.push_str("/// The words of a fragment, one per target.\nstruct Targets {\n");
     if parts.is_empty() {
-        // A structure has a member; without a target at its location, what it holds goes nowhere.
+        // A struct needs a member. No target is at its location, so its value is not written.
         text.push_str("    @location(0) nothing: u32,\n");
     }
     for (location, (field, format)) in parts.iter().enumerate() {

@@ -1,55 +1,55 @@
-//! The steps of a plan, lowered: loops become their beginnings and ends, names become resources and symbols, exchanges
-//! become parities.
+//! Lowers the steps of a plan: loops become begin and end commands, names become resources and symbols, exchanges become
+//! parities.
 //!
-//! In: the steps, edited by every row, and the resources and symbols of the plan. Out: passes and commands. What cannot be
-//! run is refused here, once for every device: two shapes exchanged, a loop that waits for what there is not.
+//! Input: the steps after the edits of all rows, and the resources and symbols of the plan. Output: passes and commands. Steps that
+//! cannot run are rejected here, once for every device: an exchange of two shapes, a loop that waits for a pass that does not exist.
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Element, Formula, Host, Kind, Objects, Pass, Repeat, SetBy, Step, Until, When, Words,
+    BindingTime, Element, Formula, Host, Kind, Objects, Pass, Repeat, Setter, Step, Until, Words,
 };
 
 use super::{Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range};
-use crate::{Planned, Quantity, ResourceId, SymbolId, SymbolTable};
+use crate::{PlannedResource, Quantity, ResourceId, SymbolId, SymbolTable};
 
-/// Passes in the order of the steps, and what is done with them.
-pub(crate) struct Lowered {
+/// The passes in the order of the steps, and the frame that runs them.
+pub(crate) struct LoweredSteps {
     pub(crate) passes: Vec<PlannedPass>,
     pub(crate) frame: LoweredFrame,
 }
 
-/// Exchanges that one frame may have: a mask of them is one word.
-const MOST_EXCHANGES: usize = 32;
+/// The maximum number of exchanges of a frame, so that their bit mask fits in one word.
+const MAX_EXCHANGES: usize = 32;
 
-/// What steps are lowered with.
-pub(crate) struct Context<'a> {
-    pub(crate) resources: &'a [Planned],
-    /// The resources as rows name them: one that is a texture per word may have none of them in a plan.
+/// The parts of a plan that lowering reads.
+pub(crate) struct LoweringContext<'a> {
+    pub(crate) resources: &'a [PlannedResource],
+    /// The names that rows declare. A resource with a texture per word may have no texture in a plan.
     pub(crate) declared: &'a [String],
     pub(crate) symbols: &'a SymbolTable,
     pub(crate) registry: &'a Registry,
 }
 
-/// Lowers the steps of a plan. `Err`: what they say cannot be run, in words.
-pub(crate) fn lower(steps: &[Step], context: &Context<'_>) -> Result<Lowered, String> {
+/// Lowers the steps of a plan. Fails with a message if they cannot run.
+pub(crate) fn lower(steps: &[Step], context: &LoweringContext<'_>) -> Result<LoweredSteps, String> {
     let mut lowering = Lowering { context, passes: Vec::new(), frame: LoweredFrame::default(), parities: Vec::new() };
     exchanges(steps, context, &mut lowering.frame.exchanges)?;
     lowering.parities = vec![Parity::default(); lowering.frame.exchanges.len()];
     lowering.steps(steps, Nesting::Outside)?;
-    lowering.queries()?;
+    lowering.check_queries()?;
     lowering.frame.end = lowering.parities;
-    Ok(Lowered { passes: lowering.passes, frame: lowering.frame })
+    Ok(LoweredSteps { passes: lowering.passes, frame: lowering.frame })
 }
 
 struct Lowering<'a> {
-    context: &'a Context<'a>,
+    context: &'a LoweringContext<'a>,
     passes: Vec<PlannedPass>,
     frame: LoweredFrame,
-    /// Whether the resources of each exchange stand for each other at the next command.
+    /// For each exchange, its parity at the next command.
     parities: Vec<Parity>,
 }
 
-/// Whether steps are in a loop, whose parities hold for the loops inside of it too.
+/// Whether steps are inside a loop. The outermost loop computes the parities of the loops inside it.
 #[derive(Clone, Copy, PartialEq)]
 enum Nesting {
     Outside,
@@ -70,12 +70,12 @@ impl Lowering<'_> {
                     }
                 }
                 Step::Copy { from, to } => {
-                    for (from, to) in self.context.alike(from, to)? {
+                    for (from, to) in self.context.pairs(from, to)? {
                         self.push(Action::Copy { from, to });
                     }
                 }
                 Step::Swap(a, b) => {
-                    for (a, _) in self.context.alike(a, b)? {
+                    for (a, _) in self.context.pairs(a, b)? {
                         if let Some(number) = self.frame.exchange_of(a) {
                             self.parities[number].is_odd = !self.parities[number].is_odd;
                         }
@@ -96,50 +96,52 @@ impl Lowering<'_> {
     }
 
     fn repeat(&mut self, repeat: &Repeat, nesting: Nesting) -> Result<(), String> {
-        let at_most = match &repeat.until {
+        let limit = match &repeat.until {
             Until::Times(times) => times,
             _ => &repeat.at_most,
         };
-        let at_most = self.context.quantity(at_most, "the iterations of a loop")?;
-        if at_most.mentions(SymbolId::ITERATION) {
-            return Err("the bound of a loop rests on `iteration`: it must be known before any loop begins".to_owned());
+        let max_iterations = self.context.quantity(limit, "the iterations of a loop")?;
+        if max_iterations.mentions(SymbolId::ITERATION) {
+            return Err(
+                "the limit of a loop depends on `iteration`: it must be known before any loop begins".to_owned()
+            );
         }
         let id = LoopId(self.frame.loops.len());
         let begin = self.frame.commands.len();
-        // The pass that a query names may come later in the body: it is looked up once all are known.
+        // The pass that a query names can follow in the body, so it is resolved after the body.
         let until = match &repeat.until {
             Until::Times(_) | Until::NoSamples(_) => LoopUntil::Times,
-            Until::Zero(name) => LoopUntil::WordIsZero(self.context.buffer(name)?),
+            Until::WordIsZero(name) => LoopUntil::WordIsZero(self.context.buffer(name)?),
         };
-        self.frame.loops.push(Loop { begin, end: begin, until, at_most });
+        self.frame.loops.push(Loop { begin, end: begin, until, max_iterations });
         if nesting == Nesting::Outside {
-            self.flip_by_iterations(&repeat.body, id)?;
+            self.add_loops_to_parities(&repeat.body, id)?;
         }
         let before = self.parities.clone();
         self.push(Action::Loop(id));
         let first = self.passes.len();
         self.steps(&repeat.body, Nesting::Inside)?;
-        if let Until::NoSamples(anchor) = &repeat.until {
-            let query = self.passes.iter().skip(first).position(|pass| pass.anchor == *anchor);
+        if let Until::NoSamples(name) = &repeat.until {
+            let query = self.passes.iter().skip(first).position(|pass| pass.name == *name);
             let query = query
-                .ok_or_else(|| format!("a loop waits for the samples of `{anchor}`, which is no pass of its body"))?;
+                .ok_or_else(|| format!("a loop waits for the samples of `{name}`, which is not a pass of its body"))?;
             self.frame.loops[id.0].until = LoopUntil::NoSamples(PassId(first + query));
         }
         self.frame.loops[id.0].end = self.frame.commands.len();
         self.push(Action::LoopEnd(id));
-        // What the body has exchanged counts as a finished iteration from here on.
+        // The exchanges of the body are counted by the finished iterations of the loop.
         self.parities = before;
         Ok(())
     }
 
-    /// Marks the loops, `first` and those in its body, that exchange a pair an odd number of times in each iteration.
-    fn flip_by_iterations(&mut self, body: &[Step], first: LoopId) -> Result<(), String> {
+    /// Adds to each parity the loops, `first` and those in its body, that exchange the pair an odd number of times per iteration.
+    fn add_loops_to_parities(&mut self, body: &[Step], first: LoopId) -> Result<(), String> {
         let mut bodies = vec![body];
         nested(body, &mut bodies);
         for (number, body) in bodies.into_iter().enumerate() {
             for step in body {
                 let Step::Swap(a, b) = step else { continue };
-                for (a, _) in self.context.alike(a, b)? {
+                for (a, _) in self.context.pairs(a, b)? {
                     let Some(parity) = self.frame.exchange_of(a).and_then(|at| self.parities.get_mut(at)) else {
                         continue;
                     };
@@ -154,15 +156,15 @@ impl Lowering<'_> {
         Ok(())
     }
 
-    /// Visible objects are those of a query that there is.
-    fn queries(&self) -> Result<(), String> {
+    /// Checks that each pass that draws visible objects names a query of the frame.
+    fn check_queries(&self) -> Result<(), String> {
         for pass in &self.passes {
             let Objects::Visible(query) = &pass.objects else { continue };
-            let is_query = |other: &&PlannedPass| other.anchor == *query && other.objects == Objects::Boxes;
+            let is_query = |other: &&PlannedPass| other.name == *query && other.objects == Objects::Boxes;
             if self.passes.iter().find(is_query).is_none() {
                 return Err(format!(
-                    "pass `{}` draws the objects visible in `{query}`, which is no pass that asks for boxes",
-                    pass.anchor
+                    "pass `{}` draws the objects visible in `{query}`, which is not a pass that draws boxes",
+                    pass.name
                 ));
             }
         }
@@ -170,7 +172,7 @@ impl Lowering<'_> {
     }
 }
 
-/// The bodies of the loops in `steps`, in the order of their beginnings.
+/// Appends the bodies of the loops in `steps`, in the order in which the loops begin.
 fn nested<'s>(steps: &'s [Step], bodies: &mut Vec<&'s [Step]>) {
     for step in steps {
         if let Step::Repeat(repeat) = step {
@@ -180,12 +182,12 @@ fn nested<'s>(steps: &'s [Step], bodies: &mut Vec<&'s [Step]>) {
     }
 }
 
-/// Every pair that some step exchanges, once.
-fn exchanges(steps: &[Step], context: &Context<'_>, pairs: &mut Vec<[ResourceId; 2]>) -> Result<(), String> {
+/// Appends every pair that a step exchanges, once.
+fn exchanges(steps: &[Step], context: &LoweringContext<'_>, pairs: &mut Vec<[ResourceId; 2]>) -> Result<(), String> {
     for step in steps {
         match step {
             Step::Swap(a, b) => {
-                for (a, b) in context.alike(a, b)? {
+                for (a, b) in context.pairs(a, b)? {
                     let pair = [a.min(b), a.max(b)];
                     if pairs.contains(&pair) {
                         continue;
@@ -193,7 +195,7 @@ fn exchanges(steps: &[Step], context: &Context<'_>, pairs: &mut Vec<[ResourceId;
                     if a == b || pairs.iter().any(|known| known.contains(&a) || known.contains(&b)) {
                         let name = |id: ResourceId| &context.resources[id.0].resource.name;
                         return Err(format!(
-                            "`{}` and `{}` are exchanged, and one of them with another too",
+                            "`{}` and `{}` are exchanged: a resource can be exchanged with only one other resource",
                             name(a),
                             name(b)
                         ));
@@ -205,16 +207,16 @@ fn exchanges(steps: &[Step], context: &Context<'_>, pairs: &mut Vec<[ResourceId;
             _ => {}
         }
     }
-    if pairs.len() > MOST_EXCHANGES {
-        return Err(format!("{} pairs of resources are exchanged, and there may be {MOST_EXCHANGES}", pairs.len()));
+    if pairs.len() > MAX_EXCHANGES {
+        return Err(format!("{} pairs of resources are exchanged; the limit is {MAX_EXCHANGES}", pairs.len()));
     }
     Ok(())
 }
 
-impl Context<'_> {
-    /// The resources of a name: one, or the textures that hold a word of the entry each.
+impl LoweringContext<'_> {
+    /// Returns the resources of a name: one, or one texture per word of the entry.
     fn resources(&self, name: &str) -> Result<Vec<ResourceId>, String> {
-        let is_named = |planned: &Planned| {
+        let is_named = |planned: &PlannedResource| {
             planned.resource.name == name || planned.part.as_ref().is_some_and(|part| part.of == name)
         };
         let found = self.resources.iter().enumerate().filter(|(_, planned)| is_named(planned));
@@ -227,7 +229,7 @@ impl Context<'_> {
         }
     }
 
-    /// The buffer of a name.
+    /// Returns the buffer of a name.
     fn buffer(&self, name: &str) -> Result<ResourceId, String> {
         let is_texture = |id: &ResourceId| matches!(self.resources[id.0].resource.element, Element::Texture(_));
         match self.resources(name)?.as_slice() {
@@ -236,16 +238,16 @@ impl Context<'_> {
         }
     }
 
-    /// Resources of two names, in pairs of one shape.
-    fn alike(&self, a: &str, b: &str) -> Result<Vec<(ResourceId, ResourceId)>, String> {
+    /// Returns the resources of two names in pairs. Fails if the shapes of a pair differ.
+    fn pairs(&self, a: &str, b: &str) -> Result<Vec<(ResourceId, ResourceId)>, String> {
         let (of_a, of_b) = (self.resources(a)?, self.resources(b)?);
         let shape = |id: &ResourceId| {
             let planned = &self.resources[id.0];
             (planned.resource.element, planned.words.formula())
         };
-        let is_alike = of_a.len() == of_b.len() && of_a.iter().zip(&of_b).all(|(a, b)| shape(a) == shape(b));
-        if !is_alike {
-            return Err(format!("`{a}` takes the place of `{b}`, which has another shape"));
+        let is_same = of_a.len() == of_b.len() && of_a.iter().zip(&of_b).all(|(a, b)| shape(a) == shape(b));
+        if !is_same {
+            return Err(format!("`{a}` cannot be copied to or exchanged with `{b}`: their shapes differ"));
         }
         Ok(of_a.into_iter().zip(of_b).collect())
     }
@@ -255,7 +257,7 @@ impl Context<'_> {
     }
 
     fn pass(&self, pass: &Pass) -> Result<PlannedPass, String> {
-        let what = format!("pass `{}`", pass.anchor);
+        let what = format!("pass `{}`", pass.name);
         let groups = match &pass.kind {
             Kind::Compute { groups } => {
                 groups.iter().map(|formula| self.quantity(formula, &what)).collect::<Result<_, _>>()?
@@ -271,15 +273,16 @@ impl Context<'_> {
         Ok(PlannedPass { pass: pass.clone(), groups, reference, samples })
     }
 
-    /// A formula for samples, which pipelines are made with.
+    /// Compiles a formula over samples. Pipelines are created from its value.
     fn samples(&self, formula: &Formula, what: &str) -> Result<Quantity, String> {
         let quantity = self.quantity(formula, what)?;
-        let is_known = |id: &SymbolId| *id == SymbolId::ITERATION || self.symbols.get(*id).when <= When::Generation;
+        let is_known =
+            |id: &SymbolId| *id == SymbolId::ITERATION || self.symbols.get(*id).when <= BindingTime::Generation;
         match quantity.symbols().into_iter().find(|id| !is_known(id)) {
             None => Ok(quantity),
             Some(id) => {
                 let name = &self.symbols.get(id).name;
-                Err(format!("{what}: its samples rest on `{name}`, which has no value when pipelines are made"))
+                Err(format!("{what}: its samples depend on `{name}`, which has no value when pipelines are created"))
             }
         }
     }
@@ -289,7 +292,7 @@ impl Context<'_> {
         let function = self.registry.row("host", name).and_then(|row| row.host);
         let function =
             function.ok_or_else(|| format!("a step calls the host function `{name}`, which does not exist"))?;
-        let what = format!("what the host function `{name}` reads");
+        let what = format!("a read of the host function `{name}`");
         let mut reads = Vec::new();
         for read in &host.reads {
             let resource = self.buffer(&read.resource)?;
@@ -301,10 +304,10 @@ impl Context<'_> {
         }
         let mut sets = Vec::new();
         for symbol in &host.sets {
-            let id = self.symbols.find(symbol).filter(|id| self.symbols.get(*id).set_by == SetBy::Host);
-            sets.push(
-                id.ok_or_else(|| format!("the host function `{name}` sets `{symbol}`, which a host does not set"))?,
-            );
+            let id = self.symbols.find(symbol).filter(|id| self.symbols.get(*id).set_by == Setter::Host);
+            sets.push(id.ok_or_else(|| {
+                format!("the host function `{name}` sets `{symbol}`, which host functions cannot set")
+            })?);
         }
         Ok(Decision { name: name.clone(), function, reads, sets })
     }

@@ -1,42 +1,42 @@
-//! Where each name is declared: a hash map with a hash that is fast on short names.
+//! Maps names to declarations: a hash map with a hash function that is fast on short names.
 //!
-//! In: names of one program. Out: numbers of declarations. Order is never taken from it.
+//! Input: names of one program. Output: numbers of declarations. No output depends on the order of the map.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// Numbers by name.
-pub(super) type Index<'a> = HashMap<&'a str, usize, BuildHasherDefault<Words>>;
+/// The numbers of declarations by name.
+pub(super) type Index<'a> = HashMap<&'a str, usize, BuildHasherDefault<NameHasher>>;
 
-/// A hash that takes a name eight bytes at a time: rotate, xor, multiply. Names come from templates and from the user's own
+/// A hash function that processes eight bytes at a time: rotate, xor, multiply. Names come from templates and from the user's
 /// description, so no input is hostile.
 #[derive(Default)]
-pub(super) struct Words(u64);
+pub(super) struct NameHasher(u64);
 
-/// An odd number without a pattern: the golden ratio's fraction.
+/// An odd number without a pattern: the fraction of the golden ratio.
 const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
 
-impl Words {
+impl NameHasher {
     fn add(&mut self, word: u64) {
         self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(FACTOR);
     }
 }
 
-impl Hasher for Words {
+impl Hasher for NameHasher {
     fn write(&mut self, bytes: &[u8]) {
         let (words, rest) = bytes.as_chunks::<8>();
         words.iter().for_each(|word| self.add(u64::from_le_bytes(*word)));
-        // The length is in it, so that names of different lengths never read alike.
+        // The length is included, so that a short rest differs from one with leading zeros.
         let last = rest.iter().fold(bytes.len() as u64, |last, byte| last << 8 | u64::from(*byte));
         self.add(last);
     }
 
     fn write_u8(&mut self, _: u8) {
-        // What ends a string; its length is in the hash already.
+        // The byte that ends a string. The hash already includes the length.
     }
 
     fn finish(&self) -> u64 {
-        // A product's high bits depend on all of its factors' bits, its low ones do not.
+        // The high bits of a product depend on all bits of its factors; the low bits do not.
         self.0 ^ self.0 >> 32
     }
 }

@@ -1,38 +1,39 @@
-//! Texts that live as long as the program does, so that what is found out about one is found out once: templates anyway, and
-//! the generated and renamed texts that passes, profiles and variants share.
+//! Interns generated and renamed sources that passes, profiles and variants share, so that each is parsed once. Templates are static
+//! already.
 //!
-//! In: a text. Out: the same, kept if there is room. The room is bounded: a program that makes ever new texts keeps the
-//! first ones and reads the others each time.
+//! Input: a source. Output: the same source, interned unless the limit is reached. A program with more sources interns the first
+//! ones and parses the others each time.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::hash::BuildHasherDefault;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-use super::index::Words;
+use super::index::NameHasher;
 
-/// Bytes that are kept at most: all techniques for all targets take 125 kB.
-const MOST: usize = 2 << 20;
+/// The limit in bytes. All techniques for all targets take 125 kB.
+const MAX_BYTES: usize = 2 << 20;
 
+/// The interned sources.
 #[derive(Default)]
-struct Texts {
-    texts: HashSet<&'static str, BuildHasherDefault<Words>>,
+struct Interner {
+    sources: HashSet<&'static str, BuildHasherDefault<NameHasher>>,
     bytes: usize,
 }
 
-/// The text, and for as long as the program lives if there is room.
+/// Returns the source with a static lifetime, or owned if the limit is reached.
 pub(super) fn interned(text: String) -> Cow<'static, str> {
-    static TEXTS: LazyLock<Mutex<Texts>> = LazyLock::new(Mutex::default);
-    // A thread that panicked while holding the lock left only whole entries behind.
-    let mut kept = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = kept.texts.get(text.as_str()) {
+    static INTERNER: LazyLock<Mutex<Interner>> = LazyLock::new(Mutex::default);
+    // A thread that panicked while holding the lock left only complete entries.
+    let mut interner = INTERNER.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = interner.sources.get(text.as_str()) {
         return Cow::Borrowed(known);
     }
-    if kept.bytes + text.len() > MOST {
+    if interner.bytes + text.len() > MAX_BYTES {
         return Cow::Owned(text);
     }
-    kept.bytes += text.len();
+    interner.bytes += text.len();
     let text: &'static str = Box::leak(text.into_boxed_str());
-    kept.texts.insert(text);
+    interner.sources.insert(text);
     Cow::Borrowed(text)
 }

@@ -1,41 +1,41 @@
-//! The declarations of a WGSL text: name, extent with the comments and attributes above it, and the names it mentions.
+//! Splits a WGSL source into declarations: the name, the text with the comments and attributes above it, and the names that it mentions.
 
 use super::fold::{Substitute, has_effects, substitute};
 use super::index::Index;
 use super::token::{Token, TokenKind, tokens};
-use crate::program::Stage;
+use crate::entry_point::Stage;
 
-/// One declaration at module scope.
+/// A declaration at module scope.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Item<'a> {
     pub(crate) name: &'a str,
     /// From the first comment or attribute above to the closing brace or semicolon.
     pub(crate) text: &'a str,
-    /// Line of `text`'s first line in its source, from 1.
+    /// The line of the start of `text` in its source, from 1.
     pub(crate) first_line: usize,
-    /// Line of the name, from 1.
+    /// The line of the name, from 1.
     pub(crate) declared_line: usize,
-    /// Every name in it, members apart.
+    /// Every name in it except members.
     pub(crate) mentions: Vec<&'a str>,
-    /// For an entry point.
+    /// The stage of an entry point.
     pub(crate) stage: Option<Stage>,
-    /// Whether it claims a binding.
+    /// Whether it has a binding.
     pub(crate) is_bound: bool,
-    /// One line: set next to its like, without a blank line between.
+    /// Whether it is a single line. No blank line is written between single lines.
     pub(crate) is_short: bool,
     pub(super) is_function: bool,
     pub(super) is_variable: bool,
-    /// What replaces its uses.
+    /// The replacement of its uses.
     pub(super) substitute: Substitute,
-    /// For a function: whether it compares a constant with a number or another constant.
+    /// Whether it is a function that compares a constant with a number or another constant.
     pub(super) compares_constants: bool,
-    /// For a function: whether it does more than return a value; what it calls is left out.
+    /// Whether it is a function with side effects, ignoring those of the functions that it calls.
     pub(super) has_effects: bool,
-    /// `var<private>` of an array without an initial value.
+    /// Whether it is a `var<private>` of an array without an initial value.
     pub(super) is_private_array: bool,
 }
 
-/// The declarations in order. `Err`: the line of something that is none.
+/// Parses the declarations in order. Fails with the line of the first text that is not a declaration.
 pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
     let (code, comments) = tokens(text);
     let (mut items, mut names) = (Vec::new(), Names::for_tokens(code.len()));
@@ -72,56 +72,56 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Item<'_>>, usize> {
     Ok(items)
 }
 
-/// The comment at the top of a file that a blank line parts from the first declaration, with that blank line.
-pub(crate) fn head(text: &str) -> String {
+/// Returns the header of a file: the comment at its top, if a blank line follows, with the blank line.
+pub(crate) fn file_header(text: &str) -> String {
     let mut length = 0;
     for line in text.split_inclusive('\n') {
         if !line.starts_with("//") || line.starts_with("///") {
-            let is_apart = length > 0 && line == "\n";
-            return if is_apart { text[..length + 1].to_owned() } else { String::new() };
+            let is_separate = length > 0 && line == "\n";
+            return if is_separate { text[..length + 1].to_owned() } else { String::new() };
         }
         length += line.len();
     }
     String::new()
 }
 
-/// A head up to the first line without words, and the blank line behind it.
-pub(super) fn first_paragraph(head: &str) -> String {
-    match head.split_once("\n//\n") {
+/// Returns the first paragraph of a header, and a blank line.
+pub(super) fn first_paragraph(header: &str) -> String {
+    match header.split_once("\n//\n") {
         Some((first, _)) => format!("{first}\n\n"),
-        None => head.to_owned(),
+        None => header.to_owned(),
     }
 }
 
-/// A function's name and what stands between it and the body.
+/// The name of a function, and its parameters and result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Head<'a> {
+pub(crate) struct FunctionSignature<'a> {
     pub(crate) name: &'a str,
     /// `(a: u32) -> u32`, as written.
     pub(crate) signature: &'a str,
-    /// Byte offset of the name.
-    pub(crate) at: usize,
+    /// The byte offset of the name.
+    pub(crate) offset: usize,
 }
 
-/// The heads of all functions, in order.
-pub(crate) fn heads(text: &str) -> Vec<Head<'_>> {
+/// Returns the signatures of all functions, in order.
+pub(crate) fn signatures(text: &str) -> Vec<FunctionSignature<'_>> {
     let (code, _) = tokens(text);
-    let mut heads = Vec::new();
+    let mut signatures = Vec::new();
     for (index, pair) in code.windows(2).enumerate() {
-        let [word, name] = pair else { continue };
-        if word.text != "fn" || name.kind != TokenKind::Name {
+        let [keyword, name] = pair else { continue };
+        if keyword.text != "fn" || name.kind != TokenKind::Name {
             continue;
         }
         let rest = code[index + 2..].iter().take_while(|token| token.text != "{");
         let start = name.at + name.text.len();
         let end = rest.last().map_or(start, |last| last.at + last.text.len());
-        heads.push(Head { name: name.text, signature: &text[start..end], at: name.at });
+        signatures.push(FunctionSignature { name: name.text, signature: &text[start..end], offset: name.at });
     }
-    heads
+    signatures
 }
 
-/// A signature by its types alone: `(u32,u32)->Packed`, whatever its parameters are called.
-pub(crate) fn shape(signature: &str) -> String {
+/// Returns the types of a signature without the names of its parameters: `(u32,u32)->Packed`.
+pub(crate) fn types(signature: &str) -> String {
     let (code, _) = tokens(signature);
     let is_name = |index: usize| code.get(index + 1).is_some_and(|next: &Token<'_>| next.text == ":");
     let kept = code.iter().enumerate().filter(|(index, token)| {
@@ -131,7 +131,7 @@ pub(crate) fn shape(signature: &str) -> String {
     kept.map(|(_, token)| token.text).collect()
 }
 
-/// Everything that a text declares.
+/// Returns the names of all declarations of a source.
 pub(crate) fn names(text: &str) -> Vec<String> {
     parse(text).unwrap_or_default().into_iter().map(|item| item.name.to_owned()).collect()
 }
@@ -144,7 +144,7 @@ fn newlines(text: &str) -> usize {
     text.bytes().filter(|byte| *byte == b'\n').count()
 }
 
-/// Up to the brace that closes the first one opened, or the semicolon before any.
+/// Returns the number of tokens up to the brace that closes the first open brace, or up to a semicolon before any brace.
 fn item_length(tokens: &[Token<'_>]) -> Option<usize> {
     let mut depth = 0usize;
     for (index, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Sign) {
@@ -168,7 +168,7 @@ fn is_keyword(token: &Token<'_>) -> bool {
     matches!(token.text, "fn" | "struct" | "const" | "var" | "alias" | "override")
 }
 
-/// The name behind a keyword.
+/// Returns the name after a keyword.
 fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<Token<'a>> {
     let mut rest = tokens.iter();
     let mut next = rest.next()?;
@@ -181,7 +181,7 @@ fn declared_name<'a>(tokens: &[Token<'a>]) -> Option<Token<'a>> {
     (next.kind == TokenKind::Name).then_some(*next)
 }
 
-/// Where the comments begin that stand directly above `at`, line by line.
+/// Returns the start of the line comments directly above `at`.
 fn with_comments(text: &str, comments: &[Token<'_>], at: usize) -> usize {
     let before = comments.partition_point(|comment| comment.at < at);
     let mut start = at;
@@ -195,7 +195,7 @@ fn with_comments(text: &str, comments: &[Token<'_>], at: usize) -> usize {
     start
 }
 
-/// Whether a constant's name stands next to a comparison, and another or a number on its other side.
+/// Tests whether tokens compare the name of a constant with another such name or a number.
 fn compares_constants(tokens: &[Token<'_>]) -> bool {
     let is_constant = |token: &Token<'_>| !token.text.bytes().any(|byte| byte.is_ascii_lowercase());
     let is_named = |token: &Token<'_>| token.kind == TokenKind::Name && is_constant(token);
@@ -213,19 +213,19 @@ fn is_private_array(tokens: &[Token<'_>]) -> bool {
     is_private && is_at(6, "array") && !tokens.iter().any(|token| token.text == "=")
 }
 
-/// Every name in a text, members apart, once each and in order.
+/// Returns every name in a source except members, once each and in order.
 pub(super) fn mentions<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     Names::for_tokens(tokens.len()).of(tokens)
 }
 
-/// Names that were met, each with the number of the declaration that mentioned it last: one table serves a whole file.
+/// Names, each with the number of the last declaration that mentions it. One table serves a whole file.
 struct Names<'a> {
     last: Index<'a>,
     declaration: usize,
 }
 
 impl<'a> Names<'a> {
-    /// With room for as many names as so many tokens mostly have.
+    /// Creates a table with capacity for the names that `count` tokens usually contain.
     fn for_tokens(count: usize) -> Self {
         Names { last: Index::with_capacity_and_hasher(count / 6, Default::default()), declaration: 0 }
     }
@@ -261,23 +261,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn items_carry_their_comments_and_attributes() {
-        let text = "// Head of the file.\n\n// Of a.\n/// Doc.\n@group(0) @binding(1)\nvar<storage, read> a: array<u32>;\nconst B = 2u;\n";
+    fn items_include_their_comments_and_attributes() {
+        let text = "// Header of the file.\n\n// Of a.\n/// Doc.\n@group(0) @binding(1)\nvar<storage, read> a: array<u32>;\nconst B = 2u;\n";
         let items = parse(text).unwrap();
         let names: Vec<&str> = items.iter().map(|item| item.name).collect();
         assert_eq!(names, ["a", "B"]);
         assert!(items[0].text.starts_with("// Of a.\n/// Doc.\n@group"));
         assert_eq!(items[0].first_line, 3);
-        assert_eq!(head(text), "// Head of the file.\n\n");
+        assert_eq!(file_header(text), "// Header of the file.\n\n");
     }
 
     #[test]
-    fn members_are_no_mentions_and_heads_are_found() {
+    fn members_are_not_mentions_and_signatures_are_found() {
         let text = "fn f(a: u32) -> u32 {\n    return b.c;\n}\n";
         assert_eq!(parse(text).unwrap()[0].mentions, ["a", "b", "f", "fn", "return", "u32"]);
-        assert_eq!(heads(text), [Head { name: "f", signature: "(a: u32) -> u32", at: 3 }]);
-        assert_eq!(shape("( b : u32, ) -> u32"), shape("(a: u32) -> u32"));
-        assert_ne!(shape("(a: u32, b: u32)"), shape("(a: u32)"));
+        assert_eq!(signatures(text), [FunctionSignature { name: "f", signature: "(a: u32) -> u32", offset: 3 }]);
+        assert_eq!(types("( b : u32, ) -> u32"), types("(a: u32) -> u32"));
+        assert_ne!(types("(a: u32, b: u32)"), types("(a: u32)"));
         assert_eq!(parse("const A = 1u;\n}\n"), Err(2));
     }
 }

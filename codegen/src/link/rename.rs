@@ -1,16 +1,16 @@
-//! New names for old, on tokens: members of structs keep theirs.
+//! Renames tokens. Members of structs keep their names.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::token::{Token, TokenKind, tokens};
 
-/// Old names to new.
+/// A map from old names to new ones.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Renames(BTreeMap<String, String>);
 
 impl Renames {
-    /// `prefix` before each of `names`; nothing where there is no prefix.
+    /// Creates renames that put `prefix` before each of `names`; none if the prefix is empty.
     pub(crate) fn prefix<'a>(prefix: &str, names: impl Iterator<Item = &'a str>) -> Self {
         if prefix.is_empty() {
             return Renames::default();
@@ -18,12 +18,12 @@ impl Renames {
         Renames(names.map(|name| (name.to_owned(), format!("{prefix}{name}"))).collect())
     }
 
-    /// Adds one.
+    /// Adds a rename.
     pub(crate) fn insert(&mut self, old: impl Into<String>, new: impl Into<String>) {
         self.0.insert(old.into(), new.into());
     }
 
-    /// `text` with the new names.
+    /// Returns `text` with the new names.
     pub(crate) fn apply<'a>(&self, text: &'a str) -> Cow<'a, str> {
         if self.0.is_empty() {
             return Cow::Borrowed(text);
@@ -52,7 +52,7 @@ impl Renames {
     }
 }
 
-/// After a dot, or declared in a struct.
+/// Tests whether a name follows a dot or is declared in a struct.
 fn is_member(all: &[Token<'_>], index: usize, in_struct: bool) -> bool {
     let after_dot = index > 0 && all[index - 1].text == ".";
     let declared = in_struct && all.get(index + 1).is_some_and(|next| next.text == ":");

@@ -1,14 +1,15 @@
-//! WGSL as a row of tokens, each with its place. Enough to find declarations and names; naga does the rest.
+//! Splits WGSL into tokens with byte offsets. They suffice to find declarations and names; naga checks the rest.
 
-/// One token.
+/// A token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Token<'a> {
     pub(super) text: &'a str,
-    /// Byte offset of the first byte.
+    /// The byte offset.
     pub(super) at: usize,
     pub(super) kind: TokenKind,
 }
 
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
     Name,
@@ -16,7 +17,7 @@ pub(super) enum TokenKind {
     Sign,
 }
 
-/// The tokens of `text`, and its comments apart; block comments nest, as in WGSL.
+/// Returns the tokens of `text`, and its comments. Block comments nest, as in WGSL.
 pub(super) fn tokens(text: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
     let bytes = text.as_bytes();
     let mut tokens = Vec::with_capacity(text.len() / 4);
@@ -45,7 +46,7 @@ pub(super) fn tokens(text: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
     (tokens, comments)
 }
 
-/// What a token's first byte says of it.
+/// The class of the first byte of a token.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Class {
     Space,
@@ -54,7 +55,7 @@ enum Class {
     Sign,
 }
 
-/// By table: a text is mostly read byte by byte.
+/// Looks up the class of a byte. A table is faster than comparisons.
 fn class(byte: u8) -> Class {
     const CLASSES: [Class; 256] = {
         let mut classes = [Class::Sign; 256];

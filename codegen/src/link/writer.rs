@@ -1,26 +1,28 @@
-//! Writes linked declarations under a banner per source, and records where every line comes from.
+//! Writes linked declarations under a banner per source, and records the origin of every line.
 //!
-//! In: items in order. Out: the text and its line map.
+//! Input: items in order. Output: the source and its source map.
 
-use super::fold::Folded;
-use super::{Item, Renames, Source};
-use crate::program::{LineMap, LineOrigin};
+use super::folded::FoldedFunction;
+use super::item::Item;
+use super::rename::Renames;
+use super::source::Source;
+use crate::source_map::{LineSource, SourceMap};
 
-/// A text so far, and where its lines come from.
+/// The source that has been written, and its source map.
 pub(super) struct Writer {
     pub(super) text: String,
-    pub(super) lines: LineMap,
+    pub(super) lines: SourceMap,
 }
 
 impl Writer {
-    /// The name of a source, and its head.
-    pub(super) fn banner(&mut self, source: &Source, head: &str) {
+    /// Writes the name and the header of a source.
+    pub(super) fn banner(&mut self, source: &Source, header: &str) {
         self.blank_line();
         self.text.push_str("// ---- ");
         self.text.push_str(&source.name);
         self.text.push('\n');
-        self.text.push_str(head);
-        self.lines.skip(1 + head.lines().count());
+        self.text.push_str(header);
+        self.lines.skip(1 + header.lines().count());
     }
 
     fn blank_line(&mut self) {
@@ -30,8 +32,8 @@ impl Writer {
         }
     }
 
-    /// An item after folding.
-    pub(super) fn folded(&mut self, source: &Source, item: &Item<'_>, folded: &Folded, prefixed: &Renames) {
+    /// Writes an item after folding.
+    pub(super) fn folded(&mut self, source: &Source, item: &Item<'_>, folded: &FoldedFunction, prefixed: &Renames) {
         self.blank_line();
         self.text.push_str(&prefixed.apply(&folded.text));
         self.text.push('\n');
@@ -39,13 +41,13 @@ impl Writer {
         while let Some(&first) = rest.first() {
             let length = (first..).zip(rest).take_while(|(expected, line)| expected == *line).count();
             let line = item.first_line + first;
-            self.lines.run(length, LineOrigin::Source { name: source.name.clone(), line });
+            self.lines.run(length, LineSource::Source { name: source.name.clone(), line });
             rest = &rest[length..];
         }
         self.blank_line();
     }
 
-    /// An item as it was written.
+    /// Writes an item as it is in its source.
     pub(super) fn item(&mut self, source: &Source, item: &Item<'_>, prefixed: &Renames) {
         if !item.is_short {
             self.blank_line();
@@ -53,13 +55,13 @@ impl Writer {
         self.text.push_str(&prefixed.apply(item.text));
         self.text.push('\n');
         let lines = item.text.lines().count();
-        match &source.origins {
-            Some(origins) => {
-                for at in (item.first_line..).take(lines) {
-                    self.lines.run(1, origins.get(at - 1).cloned().unwrap_or(LineOrigin::None));
+        match &source.spans {
+            Some(spans) => {
+                for line in (item.first_line..).take(lines) {
+                    self.lines.run(1, spans.get(line - 1).cloned().unwrap_or(LineSource::None));
                 }
             }
-            None => self.lines.run(lines, LineOrigin::Source { name: source.name.clone(), line: item.first_line }),
+            None => self.lines.run(lines, LineSource::Source { name: source.name.clone(), line: item.first_line }),
         }
         if !item.is_short {
             self.blank_line();

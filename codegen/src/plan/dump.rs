@@ -1,10 +1,10 @@
-//! The plan as a person reads it, and as snapshots keep it.
+//! Prints a plan for people and snapshots.
 
 use std::fmt::{Display, Formatter, Result, Write};
 
-use fragbuf_templates::vocabulary::{Access, Coverage, Element, Init, Kind, Life, Loads, Objects, Pass, State};
+use fragbuf_templates::vocabulary::{Access, Coverage, Element, Init, Kind, Lifetime, Loads, Objects, Pass, State};
 
-use super::{Plan, Planned};
+use super::{Plan, PlannedResource};
 use crate::{Action, Command, Decision, Key, Loop, LoopUntil, Parity, Range, ResourceId};
 
 impl Display for Plan {
@@ -16,19 +16,19 @@ impl Display for Plan {
             None => writeln!(f, "  keep       all")?,
         }
         let key = if self.layout.key == Key::Depth { "depth" } else { "criterion" };
-        let beside: Vec<&str> = self.layout.beside.iter().map(|word| word.field.as_str()).collect();
-        writeln!(f, "  entry      {} words: key ({key}) {}", self.layout.entry_words(), beside.join(" "))?;
+        let values: Vec<&str> = self.layout.values.iter().map(|word| word.field.as_str()).collect();
+        writeln!(f, "  entry      {} words: key ({key}) {}", self.layout.entry_words(), values.join(" "))?;
         writeln!(f, "  axes       {}", self.selection.describe())?;
         writeln!(f, "  memory     {} words per pixel", self.words_per_pixel)?;
         for definition in self.selection.rows.iter().flat_map(|selected| &selected.row.defines) {
             writeln!(f, "  {:<10} {}", definition.symbol, definition.value)?;
         }
         writeln!(f, "  geometry   {} passes", self.geometry_passes)?;
-        writeln!(f, "  soundness  {}", word(&self.soundness))?;
-        let requires: Vec<&str> = self.requires.iter().map(|capability| capability.meaning()).collect();
+        writeln!(f, "  soundness  {}", kebab_case(&self.soundness))?;
+        let requires: Vec<&str> = self.requires.iter().map(|feature| feature.meaning()).collect();
         writeln!(f, "  requires   {}", if requires.is_empty() { "nothing".to_owned() } else { requires.join("; ") })?;
         for hazard in &self.hazards {
-            writeln!(f, "  hazard     {}: {}", hazard.name, hazard.what)?;
+            writeln!(f, "  hazard     {}: {}", hazard.name, hazard.description)?;
         }
         let constants: Vec<String> = self.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         writeln!(f, "  constants  {}", constants.join(", "))?;
@@ -43,8 +43,8 @@ impl Display for Plan {
     }
 }
 
-/// A `Debug` name in the words of the language: `DecrementClamp` → `decrement-clamp`.
-fn word(value: &dyn std::fmt::Debug) -> String {
+/// Returns a `Debug` name in kebab case: `DecrementClamp` → `decrement-clamp`.
+fn kebab_case(value: &dyn std::fmt::Debug) -> String {
     let mut text = String::new();
     for letter in format!("{value:?}").chars() {
         if letter.is_ascii_uppercase() && !text.is_empty() {
@@ -55,20 +55,20 @@ fn word(value: &dyn std::fmt::Debug) -> String {
     text
 }
 
-fn resource(planned: &Planned) -> String {
+fn resource(planned: &PlannedResource) -> String {
     let resource = &planned.resource;
     let element = match resource.element {
-        Element::Texture(format) => format!("texture {}", word(&format)),
-        element => word(&element),
+        Element::Texture(format) => format!("texture {}", kebab_case(&format)),
+        element => kebab_case(&element),
     };
     let index: String = resource.extents.iter().map(|e| format!("[{} < {}]", e.name, e.length)).collect();
     let init = match resource.init {
         Init::Clear(value) => format!("clear {value:#x}"),
-        init => word(&init),
+        init => kebab_case(&init),
     };
-    let life = if resource.life == Life::Persistent { ", persistent" } else { "" };
+    let lifetime = if resource.lifetime == Lifetime::Persistent { ", persistent" } else { "" };
     let (binding, name, words) = (planned.binding, &resource.name, &planned.words);
-    format!("@{binding} {name}{index}: {element} ({words} words), {init}{life} — {}", resource.summary)
+    format!("@{binding} {name}{index}: {element} ({words} words), {init}{lifetime} — {}", resource.summary)
 }
 
 fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {
@@ -86,27 +86,27 @@ fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {
             Action::Copy { from, to } => writeln!(f, "{indent}copy {} to {}", name(*from), name(*to))?,
             Action::Host(decision) => writeln!(f, "{indent}host {}", decision.summary(plan))?,
             Action::Loop(id) => {
-                let Loop { until, at_most, .. } = &plan.frame.loops[id.0];
+                let Loop { until, max_iterations, .. } = &plan.frame.loops[id.0];
                 let until = match until {
                     LoopUntil::Times => "repeat".to_owned(),
-                    LoopUntil::WordIsZero(word) => format!("repeat until {} is 0,", name(*word)),
+                    LoopUntil::WordIsZero(buffer) => format!("repeat until {} is 0,", name(*buffer)),
                     LoopUntil::NoSamples(pass) => {
-                        format!("repeat until no sample passes in {},", plan.passes[pass.0].anchor)
+                        format!("repeat until no sample passes in {},", plan.passes[pass.0].name)
                     }
                 };
                 let most = if until == "repeat" { "" } else { "at most " };
-                writeln!(f, "{indent}{until} {most}{at_most} times")?;
+                writeln!(f, "{indent}{until} {most}{max_iterations} times")?;
                 depth += 1;
             }
             Action::LoopEnd(_) => {}
         }
-        flipped(f, command, plan, &indent)?;
+        exchanged(f, command, plan, &indent)?;
     }
     Ok(())
 }
 
 impl Decision {
-    /// What it reads and sets, in a line.
+    /// Returns one line that lists what it reads and sets.
     pub fn summary(&self, plan: &Plan) -> String {
         let read = |range: &Range| {
             let name = &plan.resources[range.resource.0].resource.name;
@@ -121,12 +121,12 @@ impl Decision {
     }
 }
 
-/// Which resources stand for each other at a command that uses them.
-fn flipped(f: &mut Formatter<'_>, command: &Command, plan: &Plan, indent: &str) -> Result {
+/// Writes which resources are exchanged at a command that uses them.
+fn exchanged(f: &mut Formatter<'_>, command: &Command, plan: &Plan, indent: &str) -> Result {
     for ([a, b], parity) in plan.frame.exchanges.iter().zip(&command.parities) {
         let names = [a, b].map(|id| &plan.resources[id.0].resource.name);
         let uses = match &command.action {
-            Action::Pass(id) => plan.passes[id.0].touches(names[0]) || plan.passes[id.0].touches(names[1]),
+            Action::Pass(id) => plan.passes[id.0].accesses(names[0]) || plan.passes[id.0].accesses(names[1]),
             Action::Clear { resource, .. } => [a, b].contains(&resource),
             Action::Copy { from, to } => [a, b].iter().any(|id| [from, to].contains(id)),
             _ => false,
@@ -148,19 +148,22 @@ fn flipped(f: &mut Formatter<'_>, command: &Command, plan: &Plan, indent: &str) 
 fn pass_lines(f: &mut Formatter<'_>, pass: &Pass, indent: &str) -> Result {
     let kind = match &pass.kind {
         Kind::Compute { groups: [x, y, z] } => format!("compute {x} × {y} × {z}"),
-        kind => word(kind),
+        kind => kebab_case(kind),
     };
-    writeln!(f, "{indent}pass {}: {kind}, skeleton {}", pass.anchor, pass.skeleton)?;
-    let roles: Vec<String> = pass
-        .roles
+    writeln!(f, "{indent}pass {}: {kind}, skeleton {}", pass.name, pass.skeleton)?;
+    let implementations: Vec<String> = pass
+        .implementations
         .iter()
-        .map(|role| match role.instance.name == role.contract {
-            true => format!("{}={}", role.contract, role.instance.row),
-            false => format!("{}={} as {}", role.contract, role.instance.row, role.instance.name),
+        .map(|implementation| match implementation.instance.name == implementation.contract {
+            true => format!("{}={}", implementation.contract, implementation.instance.row),
+            false => format!(
+                "{}={} as {}",
+                implementation.contract, implementation.instance.row, implementation.instance.name
+            ),
         })
         .collect();
-    if !roles.is_empty() {
-        writeln!(f, "{indent}  roles {}", roles.join(" "))?;
+    if !implementations.is_empty() {
+        writeln!(f, "{indent}  implementations {}", implementations.join(" "))?;
     }
     let constants: Vec<String> = pass.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if !constants.is_empty() {
@@ -171,7 +174,7 @@ fn pass_lines(f: &mut Formatter<'_>, pass: &Pass, indent: &str) -> Result {
         .iter()
         .map(|usage| {
             let loads = if usage.loads == Loads::Rechecked { " (loads rechecked)" } else { "" };
-            let access = if usage.access == Access::Read { "read".to_owned() } else { word(&usage.access) };
+            let access = if usage.access == Access::Read { "read".to_owned() } else { kebab_case(&usage.access) };
             format!("{} {access}{loads}", usage.resource)
         })
         .collect();
@@ -192,15 +195,16 @@ fn state(state: &State) -> String {
     if let Some(depth) = &state.depth {
         let write = if depth.write { ", write" } else { "" };
         let early = if depth.early { ", early" } else { "" };
-        let _ = write!(text, "depth {} {}{write}{early}; ", depth.resource, word(&depth.compare));
+        let _ = write!(text, "depth {} {}{write}{early}; ", depth.resource, kebab_case(&depth.compare));
     }
     if let Some(stencil) = &state.stencil {
-        let (compare, pass, fail) = (word(&stencil.compare), word(&stencil.pass), word(&stencil.fail));
+        let (compare, pass, fail) =
+            (kebab_case(&stencil.compare), kebab_case(&stencil.pass), kebab_case(&stencil.fail));
         let _ = write!(text, "stencil {} {compare} {}, ", stencil.resource, stencil.reference);
         let _ = write!(text, "pass {pass}, fail {fail}; ");
     }
     for target in &state.targets {
-        let _ = write!(text, "target {} {}; ", target.resource, word(&target.blend));
+        let _ = write!(text, "target {} {}; ", target.resource, kebab_case(&target.blend));
     }
     if let Some(samples) = &state.samples {
         let coverage = if samples.coverage == Coverage::WholePixel { " whole-pixel" } else { "" };

@@ -1,8 +1,8 @@
-//! What rows of other axes change in a storage's steps.
+//! Applies the edits of rows to the steps of a plan.
 
 use fragbuf_templates::vocabulary::{Access, DepthState, Edit, Formula, Kind, Pass, Resource, Split, Step, Use};
 
-/// Applies one edit. `Err`: it names an anchor that the steps do not have, or a formula has no value.
+/// Applies one edit. Fails if it names a pass that the steps do not have, or if a formula has no value.
 pub(super) fn apply(
     edit: &Edit,
     steps: &mut Vec<Step>,
@@ -10,13 +10,13 @@ pub(super) fn apply(
     constants: &[(String, u32)],
 ) -> Result<(), String> {
     match edit {
-        Edit::Before(anchor, new) => insert(steps, anchor, new, 0),
-        Edit::After(anchor, new) => insert(steps, anchor, new, 1),
-        Edit::SetState(anchor, state) => change(steps, anchor, &|pass| pass.state = state.clone()),
+        Edit::Before(name, new) => insert(steps, name, new, 0),
+        Edit::After(name, new) => insert(steps, name, new, 1),
+        Edit::SetState(name, state) => change(steps, name, &|pass| pass.state = state.clone()),
         Edit::TestDepth(test) => test_depth(steps, test),
-        Edit::SetSkeleton(anchor, skeleton) => change(steps, anchor, &|pass| pass.skeleton.clone_from(skeleton)),
-        Edit::FormOfSkeleton(anchor, form) => {
-            change(steps, anchor, &|pass| pass.skeleton = format!("{}_{form}", pass.skeleton))
+        Edit::SetSkeleton(name, skeleton) => change(steps, name, &|pass| pass.skeleton.clone_from(skeleton)),
+        Edit::FormOfSkeleton(name, form) => {
+            change(steps, name, &|pass| pass.skeleton = format!("{}_{form}", pass.skeleton))
         }
         Edit::AddResource(resource) => {
             resources.push(resource.clone());
@@ -34,13 +34,13 @@ pub(super) fn apply(
     }
 }
 
-/// Several passes in place of the one.
+/// Replaces a pass by several copies.
 fn split(steps: &mut Vec<Step>, split_pass: &Split, constants: &[(String, u32)]) -> Result<(), String> {
-    let anchor = &split_pass.anchor;
-    let Some(index) = position(steps, anchor) else {
-        return in_some_loop(steps, anchor, &mut |body| split(body, split_pass, constants));
+    let name = &split_pass.name;
+    let Some(index) = position(steps, name) else {
+        return in_any_loop(steps, name, &mut |body| split(body, split_pass, constants));
     };
-    let Step::Pass(pass) = steps.remove(index) else { return Err(unknown(anchor)) };
+    let Step::Pass(pass) = steps.remove(index) else { return Err(unknown(name)) };
     let constant = |symbol: &str| constants.iter().find(|(name, _)| name == symbol).map(|(_, value)| u64::from(*value));
     let copies = value(&split_pass.copies, &constant)?;
     for copy in 0..copies {
@@ -53,64 +53,68 @@ fn split(steps: &mut Vec<Step>, split_pass: &Split, constants: &[(String, u32)])
         for (number, (name, formula)) in split_pass.constants.iter().enumerate() {
             let constant = value(formula, &symbol)?;
             if number == 0 {
-                one.anchor = format!("{}_{constant}", pass.anchor);
+                one.name = format!("{}_{constant}", pass.name);
             }
             one.constants.push((name.clone(), constant));
         }
         if copy + 1 < copies {
-            one.roles.retain(|role| split_pass.before_last.iter().all(|other| other.contract != role.contract));
-            one.roles.extend(split_pass.before_last.iter().cloned());
+            one.implementations.retain(|implementation| {
+                split_pass.before_last.iter().all(|other| other.contract != implementation.contract)
+            });
+            one.implementations.extend(split_pass.before_last.iter().cloned());
         }
         steps.insert(index + copy as usize, Step::Pass(one));
     }
     Ok(())
 }
 
-/// The value of an edit's formula: a generated constant has 32 bits.
+/// Returns the value of a formula of an edit. A generated constant has 32 bits.
 fn value(formula: &Formula, symbol: &dyn Fn(&str) -> Option<u64>) -> Result<u32, String> {
-    let value = formula.evaluate(symbol).map_err(|error| format!("an edit's formula has no value: {error}"))?;
-    u32::try_from(value).map_err(|_| format!("an edit's formula `{formula}` exceeds 32 bits"))
+    let value = formula.evaluate(symbol).map_err(|error| format!("a formula of an edit has no value: {error}"))?;
+    u32::try_from(value).map_err(|_| format!("the formula `{formula}` of an edit exceeds 32 bits"))
 }
 
-fn insert(steps: &mut Vec<Step>, anchor: &str, new: &[Step], offset: usize) -> Result<(), String> {
-    if let Some(index) = position(steps, anchor) {
+fn insert(steps: &mut Vec<Step>, name: &str, new: &[Step], offset: usize) -> Result<(), String> {
+    if let Some(index) = position(steps, name) {
         steps.splice(index + offset..index + offset, new.iter().cloned());
         return Ok(());
     }
-    in_some_loop(steps, anchor, &mut |body| insert(body, anchor, new, offset))
+    in_any_loop(steps, name, &mut |body| insert(body, name, new, offset))
 }
 
-fn change(steps: &mut [Step], anchor: &str, how: &dyn Fn(&mut Pass)) -> Result<(), String> {
+fn change(steps: &mut [Step], name: &str, edit: &dyn Fn(&mut Pass)) -> Result<(), String> {
     let mut found = false;
     for_each_pass(steps, &mut |pass| {
-        if pass.anchor == anchor {
-            how(pass);
+        if pass.name == name {
+            edit(pass);
             found = true;
         }
     });
-    if found { Ok(()) } else { Err(unknown(anchor)) }
+    if found { Ok(()) } else { Err(unknown(name)) }
 }
 
-/// The depth test of every geometry pass, of which none may have one.
+/// Adds a depth test to every geometry pass. Fails if a geometry pass has a depth or stencil test.
 fn test_depth(steps: &mut [Step], test: &DepthState) -> Result<(), String> {
     let mut taken = None;
     for_each_pass(steps, &mut |pass| match &pass.state {
         _ if pass.kind != Kind::Geometry => {}
-        state if state.depth.is_some() || state.stencil.is_some() => taken = Some(pass.anchor.clone()),
+        state if state.depth.is_some() || state.stencil.is_some() => taken = Some(pass.name.clone()),
         _ => {
             pass.state.depth = Some(test.clone());
             pass.uses.push(Use::new(&test.resource, Access::Attachment));
         }
     });
     match taken {
-        Some(anchor) => Err(format!("an edit tests depth in the pass `{anchor}`, which has a test of its own")),
+        Some(name) => {
+            Err(format!("an edit adds a depth test to the pass `{name}`, which already has a depth or stencil test"))
+        }
         None => Ok(()),
     }
 }
 
-fn in_some_loop(
+fn in_any_loop(
     steps: &mut [Step],
-    anchor: &str,
+    name: &str,
     edit: &mut dyn FnMut(&mut Vec<Step>) -> Result<(), String>,
 ) -> Result<(), String> {
     for step in steps {
@@ -120,18 +124,18 @@ fn in_some_loop(
             return Ok(());
         }
     }
-    Err(unknown(anchor))
+    Err(unknown(name))
 }
 
-fn position(steps: &[Step], anchor: &str) -> Option<usize> {
-    steps.iter().position(|step| matches!(step, Step::Pass(pass) if pass.anchor == anchor))
+fn position(steps: &[Step], name: &str) -> Option<usize> {
+    steps.iter().position(|step| matches!(step, Step::Pass(pass) if pass.name == name))
 }
 
-fn unknown(anchor: &str) -> String {
-    format!("an edit names the pass `{anchor}`, which the plan does not have")
+fn unknown(name: &str) -> String {
+    format!("an edit names the pass `{name}`, which the plan does not have")
 }
 
-/// Every pass, those inside loops included.
+/// Visits every pass, including passes inside loops.
 pub(super) fn for_each_pass(steps: &mut [Step], visit: &mut dyn FnMut(&mut Pass)) {
     for step in steps {
         match step {

@@ -1,7 +1,7 @@
-//! Diagnostics as the compiler's own errors.
+//! Diagnostics as errors of the compiler.
 //!
-//! In: every mistake of a description, and its tokens. Out: a `compile_error!` for each, which the compiler shows at the
-//! user's tokens: code and message, the other places, the way out.
+//! Input: every error of a description, and its tokens. Output: a `compile_error!` for each, which the compiler shows at
+//! the user's tokens: code and message, the labels, the help.
 
 use std::fmt::Write as _;
 
@@ -9,16 +9,16 @@ use fragbuf_model::{Diagnostic, Diagnostics};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::{quote, quote_spanned};
 
-use crate::place;
+use crate::span;
 
-/// One `compile_error!` for each mistake.
-pub(crate) fn all(faults: &Diagnostics, tokens: &TokenStream) -> TokenStream {
-    faults.iter().map(|fault| one(fault, tokens)).collect()
+/// Returns one `compile_error!` for each diagnostic.
+pub(crate) fn compile_errors(diagnostics: &Diagnostics, tokens: &TokenStream) -> TokenStream {
+    diagnostics.iter().map(|diagnostic| compile_error(diagnostic, tokens)).collect()
 }
 
-fn one(fault: &Diagnostic, tokens: &TokenStream) -> TokenStream {
-    let (first, last) = place::spans(&fault.origin, tokens);
-    let message = message(fault);
+fn compile_error(diagnostic: &Diagnostic, tokens: &TokenStream) -> TokenStream {
+    let (first, last) = span::token_spans(&diagnostic.span, tokens);
+    let message = message(diagnostic);
     let mut arguments = Group::new(Delimiter::Brace, quote_spanned! { last=> #message });
     arguments.set_span(last);
     let arguments = TokenTree::from(arguments);
@@ -26,11 +26,11 @@ fn one(fault: &Diagnostic, tokens: &TokenStream) -> TokenStream {
     quote! { #call #arguments }
 }
 
-fn message(fault: &Diagnostic) -> String {
-    let mut text = format!("[{}] {}", fault.code.name, fault.message);
-    for label in &fault.labels {
-        let _ = write!(text, "\n{}: {}", label.origin, label.text);
+fn message(diagnostic: &Diagnostic) -> String {
+    let mut text = format!("[{}] {}", diagnostic.code.name, diagnostic.message);
+    for label in &diagnostic.labels {
+        let _ = write!(text, "\n{}: {}", label.span, label.text);
     }
-    let _ = write!(text, "\nhelp: {}", fault.hint);
+    let _ = write!(text, "\nhelp: {}", diagnostic.help);
     text
 }

@@ -1,92 +1,93 @@
-//! The closures and helpers of a description as Rust functions, made of the user's own tokens: the compiler judges them
+//! The closures and helpers of a description as Rust functions, made of the user's own tokens: the compiler checks them
 //! too, and a program can call them.
 //!
-//! In: functions as written. Out: a module `functions` in which everything is passed by value, as in the language, and
-//! functions over references around it. Where anything is wrong the compiler gets the signatures alone, because it would
-//! only repeat what was said; editors get the bodies, to complete in them.
+//! Input: the tokens of the functions. Output: a module `functions` in which everything is passed by value, as in the language,
+//! and functions over references that call it. If the description has an error, the compiler gets only the signatures,
+//! because it would repeat the diagnostics of the bodies. Editors get the bodies, to complete in them.
 
-use fragbuf_syntax::{Role, Written};
+use fragbuf_syntax::{FunctionTokens, Role};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-use crate::module::{Bodies, Source};
+use crate::module_source::{Bodies, ModuleSource};
 
-/// Both layers.
-pub(crate) fn all(source: &Source) -> TokenStream {
-    let first_of_role = |index: usize, written: &Written| {
-        let earlier = source.written.iter().take(index);
-        earlier.into_iter().all(|other| other.role != written.role)
+/// Returns the functions over references and the module `functions`.
+pub(crate) fn functions(source: &ModuleSource) -> TokenStream {
+    // Of functions with the same role, which is an error, only the first is emitted.
+    let is_first_of_role = |index: usize, function: &FunctionTokens| {
+        source.functions[..index].iter().all(|earlier| earlier.role != function.role)
     };
-    let written = || source.written.iter().enumerate().filter(|(index, one)| first_of_role(*index, one));
-    let outer = written().map(|(_, one)| outer(one, source));
-    let inner = written().map(|(_, one)| inner(one, source));
-    let serving = &source.front.serving;
-    let functions = quote! {
-        /// The functions in the user's own words: values go in and out as in the language.
+    let functions = || source.functions.iter().enumerate().filter(|(index, one)| is_first_of_role(*index, one));
+    let by_reference = functions().map(|(_, one)| by_reference(one, source));
+    let by_value = functions().map(|(_, one)| by_value(one, source));
+    let serving = &source.input.serving;
+    let module = quote! {
+        /// The functions as the user wrote them; parameters and results are passed by value, as in the language.
         pub mod functions {
             use super::{Fragment, Uniforms};
             use #serving::glam::swizzles::{Vec2Swizzles as _, Vec3Swizzles as _, Vec4Swizzles as _};
             use #serving::glam::{Vec2, Vec3, Vec4, vec2, vec3, vec4};
-            // The module, for `f32::consts`; the type of the same name is there all the same.
+            // The module, for `f32::consts`; the primitive type stays in scope.
             use ::core::f32;
 
-            #(#inner)*
+            #(#by_value)*
         }
     };
-    let functions = match source.bodies {
-        Bodies::Compiled => functions,
-        // Inside a macro call, tokens that are no Rust do not disturb the compiler.
-        Bodies::ForEditors => quote! { #[cfg(rust_analyzer)] #serving::as_written! { #functions } },
+    let module = match source.bodies {
+        Bodies::Compiled => module,
+        // The compiler does not parse tokens inside a macro call, so they need not be Rust.
+        Bodies::ForEditors => quote! { #[cfg(rust_analyzer)] #serving::as_written! { #module } },
     };
-    quote! { #(#outer)* #functions }
+    quote! { #(#by_reference)* #module }
 }
 
-/// What a role's function is called, what it takes and gives.
-struct Shape {
-    /// Its name in `functions`, as in the generated WGSL.
-    inner: proc_macro2::Ident,
-    outer: proc_macro2::Ident,
+/// The name, the parameters and the result of the function of a role.
+struct FunctionSignature {
+    /// The name in `functions`, as in the generated WGSL.
+    inner_name: proc_macro2::Ident,
+    name: proc_macro2::Ident,
     about: &'static str,
-    first: TokenStream,
-    reference: TokenStream,
+    /// The type of the first parameter in `functions`.
+    by_value: TokenStream,
+    /// The type of the first parameter of the function over references.
+    by_reference: TokenStream,
     result: TokenStream,
 }
 
-fn shape(role: &Role, source: &Source) -> Option<Shape> {
-    let serving = &source.front.serving;
-    let one = (quote! { Fragment }, quote! { &Fragment });
-    let list = (quote! { #serving::Fragments<'_, Fragment> }, quote! { &[Fragment] });
-    let (inner, outer, about, (first, reference), result) = match role {
+fn signature(role: &Role, source: &ModuleSource) -> Option<FunctionSignature> {
+    let serving = &source.input.serving;
+    let fragment = (quote! { Fragment }, quote! { &Fragment });
+    let fragments = (quote! { #serving::Fragments<'_, Fragment> }, quote! { &[Fragment] });
+    let (inner_name, name, about, (by_value, by_reference), result) = match role {
         Role::Criterion => {
             let result = quote! { ::core::primitive::f32 };
-            let about = "The value by which the worst fragment, the one of the greatest, is found.";
-            (format_ident!("criterion"), format_ident!("criterion"), about, one, result)
+            let about = "The criterion: the fragment with the greatest value is the worst.";
+            (format_ident!("criterion"), format_ident!("criterion"), about, fragment, result)
         }
-        Role::Admit(index) => {
+        Role::Constraint(index) => {
             let result = quote! { ::core::primitive::bool };
-            let about = "Whether a fragment may enter, as far as this constraint goes.";
-            (format_ident!("admit_{index}"), format_ident!("constraint_{index}"), about, one, result)
+            let about = "Whether a fragment meets this constraint.";
+            (format_ident!("admit_{index}"), format_ident!("constraint_{index}"), about, fragment, result)
         }
         Role::Resolve => {
             let result = quote! { #serving::glam::Vec4 };
-            let about = "What becomes of the kept fragments of a pixel, in the order in which they are handed over.";
-            (format_ident!("resolve"), format_ident!("resolve"), about, list, result)
+            let about = "The result of a pixel from its kept fragments, in the given order.";
+            (format_ident!("resolve"), format_ident!("resolve"), about, fragments, result)
         }
         Role::Helper(_) => return None,
     };
-    Some(Shape { inner, outer, about, first, reference, result })
+    Some(FunctionSignature { inner_name, name, about, by_value, by_reference, result })
 }
 
-fn outer(written: &Written, source: &Source) -> TokenStream {
-    let Some(Shape { inner, outer, about, reference, result, .. }) = shape(&written.role, source) else {
-        return TokenStream::new();
-    };
-    let serving = &source.front.serving;
-    let first = match written.role {
+fn by_reference(function: &FunctionTokens, source: &ModuleSource) -> TokenStream {
+    let Some(signature) = signature(&function.role, source) else { return TokenStream::new() };
+    let FunctionSignature { inner_name, name, about, by_reference, result, .. } = signature;
+    let serving = &source.input.serving;
+    let first = match function.role {
         Role::Resolve => quote! { #serving::Fragments::new(first) },
         _ => quote! { *first },
     };
-    let call = quote! { functions::#inner(#first, *uniforms) };
+    let call = quote! { functions::#inner_name(#first, *uniforms) };
     let body = match source.bodies {
         Bodies::Compiled => call,
         Bodies::ForEditors => quote! {
@@ -98,30 +99,31 @@ fn outer(written: &Written, source: &Source) -> TokenStream {
     };
     quote! {
         #[doc = #about]
-        pub fn #outer(first: #reference, uniforms: &Uniforms) -> #result { #body }
+        pub fn #name(first: #by_reference, uniforms: &Uniforms) -> #result { #body }
     }
 }
 
-fn inner(written: &Written, source: &Source) -> TokenStream {
-    let Some(Shape { inner, about, first, result, .. }) = shape(&written.role, source) else {
-        let tokens = &written.tokens;
+fn by_value(function: &FunctionTokens, source: &ModuleSource) -> TokenStream {
+    let Some(signature) = signature(&function.role, source) else {
+        let tokens = &function.tokens;
         return quote! {
             /// A helper function.
             pub #tokens
         };
     };
-    let Closure { parameters, body } = Closure::of(&written.tokens);
+    let FunctionSignature { inner_name, about, by_value, result, .. } = signature;
+    let Closure { parameters, body } = Closure::of(&function.tokens);
     let mut names = parameters.into_iter().filter(|name| !name.is_empty()).chain([quote! { _ }, quote! { _ }]);
-    let (one, two) = (names.next(), names.next());
+    let (first, second) = (names.next(), names.next());
     quote! {
         #[doc = #about]
-        pub fn #inner(#one: #first, #two: Uniforms) -> #result #body
+        pub fn #inner_name(#first: #by_value, #second: Uniforms) -> #result #body
     }
 }
 
 /// The parts of a closure that a function is made of.
 struct Closure {
-    /// Their names, with `mut`, without types.
+    /// The names of the parameters, with `mut`, without types.
     parameters: Vec<TokenStream>,
     /// A block.
     body: TokenStream,
@@ -139,7 +141,7 @@ impl Closure {
     }
 }
 
-/// The body of a closure as the block of a function.
+/// Returns the body of a closure as the block of a function.
 fn block(tokens: &[TokenTree]) -> TokenStream {
     let is_block =
         |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
@@ -148,7 +150,7 @@ fn block(tokens: &[TokenTree]) -> TokenStream {
     match tokens {
         [only] if is_block(only) => quote! { #only },
         [.., last] if has_type && is_block(last) => quote! { #last },
-        // In parentheses: what begins with a block is no statement here.
+        // In parentheses: an expression that begins with a block is not parsed as a statement.
         _ => quote! { { (#(#tokens)*) } },
     }
 }

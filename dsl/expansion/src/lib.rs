@@ -1,71 +1,71 @@
-//! What the macros of the language expand to, as plain functions: tests and benches call them without a compiler.
+//! The expansions of the language's macros, as plain functions that tests and benches call without a compiler.
 //!
-//! In: `[path of the serving crate]`, then the user's tokens. Out: a module for a description, an expression for a
-//! function of the builder. A mistake is a `compile_error!` at the user's token, and what can be emitted beside it is,
-//! so that an editor goes on completing. Reading and checking are `fragbuf-syntax`'s and `fragbuf-model`'s.
+//! Input: `[path of the serving crate]`, then the user's tokens. Output: a module for a description, an expression for a
+//! function of the builder. An error becomes a `compile_error!` at the user's token; the rest is still emitted, so that
+//! an editor can complete. `fragbuf-syntax` reads and `fragbuf-model` checks.
 
-mod bindings;
 mod errors;
-mod front;
 mod functions;
+mod macro_input;
 mod module;
+mod module_source;
 mod names;
-mod place;
+mod span;
 mod structs;
 
 use fragbuf_model::Draft;
-use fragbuf_syntax::{Captured, Written, read_tokens};
+use fragbuf_syntax::{CapturedTokens, FunctionTokens, read_tokens};
 use fragbuf_templates::Registry;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use front::Front;
-use module::{Bodies, Source};
+use macro_input::MacroInput;
+use module_source::{Bodies, ModuleSource};
 
-/// The module of a description: `[$crate] buffer Glass from kplus_array { … }`, documentation and visibility in front.
-/// It is checked against fragbuf's own registry.
+/// Returns the module of a description: `[$crate] buffer Glass from kplus_array { … }`, with documentation and visibility
+/// before `buffer`. The description is checked against fragbuf's own registry.
 pub fn fragment_buffer(input: TokenStream) -> TokenStream {
-    let front = Front::of(input);
-    let (parsed, written) = read_tokens(front.tokens.clone(), &place::of);
-    let registry = Registry::builtin();
-    let (bindings, bodies, errors) = match parsed.check(&registry) {
-        Ok(variant) => (bindings::module(&variant, &registry), Bodies::Compiled, None),
-        Err(faults) => (TokenStream::new(), Bodies::ForEditors, Some(errors::all(&faults, &front.tokens))),
+    let input = MacroInput::of_description(input);
+    let (parsed, functions) = read_tokens(input.tokens.clone(), &span::source_span);
+    let (bodies, errors) = match parsed.check(&Registry::builtin()) {
+        Ok(_) => (Bodies::Compiled, None),
+        Err(diagnostics) => (Bodies::ForEditors, Some(errors::compile_errors(&diagnostics, &input.tokens))),
     };
-    let module = parsed.draft.map(|draft| emit(&front, &draft, &written, (bodies, bindings)));
+    let module = parsed.draft.map(|draft| module_of(&input, &draft, &functions, bodies));
     quote! { #errors #module }
 }
 
-/// The module of a description that need not be whole: the grammar and the types are checked, nothing is looked up in a
-/// registry. `None` where anything is wrong.
+/// Returns the module of a description after a check of its grammar and types only; the registry is not used. `None` if
+/// there is an error.
 pub fn unchecked_fragment_buffer(input: TokenStream) -> Option<TokenStream> {
-    let front = Front::of(input);
-    let (parsed, written) = read_tokens(front.tokens.clone(), &place::of);
+    let input = MacroInput::of_description(input);
+    let (parsed, functions) = read_tokens(input.tokens.clone(), &span::source_span);
     let draft = parsed.draft.filter(|_| parsed.diagnostics.is_empty())?;
-    Some(emit(&front, &draft, &written, (Bodies::Compiled, TokenStream::new())))
+    Some(module_of(&input, &draft, &functions, Bodies::Compiled))
 }
 
-/// A closure for the builder: `[$crate] |f| f.depth`.
+/// Returns a closure for the builder: `[$crate] |f| f.depth`.
 pub fn closure(input: TokenStream) -> TokenStream {
-    let (front, captured) = captured(input);
-    let serving = front.serving;
+    let input = MacroInput::of_function(input);
+    let (serving, captured) = (&input.serving, captured(&input));
     quote! { #serving::builder::Closure::captured(#captured) }
 }
 
-/// A helper function for the builder: `[$crate] fn name(x: f32) -> f32 { … }`.
+/// Returns a helper function for the builder: `[$crate] fn name(x: f32) -> f32 { … }`.
 pub fn function(input: TokenStream) -> TokenStream {
-    let (front, captured) = captured(input);
-    let serving = front.serving;
+    let input = MacroInput::of_function(input);
+    let (serving, captured) = (&input.serving, captured(&input));
     quote! { #serving::builder::Function::captured(#captured) }
 }
 
-fn emit(front: &Front, draft: &Draft, written: &[Written], (bodies, bindings): (Bodies, TokenStream)) -> TokenStream {
-    let description = module::captured(&front.serving, &Captured::of(&front.tokens, &place::of));
-    module::module(&Source { front, draft, written, description, bodies, bindings })
+fn module_of(input: &MacroInput, draft: &Draft, functions: &[FunctionTokens], bodies: Bodies) -> TokenStream {
+    module::module(&ModuleSource { input, draft, functions, description: captured(input), bodies })
 }
 
-fn captured(input: TokenStream) -> (Front, TokenStream) {
-    let front = Front::plain(input);
-    let captured = module::captured(&front.serving, &Captured::of(&front.tokens, &place::of));
-    (front, captured)
+/// Returns the expression that gives the user's tokens to the running program.
+fn captured(input: &MacroInput) -> TokenStream {
+    let captured = CapturedTokens::from_tokens(&input.tokens, &span::source_span);
+    let (file, text, places) = captured.parts();
+    let serving = &input.serving;
+    quote! { #serving::CapturedTokens::new(#file, #text, #places) }
 }

@@ -1,42 +1,20 @@
 //! The module of a description.
 //!
-//! In: the draft, the functions as written, and what stood in front. Out: one module, named after the buffer, that names
-//! nothing but its own items, `::core`, and the serving crate.
+//! Input: the draft, the tokens of its functions, and the macro's input. Output: one module, named after the buffer. It names
+//! only its own items, `::core`, and the serving crate.
 
-use fragbuf_model::Draft;
-use fragbuf_syntax::{Captured, Written};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::front::Front;
-use crate::{functions, names, place, structs};
+use crate::macro_input::MacroInput;
+use crate::module_source::{Bodies, ModuleSource};
+use crate::{functions, names, span, structs};
 
-/// Everything that a module is made of.
-pub(crate) struct Source<'a> {
-    pub front: &'a Front,
-    pub draft: &'a Draft,
-    pub written: &'a [Written],
-    /// The description for the running program.
-    pub description: TokenStream,
-    pub bodies: Bodies,
-    /// The module of binding numbers; empty where there is no plan.
-    pub bindings: TokenStream,
-}
-
-/// Who gets the bodies of the user's functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Bodies {
-    /// Everyone: nothing is wrong.
-    Compiled,
-    /// Editors only, to complete in them.
-    ForEditors,
-}
-
-/// The module.
-pub(crate) fn module(source: &Source) -> TokenStream {
-    let Front { serving, documentation, visibility, tokens } = source.front;
+/// Returns the module.
+pub(crate) fn module(source: &ModuleSource) -> TokenStream {
+    let MacroInput { serving, documentation, visibility, tokens } = source.input;
     let buffer = &source.draft.name;
-    let name = names::module(&buffer.value, place::span(&buffer.origin, tokens));
+    let name = names::module(&buffer.value, span::token_span(&buffer.span, tokens));
     let about = format!("The fragment buffer `{}`.", buffer.value);
     let about = if documentation.is_empty() {
         quote! { #[doc = #about] }
@@ -44,8 +22,10 @@ pub(crate) fn module(source: &Source) -> TokenStream {
         documentation.clone()
     };
     let (fragment, uniforms) = (structs::fragment(source), structs::uniforms(source));
-    let functions = functions::all(source);
-    let (description, bindings) = (&source.description, &source.bindings);
+    let functions = functions::functions(source);
+    let description = &source.description;
+    // Binding numbers follow from the plan, which the language does not have: a serving crate that has it emits them.
+    let bindings = (source.bodies == Bodies::Compiled).then(|| quote! { #serving::bindings! { #tokens } });
     quote! {
         #about
         #[allow(dead_code, deprecated, unexpected_cfgs, unreachable_pub, unused_imports, unused_parens, clippy::all)]
@@ -55,24 +35,18 @@ pub(crate) fn module(source: &Source) -> TokenStream {
             #functions
             #bindings
 
-            /// The description, with the places where it was written.
-            pub const DESCRIPTION: #serving::Captured = #description;
+            /// The description, with the source span of every token.
+            pub const DESCRIPTION: #serving::CapturedTokens = #description;
 
-            /// The description as data. It is read again at each call.
+            /// Returns the description as data. Each call parses it again.
             pub fn draft() -> #serving::Draft {
                 DESCRIPTION.draft()
             }
 
-            /// The description, checked against fragbuf's own registry.
+            /// Checks the description against fragbuf's own registry.
             pub fn variant() -> ::core::result::Result<#serving::Variant, #serving::Diagnostics> {
                 DESCRIPTION.parse().check(&#serving::Registry::builtin())
             }
         }
     }
-}
-
-/// The expression for captured tokens.
-pub(crate) fn captured(serving: &TokenStream, captured: &Captured) -> TokenStream {
-    let (file, text, places) = captured.parts();
-    quote! { #serving::Captured::new(#file, #text, #places) }
 }

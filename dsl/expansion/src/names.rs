@@ -1,10 +1,10 @@
 //! Names of emitted items.
 //!
-//! In: names of the description. Out: identifiers that Rust takes, whatever was wrong with the name.
+//! Input: names of the description. Output: valid Rust identifiers, even for names with an error.
 
 use proc_macro2::{Ident, Span};
 
-/// The module of a buffer: `MostVisible` becomes `most_visible`, `ABuffer` `a_buffer`.
+/// Returns the name of a buffer's module: `MostVisible` becomes `most_visible`, `ABuffer` `a_buffer`.
 pub(crate) fn module(name: &str, span: Span) -> Ident {
     let letters: Vec<char> = name.chars().collect();
     let mut snake = String::new();
@@ -25,7 +25,7 @@ pub(crate) fn module(name: &str, span: Span) -> Ident {
     identifier(&snake, span)
 }
 
-/// An identifier of this name, raw where it is a word of Rust.
+/// Returns an identifier of this name, a raw one if the name is a keyword of Rust.
 pub(crate) fn identifier(name: &str, span: Span) -> Ident {
     if syn::parse_str::<Ident>(name).is_ok() {
         return Ident::new(name, span);
@@ -55,13 +55,13 @@ mod tests {
             ("Type", "r#type"),
             ("Super", "super_"),
         ];
-        for (name, wanted) in cases {
-            assert_eq!(module(name, Span::call_site()).to_string(), wanted, "{name}");
+        for (name, expected) in cases {
+            assert_eq!(module(name, Span::call_site()).to_string(), expected, "{name}");
         }
     }
 
     #[test]
-    fn words_of_rust_become_raw() {
+    fn keywords_of_rust_become_raw_identifiers() {
         assert_eq!(identifier("match", Span::call_site()).to_string(), "r#match");
         assert_eq!(identifier("crate", Span::call_site()).to_string(), "crate_");
         assert_eq!(identifier("depth", Span::call_site()).to_string(), "depth");

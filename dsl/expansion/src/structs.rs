@@ -1,44 +1,41 @@
-//! The structs of a description: `Fragment`, which a closure sees, and `Uniforms`, which lie on the GPU as in memory.
+//! The structs of a description: `Fragment`, the parameter of closures, and `Uniforms`, laid out as on the GPU.
 //!
-//! In: attributes and uniforms of a draft. Out: structs of glam's types, and assertions that every uniform lies where
-//! [`UniformBlock`] says. What was refused is not there.
+//! Input: attributes and uniforms of a draft, without those that have an error. Output: structs of glam's types, and
+//! assertions that every uniform has the offset that [`UniformBlock`] gives it.
 
-use fragbuf_model::{Draft, Format, Spanned, Uniform, UniformBlock, UniformType};
+use fragbuf_model::{Attribute, Draft, Format, Spanned, Uniform, UniformBlock, UniformType};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::module::Source;
-use crate::{names, place};
+use crate::module_source::ModuleSource;
+use crate::{names, span};
 
-/// `Fragment`.
-pub(crate) fn fragment(source: &Source) -> TokenStream {
+/// Returns the struct `Fragment`.
+pub(crate) fn fragment(source: &ModuleSource) -> TokenStream {
     let derives = derives();
-    let fields = attributes(source.draft).into_iter().map(|(name, format)| {
-        let field = field(name, source);
-        let kind = attribute_type(format, &source.front.serving);
+    let fields = attributes(source.draft).into_iter().map(|attribute| {
+        let format = attribute.format.value;
+        let field = field(attribute.name, source);
+        let kind = attribute_type(format, &source.input.serving);
         let words = if format.words() == 1 { "word" } else { "words" };
         let about = format!("`{}`: {} {words} of 32 bits in memory.", format.keyword(), format.words());
         quote! { #[doc = #about] pub #field: #kind }
     });
     quote! {
-        /// What a fragment carries, as the closures see it.
+        /// The attributes of a fragment, with the types that closures see.
         #derives
         pub struct Fragment { #(#fields),* }
     }
 }
 
-/// The attributes of a draft, the papers' payload where it says none.
-fn attributes(draft: &Draft) -> Vec<(Spanned<String>, Format)> {
-    if draft.attributes.is_empty() {
-        let named = |name: &str| Spanned::new(name.to_owned(), draft.name.origin.clone());
-        return vec![(named("color"), Format::Rgba8), (named("depth"), Format::F32)];
-    }
-    draft.attributes.iter().map(|attribute| (attribute.name.clone(), attribute.format.value)).collect()
+/// Returns the attributes of a draft, or the papers' payload if it gives none.
+fn attributes(draft: &Draft) -> Vec<Attribute> {
+    if draft.attributes.is_empty() { draft.papers_payload() } else { draft.attributes.clone() }
 }
 
-/// `Uniforms`, its layout asserted, and its bytes.
-pub(crate) fn uniforms(source: &Source) -> TokenStream {
-    let serving = &source.front.serving;
+/// Returns the struct `Uniforms`, the assertions of its layout, and its bytes.
+pub(crate) fn uniforms(source: &ModuleSource) -> TokenStream {
+    let serving = &source.input.serving;
     let uniforms = &source.draft.uniforms;
     let block = UniformBlock::of(uniforms);
     let derives = derives();
@@ -50,9 +47,9 @@ pub(crate) fn uniforms(source: &Source) -> TokenStream {
         fields.extend(paddings.next(end, *offset));
         let kind = uniform.kind.value;
         let name = field(uniform.name.clone(), source);
-        let written = uniform_type(kind, serving);
+        let rust_type = uniform_type(kind, serving);
         let about = format!("`{}` at byte {offset}.", kind.keyword());
-        fields.push(quote! { #[doc = #about] pub #name: #written });
+        fields.push(quote! { #[doc = #about] pub #name: #rust_type });
         end = offset + kind.size();
         let (from, to) = (Literal::usize_unsuffixed(*offset as usize), Literal::usize_unsuffixed(end as usize));
         assertions.push(quote! { ::core::assert!(::core::mem::offset_of!(Uniforms, #name) == #from); });
@@ -60,17 +57,17 @@ pub(crate) fn uniforms(source: &Source) -> TokenStream {
     }
     fields.extend(paddings.next(end, block.size));
     quote! {
-        /// The description's own uniforms, laid out as in WGSL's uniform address space. Padding between them is for
+        /// The uniforms of the description, laid out as in WGSL's uniform address space. Write padding as
         /// `..Default::default()`.
         #derives
         #[repr(C)]
         pub struct Uniforms { #(#fields),* }
 
         impl Uniforms {
-            /// Bytes of the uniform block.
+            /// The size of the uniform block in bytes.
             pub const SIZE: ::core::primitive::usize = #size;
 
-            /// The block as it goes into a uniform buffer.
+            /// Returns the contents of the uniform buffer.
             #[allow(unused_mut)]
             pub fn bytes(&self) -> [::core::primitive::u8; #size] {
                 let mut bytes = [0; #size];
@@ -86,7 +83,7 @@ pub(crate) fn uniforms(source: &Source) -> TokenStream {
     }
 }
 
-/// The fields that fill gaps, named so that no uniform has their names.
+/// The padding fields; their names differ from those of all uniforms.
 struct Paddings<'a> {
     uniforms: &'a [Uniform],
     count: usize,
@@ -115,9 +112,9 @@ fn derives() -> TokenStream {
     }
 }
 
-/// A field that an editor finds at the user's own word.
-fn field(name: Spanned<String>, source: &Source) -> Ident {
-    names::identifier(&name.value, place::span(&name.origin, &source.front.tokens))
+/// Returns the identifier of a field, with the span of the user's token, so that editors find it there.
+fn field(name: Spanned<String>, source: &ModuleSource) -> Ident {
+    names::identifier(&name.value, span::token_span(&name.span, &source.input.tokens))
 }
 
 fn attribute_type(format: Format, serving: &TokenStream) -> TokenStream {

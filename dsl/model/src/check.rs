@@ -1,23 +1,23 @@
-//! The rules: a draft in, a proven variant or every mistake out. No rule names a technique, a storage or any other row:
-//! what fits together follows from what rows require and offer, and from conditions that they state.
+//! The rules. Input: a draft. Output: a variant, or every error. No rule names a technique, a storage or any other row:
+//! which rows are compatible follows from the capabilities that they require and provide, and from their conditions.
 
+mod capabilities;
 mod choices;
-mod facts;
-mod least;
-mod nearest;
+mod option_minimums;
 mod payload;
+mod suggestion;
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
 
-pub(crate) use self::payload::given;
+pub(crate) use self::payload::description_values;
 use crate::variant::Description;
 use crate::{Diagnostic, Diagnostics, Draft, KeepCount, Variant, codes};
 
-/// The greatest number of fragments that a k-buffer keeps; a resolve pass holds them all in registers or local memory.
-pub const MOST_KEPT: u32 = 1024;
+/// The greatest k of a k-buffer; a resolve pass holds k fragments in registers or local memory.
+pub const MAX_K: u32 = 1024;
 
-/// Checks a draft against a registry. All mistakes come at once.
+/// Checks a draft against a registry. Returns all errors at once.
 pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let technique = choices::technique(draft, registry, &mut diagnostics);
@@ -25,15 +25,15 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     let choices = choices::resolve(draft, &attributes, technique, registry, &mut diagnostics);
     let keep = keep(draft, technique.map(|technique| technique.keep), &mut diagnostics);
     if let Some(k) = keep {
-        least::check(draft, &choices, k, &mut diagnostics);
+        option_minimums::check(draft, &choices, k, &mut diagnostics);
     }
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    // A storage that is missing, or a choice that is unknown, would make every fact look unmet.
+    // With a missing storage or an unknown choice, every capability would be reported as missing.
     if diagnostics.is_empty() {
-        let given = given(&attributes, criterion, keep);
-        facts::check(draft, &choices, given, registry, &mut diagnostics);
+        let given = description_values(&attributes, criterion, keep);
+        capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
-    let variant = Variant::proven(Description {
+    let variant = Variant::new(Description {
         name: draft.name.clone(),
         technique: technique.map(|technique| technique.key.clone()),
         attributes,
@@ -45,10 +45,10 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         helpers: draft.helpers.clone(),
         choices,
     });
-    diagnostics.gate(variant)
+    diagnostics.into_result(variant)
 }
 
-/// How many fragments stay: what the description says, else the technique.
+/// Returns the number of kept fragments: the description's, else the technique's; `None` for all.
 fn keep(draft: &Draft, default: Option<KeepDefault>, diagnostics: &mut Diagnostics) -> Option<u32> {
     let Some(keep) = &draft.keep else {
         return match default {
@@ -60,19 +60,19 @@ fn keep(draft: &Draft, default: Option<KeepDefault>, diagnostics: &mut Diagnosti
         if let Some(criterion) = &keep.criterion {
             diagnostics.push(Diagnostic::new(
                 codes::KEEP_MISMATCH,
-                &criterion.origin,
-                "a criterion chooses among fragments, but `keep all` keeps every one",
-                "write `keep 8 least |f| …` to keep the 8 least, or drop `least …`; to turn fragments away use `where`",
+                &criterion.span,
+                "a criterion selects among fragments, but `keep all` keeps every fragment",
+                "write `keep 8 least |f| …` to keep the 8 least, or remove `least …`; to reject fragments, use `where`",
             ));
         }
         return None;
     };
-    if k == 0 || k > MOST_KEPT {
+    if k == 0 || k > MAX_K {
         diagnostics.push(Diagnostic::new(
-            codes::CAPACITY,
-            &keep.count.origin,
+            codes::K_OUT_OF_RANGE,
+            &keep.count.span,
             format!("a pixel cannot keep {k} fragments"),
-            format!("keep from 1 to {MOST_KEPT}; `keep all` with a storage such as linked_list has no limit"),
+            format!("keep from 1 to {MAX_K}; `keep all` with a storage such as linked_list has no limit"),
         ));
     }
     Some(k)

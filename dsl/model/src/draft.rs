@@ -1,35 +1,35 @@
-//! A description as the user gave it: every part where it was written, nothing checked but its types.
+//! A description as the user wrote it: every part with its span. Only the types of closures are checked.
 //!
-//! The three doors of the language (file, macro, builder) each make a [`Draft`]; equal descriptions make equal drafts.
-//! User closures arrive here already type-checked and lowered to WGSL, because all doors share one type checker.
+//! Each front end of the language (file, macro, builder) makes a [`Draft`]; equal descriptions make equal drafts. User
+//! closures are already type-checked and lowered to WGSL, because all front ends share one type checker.
 
-use crate::{Origin, Spanned};
+use crate::{SourceSpan, Spanned};
 
-/// One described fragment buffer, unchecked.
+/// The description of one fragment buffer, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     /// The buffer's name, an UpperCamel identifier.
     pub name: Spanned<String>,
-    /// The technique whose choices this description starts from (`from kplus_array`).
+    /// The technique whose choices are the defaults (`from kplus_array`).
     pub preset: Option<Spanned<String>>,
-    /// What a fragment carries, in the user's order. Empty: the papers' payload, `color: rgba8, depth: f32`.
+    /// The payload, in the user's order. Empty: the papers' payload, `color: rgba8, depth: f32`.
     pub attributes: Vec<Attribute>,
-    /// Values the closures read that are the same for a whole pass.
+    /// Values that closures read, constant during a pass.
     pub uniforms: Vec<Uniform>,
-    /// How many fragments stay per pixel, and which are worst. Absent: the preset's.
+    /// The number of kept fragments per pixel, and the criterion. Absent: the preset's.
     pub keep: Option<Keep>,
-    /// A fragment enters iff all of these return true.
+    /// A fragment is admitted iff all of these return true.
     pub constraints: Vec<UserFunction>,
     /// `axis: value else value`, in the user's order.
     pub choices: Vec<Choice>,
-    /// What is made of the kept fragments, as a closure. A named effect is a choice on the axis `resolve`.
+    /// The effect, as a closure over the kept fragments. A named effect is a choice on the axis `resolve`.
     pub resolve: Option<UserFunction>,
     /// Helper functions that closures call, in the user's order.
     pub helpers: Vec<UserFunction>,
 }
 
 impl Draft {
-    /// A draft that says its name and nothing else.
+    /// Creates a draft that has only a name.
     pub fn empty(name: Spanned<String>) -> Self {
         Draft {
             name,
@@ -50,11 +50,11 @@ impl Draft {
 pub struct Attribute {
     /// The name as the user wrote it.
     pub name: Spanned<String>,
-    /// How it is stored.
+    /// Its storage format.
     pub format: Spanned<Format>,
 }
 
-/// How an attribute is stored, and so what a closure sees of it.
+/// The storage format of an attribute, which also determines its type in closures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
     /// 1 word; a closure sees `f32`.
@@ -88,7 +88,7 @@ impl Format {
         Format::Octahedral,
     ];
 
-    /// The word of the language.
+    /// Returns the keyword of the language.
     pub fn keyword(self) -> &'static str {
         match self {
             Format::F32 => "f32",
@@ -102,7 +102,7 @@ impl Format {
         }
     }
 
-    /// 32-bit words in memory.
+    /// Returns the number of 32-bit words in memory.
     pub fn words(self) -> u32 {
         match self {
             Format::F32 | Format::U32 | Format::Rgba8 | Format::Octahedral => 1,
@@ -112,7 +112,7 @@ impl Format {
         }
     }
 
-    /// The WGSL type that a shader and a closure see.
+    /// Returns the type in WGSL and in closures.
     pub fn wgsl_type(self) -> &'static str {
         match self {
             Format::F32 => "f32",
@@ -155,7 +155,7 @@ impl UniformType {
     pub const ALL: [UniformType; 6] =
         [UniformType::F32, UniformType::U32, UniformType::I32, UniformType::Vec2, UniformType::Vec3, UniformType::Vec4];
 
-    /// The word of the language.
+    /// Returns the keyword of the language.
     pub fn keyword(self) -> &'static str {
         match self {
             UniformType::F32 => "f32",
@@ -167,7 +167,7 @@ impl UniformType {
         }
     }
 
-    /// The WGSL type.
+    /// Returns the WGSL type.
     pub fn wgsl_type(self) -> &'static str {
         match self {
             UniformType::F32 => "f32",
@@ -183,16 +183,16 @@ impl UniformType {
 /// The `keep` line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keep {
-    /// How many.
+    /// The number of kept fragments.
     pub count: Spanned<KeepCount>,
     /// h(f) of K15 §3.2.2: the fragment with the greatest value is the worst. Absent: depth.
     pub criterion: Option<UserFunction>,
 }
 
-/// How many fragments a pixel keeps.
+/// The number of fragments that a pixel keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeepCount {
-    /// Every one: an A-buffer.
+    /// All: an A-buffer.
     All,
     /// The k best: a k-buffer.
     AtMost(u32),
@@ -207,14 +207,14 @@ impl From<u32> for KeepCount {
 /// `axis: value { options } else value { options }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// The axis, a word of the registry.
+    /// The key of the axis in the registry.
     pub axis: Spanned<String>,
-    /// At least one; the first that a target can express is taken there.
+    /// At least one; each target takes the first that it supports.
     pub alternatives: Vec<Alternative>,
 }
 
 impl Choice {
-    /// Whether it only sets options of a value that it leaves to the preset (`--set sync.limit=9`).
+    /// Whether it only sets options of a value that the preset chooses (`--set sync.limit=9`).
     pub fn only_options(&self) -> bool {
         self.alternatives.iter().all(|alternative| alternative.value.value.is_empty())
     }
@@ -223,7 +223,7 @@ impl Choice {
 /// One value on an axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alternative {
-    /// The value, a word of the registry; empty where only options are set.
+    /// The key of the value in the registry; empty if only options are set.
     pub value: Spanned<String>,
     /// `{ name: value, … }` in the user's order.
     pub options: Vec<(Spanned<String>, Spanned<OptionValue>)>,
@@ -234,8 +234,8 @@ pub struct Alternative {
 pub enum OptionValue {
     /// A whole number.
     Number(u32),
-    /// A word.
-    Word(String),
+    /// A name.
+    Name(String),
 }
 
 impl From<u32> for OptionValue {
@@ -245,25 +245,25 @@ impl From<u32> for OptionValue {
 }
 
 impl From<&str> for OptionValue {
-    fn from(word: &str) -> Self {
-        OptionValue::Word(word.to_owned())
+    fn from(name: &str) -> Self {
+        OptionValue::Name(name.to_owned())
     }
 }
 
-/// A closure or helper function of the user's, type-checked and lowered to WGSL.
+/// A closure or helper function of the user, type-checked and lowered to WGSL.
 #[derive(Clone, Debug)]
 pub struct UserFunction {
     /// Its name in WGSL: `user_criterion`, `user_admit_0`, `user_resolve`, `user_<helper>`.
     pub name: String,
-    /// Where it begins.
-    pub origin: Origin,
-    /// The user's text, tokens separated by single spaces.
+    /// The span of its first token.
+    pub span: SourceSpan,
+    /// The user's source, tokens separated by single spaces.
     pub rust: String,
     /// The whole WGSL function, ending in a newline.
     pub wgsl: String,
-    /// Where each line of `wgsl` comes from; as many as `wgsl` has lines.
-    pub lines: Vec<Origin>,
-    /// What it reads.
+    /// The source span of each line of `wgsl`.
+    pub lines: Vec<SourceSpan>,
+    /// The attributes and uniforms that it reads.
     pub reads: Reads,
 }
 
@@ -273,7 +273,7 @@ impl PartialEq for UserFunction {
     }
 }
 
-/// What a user function reads, helpers included. Names are the user's, each once, in order of first use.
+/// The attributes and uniforms that a user function and its helpers read: the user's names, in order of first use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reads {
     /// Attributes of fragments.

@@ -1,26 +1,28 @@
-//! The model of a fragment buffer: what a user described ([`Draft`]), what passed our rules ([`Variant`]), and what is
-//! wrong with it ([`Diagnostic`]). Doors (file, macro, builder) make drafts; [`check`] is the only maker of variants.
+//! The model of a fragment buffer: the user's description ([`Draft`]), the checked description ([`Variant`]), and the
+//! errors in it ([`Diagnostic`]). Front ends (file, macro, builder) make drafts; only [`check`] makes variants.
 //!
-//! Nothing here parses text, writes WGSL, or knows naga, wgpu or a technique by name.
+//! This crate does not parse, does not write WGSL, does not depend on naga or wgpu, and names no technique.
 
 mod check;
 mod diagnostic;
 mod draft;
 mod names;
-mod origin;
-mod own;
+mod nearest_name;
 mod set;
+mod span;
 mod uniform_block;
+mod user_row;
 mod variant;
 
-pub use check::{MOST_KEPT, check};
+pub use check::{MAX_K, check};
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, codes};
 pub use draft::{
     Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, Reads, Uniform, UniformType,
     UserFunction,
 };
 pub use names::mangled;
-pub use origin::{Origin, Spanned};
-pub use own::{OwnRow, RowPlaces, written};
+pub use nearest_name::nearest_name;
+pub use span::{SourceSpan, Spanned};
 pub use uniform_block::UniformBlock;
-pub use variant::{Chosen, Description, Refusal, Selected, Selection, Variant};
+pub use user_row::{RowSpans, UserRow};
+pub use variant::{AxisChoice, Description, MissingFeature, SelectedRow, Selection, Variant};

@@ -1,18 +1,18 @@
-//! Names that a user may choose and a target may not: how each is spelled in generated text.
+//! The WGSL spelling of the user's names.
 //!
-//! In: an identifier of the user's. Out: an identifier that WGSL accepts and nothing generated or predeclared has;
-//! different names stay different. Keywords of other targets are each printer's own affair.
+//! Input: an identifier of the user. Output: an identifier that is valid in WGSL and differs from all generated and
+//! predeclared names; different names stay different. Each back end handles the keywords of its own target.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-/// `name` as generated WGSL spells it: itself, or with `_` appended where a keyword, a reserved word, a built-in or a
-/// name of generated code is in the way. No two names are spelled alike:
+/// Returns the WGSL spelling of `name`: the name itself, or with `_` appended if it is a keyword, a reserved word, a
+/// built-in or a name of generated code. Different names have different spellings:
 ///
-/// * a name that ends in `_` gets one more, so it never meets one that was appended to;
-/// * `_` and names that begin with `__`, which WGSL refuses, become `rust…0`; nothing else begins with `rust_` and ends
-///   in something other than `_`.
+/// * a name that ends in `_` gets one more, so it differs from every name to which one `_` was appended;
+/// * `_` and names that begin with `__`, which are invalid in WGSL, become `rust…0`; every other spelling that begins with
+///   `rust_` ends in `_`.
 pub fn mangled(name: &str) -> Cow<'_, str> {
     if name == "_" || name.starts_with("__") {
         Cow::Owned(format!("rust{name}0"))
@@ -31,10 +31,11 @@ fn is_taken(name: &str) -> bool {
     PREFIXES.iter().any(|prefix| name.starts_with(prefix)) || TAKEN.contains(name)
 }
 
-/// Names of generated code and of templates.
-const GENERATED: &str = "CAPACITY Fragment Packed Placed Targets Varyings Vertex coverage frame main uniforms";
+/// Names in generated code and templates.
+const GENERATED: &str =
+    "CAPACITY Fragment Packed VertexOutput Targets FragmentInput Vertex coverage frame main uniforms";
 
-/// Beginnings of names of generated code and of templates.
+/// Prefixes of names in generated code and templates.
 const PREFIXES: [&str; 6] = ["layer", "rust_", "sort_", "storage_", "sync_", "user_"];
 
 /// WGSL §15.1: keywords.

@@ -1,35 +1,39 @@
-//! Where the description's own uniforms lie in their block: WGSL's layout of a uniform struct (WGSL §14.4.1), over the
-//! six types that a uniform may have. std140 gives the same offsets.
+//! The layout of a uniform block: WGSL's layout of a uniform struct (WGSL §14.4.1), for the six types of uniforms. std140
+//! gives the same offsets.
 //!
-//! In: the uniforms in the user's order. Out: offsets and size. Nothing here holds values.
+//! Input: the types in the order of the block. Output: offsets and size.
 
 use crate::{Uniform, UniformType};
 
 /// Offsets and size of a block of uniforms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UniformBlock {
-    /// Of each uniform, in bytes, in the user's order.
+    /// The byte offset of each uniform, in the order of the block.
     pub offsets: Vec<u32>,
-    /// Of the whole block, in bytes: a multiple of 16; 0 where there are no uniforms.
+    /// The size in bytes, a multiple of 16; 0 if there are no uniforms.
     pub size: u32,
 }
 
 impl UniformBlock {
-    /// The block of these uniforms.
+    /// Lays out the uniforms of a description.
     pub fn of(uniforms: &[Uniform]) -> Self {
-        let mut end = 0;
-        let mut offsets = Vec::with_capacity(uniforms.len());
-        for uniform in uniforms {
-            let offset = u32::next_multiple_of(end, uniform.kind.value.alignment());
+        Self::of_types(uniforms.iter().map(|uniform| uniform.kind.value))
+    }
+
+    /// Lays out uniforms of these types.
+    pub fn of_types(types: impl IntoIterator<Item = UniformType>) -> Self {
+        let (mut end, mut offsets) = (0, Vec::new());
+        for kind in types {
+            let offset = u32::next_multiple_of(end, kind.alignment());
             offsets.push(offset);
-            end = offset + uniform.kind.value.size();
+            end = offset + kind.size();
         }
         UniformBlock { offsets, size: end.next_multiple_of(16) }
     }
 }
 
 impl UniformType {
-    /// Bytes in a block.
+    /// Returns the size in bytes.
     pub fn size(self) -> u32 {
         match self {
             UniformType::F32 | UniformType::U32 | UniformType::I32 => 4,
@@ -39,7 +43,7 @@ impl UniformType {
         }
     }
 
-    /// Its offset is a multiple of this.
+    /// Returns the alignment in bytes.
     pub fn alignment(self) -> u32 {
         match self {
             UniformType::F32 | UniformType::U32 | UniformType::I32 => 4,
@@ -52,20 +56,16 @@ impl UniformType {
 #[cfg(test)]
 mod tests {
     use super::UniformBlock;
-    use crate::{Origin, Spanned, Uniform, UniformType};
+    use crate::UniformType;
 
     fn block(kinds: &[UniformType]) -> UniformBlock {
-        let origin = Origin::new("test", 1, 1);
-        let uniform = |kind: &UniformType| Uniform {
-            name: Spanned::new("any".to_owned(), origin.clone()),
-            kind: Spanned::new(*kind, origin.clone()),
-        };
-        UniformBlock::of(&kinds.iter().map(uniform).collect::<Vec<_>>())
+        UniformBlock::of_types(kinds.iter().copied())
     }
 
-    /// The offsets of WGSL's own example of a struct (§14.4.1), as far as our types go, and blocks around a `vec3`.
+    /// The offsets of WGSL's example of a struct (§14.4.1), without the types that a uniform cannot have, and blocks with a
+    /// `vec3`.
     #[test]
-    fn offsets_are_wgsls() {
+    fn offsets_follow_wgsl() {
         use UniformType::{F32, U32, Vec2, Vec3, Vec4};
         assert_eq!(block(&[F32, F32, Vec2, Vec3, F32]), UniformBlock { offsets: vec![0, 4, 8, 16, 28], size: 32 });
         assert_eq!(block(&[U32, Vec3, Vec4, F32]), UniformBlock { offsets: vec![0, 16, 32, 48], size: 64 });

@@ -1,102 +1,102 @@
-//! A description that passed our rules. The only maker is [`crate::check`]: to hold a [`Variant`] is proof of the check.
+//! A checked description. Only [`crate::check`] creates a [`Variant`], so a value of this type is proof of the check.
 
 use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Capability, Fact, Given, Kept, Merges, Row, Soundness};
+use fragbuf_templates::vocabulary::{Capability, DescriptionValues, Feature, KeptFragments, Merges, Row, Soundness};
 
-use crate::check::given;
-use crate::{Attribute, Origin, Spanned, Uniform, UserFunction};
+use crate::check::description_values;
+use crate::{Attribute, SourceSpan, Spanned, Uniform, UserFunction};
 
 /// A checked fragment buffer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant(Description);
 
-/// What a [`Variant`] says. Plain data; only its wrapper is proof of anything.
+/// The data of a [`Variant`]. Only the wrapper is proof of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// The buffer's name.
     pub name: Spanned<String>,
-    /// The technique that it started from.
+    /// The preset.
     pub technique: Option<String>,
-    /// What a fragment carries, in the user's order; one of them is `depth`.
+    /// The payload, in the user's order; one attribute is `depth`.
     pub attributes: Vec<Attribute>,
-    /// Values that are the same for a whole pass.
+    /// Values that are constant during a pass.
     pub uniforms: Vec<Uniform>,
-    /// How many fragments a pixel keeps; `None`: all.
+    /// The number of fragments that a pixel keeps; `None`: all.
     pub keep: Option<u32>,
     /// h(f); `None`: depth.
     pub criterion: Option<UserFunction>,
-    /// A fragment enters iff all return true.
+    /// A fragment is admitted iff all return true.
     pub constraints: Vec<UserFunction>,
-    /// The description's own effect; `None`: the one chosen on the axis `resolve`.
+    /// The effect as a closure; `None`: the effect chosen on the axis `resolve`.
     pub resolve: Option<UserFunction>,
-    /// Functions that the others call.
+    /// Functions that the closures call.
     pub helpers: Vec<UserFunction>,
     /// One entry per axis, in the order of the axes.
-    pub choices: Vec<Chosen>,
+    pub choices: Vec<AxisChoice>,
 }
 
-/// The choice on one axis, in order of preference.
+/// The rows chosen on one axis, in order of preference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chosen {
+pub struct AxisChoice {
     /// The axis.
     pub axis: String,
-    /// Where it was said; the place of the preset or the name where nobody said it.
-    pub origin: Origin,
+    /// The span of the choice; if the description does not choose, that of the preset or the buffer's name.
+    pub span: SourceSpan,
     /// At least one.
-    pub alternatives: Vec<Selected>,
+    pub alternatives: Vec<SelectedRow>,
 }
 
-/// One row, with the numbers that a user set on it.
+/// One row, with the options that the user set.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Selected {
-    /// The row, shared by everything that is made from the variant.
+pub struct SelectedRow {
+    /// The row, shared by all plans of the variant.
     pub row: Arc<Row>,
-    /// (parameter, value) for those that were set.
+    /// Parameter and value, for each option that is set.
     pub options: Vec<(String, u32)>,
 }
 
-/// One row per axis: what a plan is made from.
+/// One row per axis; a plan is made from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     /// In the order of the axes.
-    pub rows: Vec<Selected>,
+    pub rows: Vec<SelectedRow>,
 }
 
 impl Variant {
-    pub(crate) fn proven(description: Description) -> Self {
+    pub(crate) fn new(description: Description) -> Self {
         Variant(description)
     }
 
-    /// What the description gives to conditions of the rows of a selection.
-    pub fn given(&self, selection: &Selection) -> Given {
+    /// Returns the values that the conditions of the selection's rows read.
+    pub fn description_values(&self, selection: &Selection) -> DescriptionValues {
         let rows = selection.rows.iter().map(|selected| &*selected.row);
-        with_carried(given(&self.attributes, self.criterion.as_ref(), self.keep), rows)
+        with_extra_words(description_values(&self.attributes, self.criterion.as_ref(), self.keep), rows)
     }
 
-    /// The rows for a target with the capabilities `target`: the first alternative on each axis that it can express. `Err`:
-    /// the last alternative of an axis, and what it needs.
-    pub fn select(&self, target: &[Capability]) -> Result<Selection, Refusal> {
+    /// Returns the rows for a target with the features `target`: on each axis, the first alternative that it supports.
+    /// `Err`: the last alternative of an axis, and the feature that it needs.
+    pub fn select(&self, target: &[Feature]) -> Result<Selection, MissingFeature> {
         let mut rows = Vec::with_capacity(self.choices.len());
         for chosen in &self.choices {
-            let mut refusal = None;
+            let mut unsupported = None;
             for selected in &chosen.alternatives {
                 match missing_on_target(&selected.row, target) {
                     None => {
                         rows.push(selected.clone());
-                        refusal = None;
+                        unsupported = None;
                         break;
                     }
-                    Some(capability) => {
+                    Some(feature) => {
                         let (axis, value) = (chosen.axis.clone(), selected.row.key.clone());
-                        refusal = Some(Refusal { axis, value, capability });
+                        unsupported = Some(MissingFeature { axis, value, feature });
                     }
                 }
             }
-            if let Some(refusal) = refusal {
-                return Err(refusal);
+            if let Some(unsupported) = unsupported {
+                return Err(unsupported);
             }
         }
         Ok(Selection { rows })
@@ -111,75 +111,75 @@ impl Deref for Variant {
     }
 }
 
-/// Why a target cannot express a variant.
+/// The reason why a target does not support a variant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
-    /// The axis of the row that needs more.
+pub struct MissingFeature {
+    /// The axis of the row.
     pub axis: String,
-    /// The row.
+    /// The key of the row.
     pub value: String,
-    /// What it needs.
-    pub capability: Capability,
+    /// The feature that it needs.
+    pub feature: Feature,
 }
 
-impl std::fmt::Display for Refusal {
+impl std::fmt::Display for MissingFeature {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.capability.meaning())
+        write!(f, "`{}: {}` requires {}", self.axis, self.value, self.feature.meaning())
     }
 }
 
-/// The same with the words that these rows carry.
-pub(crate) fn with_carried<'a>(given: Given, rows: impl Iterator<Item = &'a Row>) -> Given {
-    let carried: usize = rows.map(|row| row.carries.len()).sum();
-    Given { payload_words: given.payload_words + carried as u32, ..given }
+/// Adds the extra words of these rows to the payload.
+pub(crate) fn with_extra_words<'a>(given: DescriptionValues, rows: impl Iterator<Item = &'a Row>) -> DescriptionValues {
+    let extra: usize = rows.map(|row| row.extra_words.len()).sum();
+    DescriptionValues { payload_words: given.payload_words + extra as u32, ..given }
 }
 
-fn missing_on_target(row: &Row, target: &[Capability]) -> Option<Capability> {
-    row.needs.iter().copied().find(|capability| !target.contains(capability))
+fn missing_on_target(row: &Row, target: &[Feature]) -> Option<Feature> {
+    row.needs.iter().copied().find(|feature| !target.contains(feature))
 }
 
 impl Selection {
-    /// The first alternative on every axis.
+    /// Selects the first alternative on every axis.
     pub fn first(variant: &Variant) -> Self {
         Selection { rows: variant.choices.iter().filter_map(|chosen| chosen.alternatives.first().cloned()).collect() }
     }
 
-    /// The last alternative on every axis.
+    /// Selects the last alternative on every axis.
     pub fn last(variant: &Variant) -> Self {
         Selection { rows: variant.choices.iter().filter_map(|chosen| chosen.alternatives.last().cloned()).collect() }
     }
 
-    /// The row on one axis.
-    pub fn row(&self, axis: &str) -> Option<&Selected> {
+    /// Returns the row on one axis.
+    pub fn row(&self, axis: &str) -> Option<&SelectedRow> {
         self.rows.iter().find(|selected| selected.row.axis == axis)
     }
 
-    /// What the safety of the whole rests on: the weakest of its rows.
+    /// Returns the soundness of the weakest row.
     pub fn soundness(&self) -> Soundness {
         self.rows.iter().map(|selected| selected.row.soundness).max().unwrap_or(Soundness::Atomics)
     }
 
-    /// The files of the user's own among the rows' templates, by their names in messages.
-    pub fn own_files(&self) -> impl Iterator<Item = &str> {
-        self.rows.iter().filter_map(|selected| selected.row.template.as_ref()?.own.as_deref())
+    /// Returns the user files among the rows' templates, by their names in messages.
+    pub fn user_files(&self) -> impl Iterator<Item = &str> {
+        self.rows.iter().filter_map(|selected| selected.row.template.as_ref()?.user_file.as_deref())
     }
 
-    /// Which fragments stay, as the row says that stores them; `None`: none says so.
-    pub fn kept(&self) -> Option<Kept> {
+    /// Returns the set of kept fragments, as the storing row declares it; `None`: no row declares it.
+    pub fn kept(&self) -> Option<KeptFragments> {
         self.rows.iter().find_map(|selected| selected.row.kept())
     }
 
-    /// How entries become one, where a row merges them.
+    /// Returns how entries are merged, if a row merges them.
     pub fn merges(&self) -> Option<&Merges> {
         self.rows.iter().find_map(|selected| selected.row.merges.as_ref())
     }
 
-    /// Everything that the rows offer.
-    pub fn offers(&self) -> Vec<Fact> {
-        self.rows.iter().flat_map(|selected| selected.row.offers.iter().copied()).collect()
+    /// Returns the capabilities that the rows provide.
+    pub fn provides(&self) -> Vec<Capability> {
+        self.rows.iter().flat_map(|selected| selected.row.provides.iter().copied()).collect()
     }
 
-    /// `axis=value` for every axis, options in brackets.
+    /// Returns `axis=value` for every axis, with options in brackets.
     pub fn describe(&self) -> String {
         let mut text = String::new();
         for selected in &self.rows {

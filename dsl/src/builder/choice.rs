@@ -1,58 +1,58 @@
-//! What is chosen on an axis: a value with its options, and what to take where a target cannot express it.
+//! The choice on an axis: a value with its options, and alternatives for targets that do not support it.
 //!
-//! In: words of the registry, unchecked. Out: a choice of the model, each word at the place where the program says it.
+//! Input: keys of the registry, unchecked. Output: a choice of the model, in which each key has the span of the call.
 
 use fragbuf_model::{Alternative, Choice, OptionValue, Spanned};
 
-use super::here;
+use super::at_caller;
 
-/// `value { option: number } else value`; a plain word is one too.
+/// `value { option: number } else value`; a key alone converts to it.
 #[derive(Clone, Debug)]
-#[must_use = "a value is to be chosen: `.choose(axis, value)`"]
+#[must_use = "pass the value to `.choose(axis, value)`"]
 pub struct Value {
-    before: Vec<Alternative>,
+    earlier: Vec<Alternative>,
     last: Alternative,
 }
 
-/// A value of some axis.
+/// Creates a value of an axis.
 #[track_caller]
-pub fn value(word: impl Into<String>) -> Value {
-    Value { before: Vec::new(), last: Alternative { value: here(word.into()), options: Vec::new() } }
+pub fn value(key: impl Into<String>) -> Value {
+    Value { earlier: Vec::new(), last: Alternative { value: at_caller(key.into()), options: Vec::new() } }
 }
 
 impl Value {
-    /// `{ name: value }` behind the value said last: a number or a word.
+    /// Adds the option `{ name: value }` to the last alternative; its value is a number or a name.
     #[track_caller]
     pub fn option(mut self, name: impl Into<String>, value: impl Into<OptionValue>) -> Self {
-        self.last.options.push((here(name.into()), here(value.into())));
+        self.last.options.push((at_caller(name.into()), at_caller(value.into())));
         self
     }
 
-    /// `else value`: taken on targets that cannot express those before.
+    /// Adds `else value`: targets that do not support the earlier alternatives take it.
     #[track_caller]
     pub fn or_else(mut self, other: impl Into<Value>) -> Self {
         let other = other.into();
-        self.before.push(self.last);
-        self.before.extend(other.before);
-        Value { before: self.before, last: other.last }
+        self.earlier.push(self.last);
+        self.earlier.extend(other.earlier);
+        Value { earlier: self.earlier, last: other.last }
     }
 
-    pub(crate) fn on(self, axis: Spanned<String>) -> Choice {
-        let alternatives = self.before.into_iter().chain([self.last]).collect();
+    pub(super) fn on(self, axis: Spanned<String>) -> Choice {
+        let alternatives = self.earlier.into_iter().chain([self.last]).collect();
         Choice { axis, alternatives }
     }
 }
 
 impl From<&str> for Value {
     #[track_caller]
-    fn from(word: &str) -> Self {
-        value(word)
+    fn from(key: &str) -> Self {
+        value(key)
     }
 }
 
 impl From<String> for Value {
     #[track_caller]
-    fn from(word: String) -> Self {
-        value(word)
+    fn from(key: String) -> Self {
+        value(key)
     }
 }

@@ -1,42 +1,42 @@
-//! Functions of a description that a program hands over: as tokens of its own source, or as text that it made.
+//! Functions that a program gives to the builder: as tokens of the program's source, or as generated source.
 //!
-//! In: what `closure!` and `function!` captured, or text. Out: the tokens with their places. Whether they are a closure or
-//! a function at all is the grammar's to say.
+//! Input: tokens that `closure!` and `function!` captured, or a string. Output: the tokens with their spans. The grammar
+//! checks later that they are a closure or a function.
 
-use fragbuf_syntax::Captured;
+use fragbuf_syntax::CapturedTokens;
 
-use super::here;
+use super::at_caller;
 
-/// `|f, u| …`, as `closure!` makes it.
+/// A closure `|f, u| …`; `closure!` captures one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Closure(pub(crate) Captured);
+pub struct Closure(pub(crate) CapturedTokens);
 
 impl Closure {
-    /// Tokens of the program's own source; what `closure!` expands to.
-    pub const fn captured(tokens: Captured) -> Self {
+    /// Wraps tokens of the program's source; `closure!` expands to this call.
+    pub const fn captured(tokens: CapturedTokens) -> Self {
         Closure(tokens)
     }
 
-    /// Text that the program made. Every mistake in it stands where it is handed over.
+    /// Wraps generated source. Every diagnostic in it has the span of this call.
     #[track_caller]
     pub fn text(text: impl Into<String>) -> Self {
-        Closure(Captured::made(text, &here(()).origin))
+        Closure(CapturedTokens::from_source(text, &at_caller(()).span))
     }
 }
 
-/// `fn name(…) -> … { … }`, as `function!` makes it.
+/// A function `fn name(…) -> … { … }`; `function!` captures one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Function(pub(crate) Captured);
+pub struct Function(pub(crate) CapturedTokens);
 
 impl Function {
-    /// Tokens of the program's own source; what `function!` expands to.
-    pub const fn captured(tokens: Captured) -> Self {
+    /// Wraps tokens of the program's source; `function!` expands to this call.
+    pub const fn captured(tokens: CapturedTokens) -> Self {
         Function(tokens)
     }
 
-    /// Text that the program made. Every mistake in it stands where it is handed over.
+    /// Wraps generated source. Every diagnostic in it has the span of this call.
     #[track_caller]
     pub fn text(text: impl Into<String>) -> Self {
-        Function(Captured::made(text, &here(()).origin))
+        Function(CapturedTokens::from_source(text, &at_caller(()).span))
     }
 }

@@ -1,26 +1,26 @@
-//! Names with `::` in them: constants of the number types and of glam's vectors.
+//! Constants of the number types and of glam's vectors.
 //!
-//! In: the segments of a path. Out: a literal's value, or the components of a vector. Functions such as `Vec3::new` are
-//! in `check/calls.rs`.
+//! Input: the segments of a path. Output: the value of a number, or the components of a vector. Functions such as
+//! `Vec3::new` are in `check/calls.rs`.
 
 use std::f32::consts;
 
-/// What a constant is.
+/// The value of a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Constant {
     Float(f32),
     U32(u32),
     I32(i32),
-    /// A vector of all the same.
+    /// A vector with equal components: size and value.
     Splat(u8, f32),
-    /// A unit vector: size, which component, and its value.
+    /// A unit vector: size, index of the component, and its value.
     Axis(u8, u8, f32),
 }
 
-/// The constant that this path names, `std` and `core` already taken off.
+/// Returns the constant of a path without `std` or `core`.
 pub(crate) fn find(path: &[String]) -> Option<Constant> {
-    let words: Vec<&str> = path.iter().map(String::as_str).collect();
-    match words.as_slice() {
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    match path.as_slice() {
         ["f32", "consts", name] => FLOAT_CONSTS.iter().find(|row| row.0 == *name).map(|row| Constant::Float(row.1)),
         ["f32", name] => FLOATS.iter().find(|row| row.0 == *name).map(|row| Constant::Float(row.1)),
         ["u32", "MIN"] => Some(Constant::U32(u32::MIN)),
@@ -44,18 +44,18 @@ fn vector(size: u8, name: &str) -> Option<Constant> {
         Some(axis) => (axis, -1.0),
         None => (name, 1.0),
     };
-    let index = ["X", "Y", "Z", "W"].iter().take(usize::from(size)).position(|word| *word == axis)?;
+    let index = ["X", "Y", "Z", "W"].iter().take(usize::from(size)).position(|name| *name == axis)?;
     Some(Constant::Axis(size, u8::try_from(index).ok()?, value))
 }
 
-/// Every path of a constant, for "did you mean".
+/// Returns the path of every constant, for suggestions.
 pub(crate) fn names() -> Vec<String> {
     let mut all: Vec<String> = FLOATS.iter().map(|row| format!("f32::{}", row.0)).collect();
     all.extend(FLOAT_CONSTS.iter().map(|row| format!("f32::consts::{}", row.0)));
     all.extend(["u32::MIN", "u32::MAX", "i32::MIN", "i32::MAX"].map(String::from));
     for (size, axes) in [(2, "X Y"), (3, "X Y Z"), (4, "X Y Z W")] {
-        let words = axes.split(' ').chain(["ZERO", "ONE", "NEG_ONE"]);
-        all.extend(words.map(|word| format!("Vec{size}::{word}")));
+        let names = axes.split(' ').chain(["ZERO", "ONE", "NEG_ONE"]);
+        all.extend(names.map(|name| format!("Vec{size}::{name}")));
     }
     all
 }

@@ -1,43 +1,43 @@
-//! Constant expressions: what is known before any shader runs.
+//! Constant folding.
 //!
-//! In: a checked function. Out: the values of expressions made of literals, and a mistake wherever WGSL would refuse such
-//! a value: overflow, a division by zero, a result that is not finite. WGSL refuses these when a shader is created, so
-//! they must not get that far. Calls of methods are never constant here: the printer makes sure of it in WGSL too.
+//! Input: a checked function. Output: the values of expressions of literals, and an error for every value that WGSL rejects
+//! when a shader is created: overflow, a division by zero, a result that is not finite. Method calls are never constant
+//! here; the printer ensures the same in WGSL.
 
-use fragbuf_model::{Origin, codes};
+use fragbuf_model::{SourceSpan, codes};
 
 use crate::methods::Spelling;
 use crate::report::Report;
-use crate::tree::{Block, Expr, Function, Kind, Operator, Over, Statement};
+use crate::tree::{Block, Expr, Function, Kind, Operator, Sequence, Statement};
 use crate::types::Type;
 
-/// A known value.
+/// The value of a constant expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// A number, or the components of a vector.
+    /// A float, or the components of a vector.
     Float(Vec<f32>),
     U32(u32),
     I32(i32),
     Bool(bool),
 }
 
-/// Reports every constant that WGSL would refuse.
-pub(crate) fn refuse_overflow(function: &Function, report: &mut Report) {
-    let mut wrong = |origin: &Origin, message: &str, hint: &str| {
-        report.error(codes::OUT_OF_RANGE, origin, message, hint);
+/// Reports every constant that WGSL rejects.
+pub(crate) fn reject_overflow(function: &Function, report: &mut Report) {
+    let mut error = |span: &SourceSpan, message: &str, help: &str| {
+        report.error(codes::OUT_OF_RANGE, span, message, help);
     };
-    Folding { function, wrong: &mut wrong }.block(&function.body);
+    Folding { function, error: &mut error }.block(&function.body);
 }
 
-/// The value of a constant expression.
+/// Returns the value of a constant expression.
 pub(crate) fn constant(expr: &Expr, function: &Function) -> Option<Value> {
     let has_statements = matches!(expr.kind, Kind::If(_) | Kind::For(_) | Kind::Block(_));
-    if has_statements { None } else { Folding { function, wrong: &mut |_, _, _| {} }.expr(expr) }
+    if has_statements { None } else { Folding { function, error: &mut |_, _, _| {} }.expr(expr) }
 }
 
 struct Folding<'a> {
     function: &'a Function,
-    wrong: &'a mut dyn FnMut(&Origin, &str, &str),
+    error: &'a mut dyn FnMut(&SourceSpan, &str, &str),
 }
 
 impl Folding<'_> {
@@ -54,7 +54,7 @@ impl Folding<'_> {
         let ty = self.function.type_of(expr);
         match &expr.kind {
             Kind::Float(value) => Some(Value::Float(vec![*value])),
-            Kind::Whole(value) => whole(*value, ty),
+            Kind::Integer(value) => literal(*value, ty),
             Kind::Bool(value) => Some(Value::Bool(*value)),
             Kind::Negate(inner) => self.negate(inner, expr, ty),
             Kind::Not(inner) => not(self.expr(inner)?),
@@ -69,7 +69,7 @@ impl Folding<'_> {
                 self.expr(place);
                 let value = self.expr(value);
                 if let (Some(operator), Some(value)) = (operator, &value) {
-                    self.divisor(*operator, value, expr);
+                    self.check_right_operand(*operator, value, expr);
                 }
                 None
             }
@@ -82,29 +82,29 @@ impl Folding<'_> {
             other => {
                 let values: Vec<Option<Value>> =
                     other.operands().into_iter().map(|operand| self.expr(operand)).collect();
-                self.endless(other, &values, expr);
+                self.check_loop_range(other, &values, expr);
                 other.block().map(|block| self.block(block));
                 None
             }
         }
     }
 
-    /// A loop up to and with the greatest number would count past it.
-    fn endless(&mut self, kind: &Kind, bounds: &[Option<Value>], expr: &Expr) {
+    /// Rejects an inclusive range that ends at the greatest number: the loop counter would overflow.
+    fn check_loop_range(&mut self, kind: &Kind, bounds: &[Option<Value>], expr: &Expr) {
         let Kind::For(each) = kind else { return };
-        let (Over::Range { inclusive: true, .. }, [_, Some(end)]) = (&each.over, bounds) else { return };
+        let (Sequence::Range { inclusive: true, .. }, [_, Some(end)]) = (&each.sequence, bounds) else { return };
         if matches!(end, Value::U32(u32::MAX) | Value::I32(i32::MAX)) {
-            self.refuse(expr, "this loop would count past the greatest number", "write `a..b`, or a smaller end");
+            self.reject(expr, "this loop would count past the greatest number", "write `a..b`, or a smaller end");
         }
     }
 
-    fn refuse(&mut self, expr: &Expr, message: &str, hint: &str) -> Option<Value> {
-        (self.wrong)(&expr.origin, message, hint);
+    fn reject(&mut self, expr: &Expr, message: &str, help: &str) -> Option<Value> {
+        (self.error)(&expr.span, message, help);
         None
     }
 
     fn negate(&mut self, inner: &Expr, expr: &Expr, ty: Type) -> Option<Value> {
-        if let (Kind::Whole(value), Type::I32) = (&inner.kind, ty) {
+        if let (Kind::Integer(value), Type::I32) = (&inner.kind, ty) {
             let negative = i64::try_from(*value).ok().and_then(|value| i32::try_from(-value).ok());
             return negative.map(Value::I32);
         }
@@ -113,7 +113,7 @@ impl Folding<'_> {
             Value::I32(value) => match value.checked_neg() {
                 Some(value) => Some(Value::I32(value)),
                 None => {
-                    self.refuse(expr, "this constant overflows an `i32`", "the least `i32` has no positive counterpart")
+                    self.reject(expr, "this constant overflows an `i32`", "the least `i32` has no positive counterpart")
                 }
             },
             _ => None,
@@ -138,32 +138,25 @@ impl Folding<'_> {
     fn binary(&mut self, operator: Operator, left: &Expr, right: &Expr, expr: &Expr) -> Option<Value> {
         let (left, right) = (self.expr(left), self.expr(right));
         let right = right?;
-        if !self.divisor(operator, &right, expr) {
+        if !self.check_right_operand(operator, &right, expr) {
             return None;
         }
         match (left?, right) {
             (Value::Float(a), Value::Float(b)) => self.floats(operator, &a, &b, expr),
-            (Value::U32(a), b) => self.unsigned(operator, a, &b, expr),
-            (Value::I32(a), b) => self.signed(operator, a, &b, expr),
-            (Value::Bool(a), Value::Bool(b)) => truth(operator, a, b),
-            _ => None,
+            (Value::Bool(a), Value::Bool(b)) => logical(operator, a, b),
+            (left, right) => self.integers(operator, &left, &right, expr),
         }
     }
 
-    /// Whether a known right side is allowed, whatever the left one is.
-    fn divisor(&mut self, operator: Operator, right: &Value, expr: &Expr) -> bool {
+    /// Rejects a right operand that is invalid for every left operand: a zero divisor, or a shift count out of range.
+    fn check_right_operand(&mut self, operator: Operator, right: &Value, expr: &Expr) -> bool {
         let zero = matches!(right, Value::U32(0) | Value::I32(0));
         if zero && matches!(operator, Operator::Divide | Operator::Remainder) {
-            self.refuse(expr, "this divides by zero", "divide by something else");
+            self.reject(expr, "this divides by zero", "divide by something else");
             return false;
         }
-        let bits = match right {
-            Value::U32(bits) => Some(i64::from(*bits)),
-            Value::I32(bits) => Some(i64::from(*bits)),
-            _ => None,
-        };
-        if operator.is_shift() && bits.is_some_and(|bits| !(0..32).contains(&bits)) {
-            self.refuse(expr, "this shifts by more bits than there are", "shift by 0 to 31");
+        if operator.is_shift() && integer(right).is_some_and(|count| !(0..32).contains(&count)) {
+            self.reject(expr, "this shifts by more bits than there are", "shift by 0 to 31");
             return false;
         }
         true
@@ -186,58 +179,45 @@ impl Folding<'_> {
         if parts.iter().all(|part| part.is_finite()) {
             return Some(Value::Float(parts));
         }
-        self.refuse(expr, "this constant is not a finite number", "shaders have no infinity: use `f32::MAX`")
+        self.reject(expr, "this constant is not a finite number", "shaders have no infinity: use `f32::MAX`")
     }
 
-    fn unsigned(&mut self, operator: Operator, a: u32, right: &Value, expr: &Expr) -> Option<Value> {
+    /// Folds an operation on integers in 64 bits, and rejects a result outside the type of the left operand.
+    fn integers(&mut self, operator: Operator, left: &Value, right: &Value, expr: &Expr) -> Option<Value> {
+        let (a, b) = (integer(left)?, integer(right)?);
+        let is_signed = matches!(left, Value::I32(_));
         if operator.is_shift() {
-            let bits = bits(right)?;
-            let shifted = if operator == Operator::ShiftLeft { a << bits } else { a >> bits };
-            return Some(Value::U32(shifted));
+            let shifted = if operator == Operator::ShiftLeft { a << b } else { a >> b };
+            let low = u32::try_from(shifted & i64::from(u32::MAX)).ok()?;
+            return Some(if is_signed { Value::I32(low.cast_signed()) } else { Value::U32(low) });
         }
-        let Value::U32(b) = *right else { return None };
+        if is_signed != matches!(right, Value::I32(_)) {
+            return None;
+        }
         if let Some(result) = compared(operator, Some(&a), Some(&b)) {
             return Some(Value::Bool(result));
         }
+        let in_range = |value: i64| match is_signed {
+            true => i32::try_from(value).ok().map(Value::I32),
+            false => u32::try_from(value).ok().map(Value::U32),
+        };
         let result = match operator {
             Operator::Add => a.checked_add(b),
             Operator::Subtract => a.checked_sub(b),
             Operator::Multiply => a.checked_mul(b),
             Operator::Divide => a.checked_div(b),
-            Operator::Remainder => a.checked_rem(b),
+            // In Rust a remainder overflows if the quotient does.
+            Operator::Remainder => a.checked_div(b).and_then(in_range).and_then(|_| a.checked_rem(b)),
             Operator::BitAnd => Some(a & b),
             Operator::BitOr => Some(a | b),
             _ => Some(a ^ b),
         };
-        match result {
-            Some(value) => Some(Value::U32(value)),
-            None => self.refuse(expr, "this constant overflows a `u32`", "it goes from 0 to 4294967295"),
-        }
-    }
-
-    fn signed(&mut self, operator: Operator, a: i32, right: &Value, expr: &Expr) -> Option<Value> {
-        if operator.is_shift() {
-            let bits = bits(right)?;
-            let shifted = if operator == Operator::ShiftLeft { a << bits } else { a >> bits };
-            return Some(Value::I32(shifted));
-        }
-        let Value::I32(b) = *right else { return None };
-        if let Some(result) = compared(operator, Some(&a), Some(&b)) {
-            return Some(Value::Bool(result));
-        }
-        let result = match operator {
-            Operator::Add => a.checked_add(b),
-            Operator::Subtract => a.checked_sub(b),
-            Operator::Multiply => a.checked_mul(b),
-            Operator::Divide => a.checked_div(b),
-            Operator::Remainder => a.checked_rem(b),
-            Operator::BitAnd => Some(a & b),
-            Operator::BitOr => Some(a | b),
-            _ => Some(a ^ b),
-        };
-        match result {
-            Some(value) => Some(Value::I32(value)),
-            None => self.refuse(expr, "this constant overflows an `i32`", "it goes from -2147483648 to 2147483647"),
+        match (result.and_then(in_range), is_signed) {
+            (Some(value), _) => Some(value),
+            (None, false) => self.reject(expr, "this constant overflows a `u32`", "it goes from 0 to 4294967295"),
+            (None, true) => {
+                self.reject(expr, "this constant overflows an `i32`", "it goes from -2147483648 to 2147483647")
+            }
         }
     }
 
@@ -250,12 +230,12 @@ impl Folding<'_> {
             _ => false,
         };
         if spelling == Spelling::Call("clamp") && crossed {
-            self.refuse(expr, "the lower bound is above the upper one", "write `clamp(lower, upper)`");
+            self.reject(expr, "the lower bound is above the upper one", "write `clamp(lower, upper)`");
         }
     }
 }
 
-fn whole(value: u64, ty: Type) -> Option<Value> {
+fn literal(value: u64, ty: Type) -> Option<Value> {
     match ty {
         Type::I32 => i32::try_from(value).ok().map(Value::I32),
         _ => u32::try_from(value).ok().map(Value::U32),
@@ -271,7 +251,7 @@ fn not(value: Value) -> Option<Value> {
     }
 }
 
-fn truth(operator: Operator, a: bool, b: bool) -> Option<Value> {
+fn logical(operator: Operator, a: bool, b: bool) -> Option<Value> {
     Some(Value::Bool(match operator {
         Operator::And | Operator::BitAnd => a && b,
         Operator::Or | Operator::BitOr => a || b,
@@ -294,15 +274,16 @@ fn compared<T: PartialOrd>(operator: Operator, a: Option<&T>, b: Option<&T>) -> 
     })
 }
 
-fn bits(value: &Value) -> Option<u32> {
+/// Returns the value of an integer.
+fn integer(value: &Value) -> Option<i64> {
     match value {
-        Value::U32(bits) => Some(*bits),
-        Value::I32(bits) => u32::try_from(*bits).ok(),
+        Value::U32(value) => Some(i64::from(*value)),
+        Value::I32(value) => Some(i64::from(*value)),
         _ => None,
     }
 }
 
-/// Conversions as Rust makes them. From a fraction to a whole number the printer writes calls, so that is not constant.
+/// Returns the value of `value as ty`. A cast from float to integer is not constant: the printer writes calls for it.
 fn cast(value: &Value, ty: Type) -> Option<Value> {
     match (value, ty) {
         (Value::Float(parts), Type::F32) => Some(Value::Float(parts.clone())),

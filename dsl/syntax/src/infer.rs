@@ -1,55 +1,55 @@
-//! Numbers whose type is decided later: `1` is an `i32` unless something it meets says otherwise, as in Rust.
+//! Type inference of numbers without a suffix. As in Rust, `1` is an `i32` unless its uses need another integer type.
 //!
-//! In: types that must agree, one pair at a time. Out: for each number without a suffix, its type. An unsuffixed whole
-//! number never becomes an `f32`: Rust would refuse it.
+//! Input: types that must be equal, one pair at a time. Output: the type of each number without a suffix. An integer
+//! literal never becomes an `f32`: Rust rejects it.
 
 use crate::types::Type;
 
-/// What is known of the undecided numbers of one function.
+/// The type variables of the numbers of one function.
 #[derive(Debug, Default)]
 pub(crate) struct Inference {
-    slots: Vec<Slot>,
+    variables: Vec<TypeVariable>,
 }
 
 #[derive(Debug)]
-struct Slot {
-    whole: bool,
-    decided: Option<Type>,
+struct TypeVariable {
+    is_integer: bool,
+    binding: Option<Type>,
 }
 
 impl Inference {
-    /// The type of an unsuffixed `1`.
-    pub(crate) fn whole(&mut self) -> Type {
-        self.slot(true)
+    /// Returns the type of an unsuffixed `1`.
+    pub(crate) fn integer(&mut self) -> Type {
+        self.variable(true)
     }
 
-    /// The type of an unsuffixed `1.0`.
-    pub(crate) fn fractional(&mut self) -> Type {
-        self.slot(false)
+    /// Returns the type of an unsuffixed `1.0`.
+    pub(crate) fn float(&mut self) -> Type {
+        self.variable(false)
     }
 
-    fn slot(&mut self, whole: bool) -> Type {
-        self.slots.push(Slot { whole, decided: None });
-        Type::Unknown(self.slots.len() - 1)
+    fn variable(&mut self, is_integer: bool) -> Type {
+        self.variables.push(TypeVariable { is_integer, binding: None });
+        Type::Unknown(self.variables.len() - 1)
     }
 
-    /// The type as far as it is known now.
-    pub(crate) fn resolve(&self, mut kind: Type) -> Type {
-        // Slots only ever point at slots that were undecided, so this ends.
-        while let Type::Unknown(index) = kind {
-            match self.slots.get(index).and_then(|slot| slot.decided) {
-                Some(next) => kind = next,
-                None => return kind,
+    /// Returns the type as far as it is known.
+    pub(crate) fn resolve(&self, mut ty: Type) -> Type {
+        // A variable is bound only once, and to an unbound variable or a type, so there is no cycle.
+        while let Type::Unknown(index) = ty {
+            match self.variables.get(index).and_then(|variable| variable.binding) {
+                Some(next) => ty = next,
+                None => return ty,
             }
         }
-        kind
+        ty
     }
 
-    /// The type once the whole function is known: what is still open is an `i32` or an `f32`.
-    pub(crate) fn settle(&self, kind: Type) -> Type {
-        match self.resolve(kind) {
-            open @ Type::Unknown(_) => {
-                if self.is_whole(open) {
+    /// Returns the type after the whole function is checked: an unbound variable is an `i32` or an `f32`.
+    pub(crate) fn resolve_or_default(&self, ty: Type) -> Type {
+        match self.resolve(ty) {
+            unbound @ Type::Unknown(_) => {
+                if self.is_integer(unbound) {
                     Type::I32
                 } else {
                     Type::F32
@@ -59,23 +59,23 @@ impl Inference {
         }
     }
 
-    /// Whether it is a whole number, decided or not.
-    pub(crate) fn is_whole(&self, kind: Type) -> bool {
-        match self.resolve(kind) {
-            Type::Unknown(index) => self.slots.get(index).is_some_and(|slot| slot.whole),
+    /// Returns whether the type is an integer, known or inferred.
+    pub(crate) fn is_integer(&self, ty: Type) -> bool {
+        match self.resolve(ty) {
+            Type::Unknown(index) => self.variables.get(index).is_some_and(|variable| variable.is_integer),
             known => known.is_integer(),
         }
     }
 
-    /// Whether it is an `f32`, or will be.
-    pub(crate) fn is_fractional(&self, kind: Type) -> bool {
-        match self.resolve(kind) {
-            open @ Type::Unknown(_) => !self.is_whole(open),
+    /// Returns whether the type is an `f32`, known or inferred.
+    pub(crate) fn is_float(&self, ty: Type) -> bool {
+        match self.resolve(ty) {
+            unbound @ Type::Unknown(_) => !self.is_integer(unbound),
             known => known == Type::F32,
         }
     }
 
-    /// Makes the two agree, and says what they agree on; nothing where they cannot.
+    /// Unifies two types; returns the common type, or `None` if there is none.
     pub(crate) fn unify(&mut self, a: Type, b: Type) -> Option<Type> {
         let (a, b) = (self.resolve(a), self.resolve(b));
         match (a, b) {
@@ -83,12 +83,12 @@ impl Inference {
             _ if a == b => Some(a),
             (Type::Unknown(index), other) | (other, Type::Unknown(index)) => {
                 let agrees =
-                    if self.is_whole(Type::Unknown(index)) { self.is_whole(other) } else { self.is_fractional(other) };
+                    if self.is_integer(Type::Unknown(index)) { self.is_integer(other) } else { self.is_float(other) };
                 if !agrees {
                     return None;
                 }
-                if let Some(slot) = self.slots.get_mut(index) {
-                    slot.decided = Some(other);
+                if let Some(variable) = self.variables.get_mut(index) {
+                    variable.binding = Some(other);
                 }
                 Some(other)
             }
@@ -96,10 +96,10 @@ impl Inference {
         }
     }
 
-    /// The type in a message.
-    pub(crate) fn name(&self, kind: Type) -> &'static str {
-        match self.resolve(kind) {
-            open @ Type::Unknown(_) if self.is_whole(open) => "a whole number",
+    /// Returns the type as a message names it.
+    pub(crate) fn name(&self, ty: Type) -> &'static str {
+        match self.resolve(ty) {
+            unbound @ Type::Unknown(_) if self.is_integer(unbound) => "an integer",
             Type::Unknown(_) => "f32",
             known => known.rust(),
         }

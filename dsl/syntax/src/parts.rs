@@ -1,78 +1,82 @@
-//! A description put together by a program instead of written: what the builder hands over.
+//! A description as parts, for the builder.
 //!
-//! In: [`Parts`], plain data with a place for each part. Out: the same [`Parsed`] that the text of the same description
-//! gives: one set of rules, one type checker, one lowering for all doors. Nothing here is checked twice or otherwise.
+//! Input: [`Parts`], plain data with a span for each part. Output: the same [`Parsed`] as from the source of the same
+//! description: all front ends share the rules, the type checker and the lowering.
 
-use fragbuf_model::{Choice, Format, KeepCount, Origin, Spanned, UniformType};
+use fragbuf_model::{Choice, Format, KeepCount, SourceSpan, Spanned, UniformType};
 use proc_macro2::{Span, TokenStream};
 
-use crate::captured::Captured;
-use crate::grammar::{self, Role, Row, Stop};
-use crate::report::Report;
-use crate::{Parsed, functions, nesting};
+use crate::captured_tokens::CapturedTokens;
+use crate::declarations::Declaration;
+use crate::items::{Items, RawDescription};
+use crate::parse::Parsed;
+use crate::raw_function::{RawFunction, Role};
+use crate::report::{Report, Stop};
+use crate::{draft, grammar, names, token_limits};
 
-/// The parts of a description. Words are as a file would have them.
+/// The parts of a description. Names are as in a file.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// Behind `buffer`.
+    /// The name after `buffer`.
     pub name: Spanned<String>,
-    /// Behind `from`.
+    /// The technique after `from`.
     pub preset: Option<Spanned<String>>,
-    /// Everything else, in the order in which it was said.
+    /// All other parts, in the order in which they were added.
     pub items: Vec<Part>,
 }
 
-/// One part of a description, with the place where it was said.
+/// One part of a description, with its span.
 #[derive(Clone, Debug)]
 pub enum Part {
-    /// A row of `fragment { }`.
+    /// A line of `fragment { }`.
     Attribute(Spanned<String>, Format),
-    /// A row of `uniform { }`.
+    /// A line of `uniform { }`.
     Uniform(Spanned<String>, UniformType),
-    /// `keep`, and the closure behind `least`.
-    Keep(Spanned<KeepCount>, Option<Captured>),
-    /// The closure behind `where`.
-    Constraint(Captured),
+    /// `keep`, and the closure after `least`.
+    Keep(Spanned<KeepCount>, Option<CapturedTokens>),
+    /// The closure after `where`.
+    Constraint(CapturedTokens),
     /// `axis: value else value;`
     Choice(Choice),
-    /// The closure behind `resolve`.
-    Resolve(Captured, Origin),
+    /// The closure after `resolve`.
+    Resolve(CapturedTokens, SourceSpan),
     /// A helper function.
-    Helper(Captured),
+    Helper(CapturedTokens),
 }
 
-/// The description that these parts make.
+/// Returns the description that consists of these parts.
 pub fn assemble(parts: &Parts) -> Parsed {
-    let mut sources = Sources { read: Vec::new(), otherwise: parts.name.origin.clone() };
-    let mut unreadable = Vec::new();
+    let mut spans = SpanTable { functions: Vec::new(), default: parts.name.span.clone() };
+    let mut invalid = Vec::new();
     let tokens: Vec<Option<TokenStream>> = parts
         .items
         .iter()
         .map(|part| match captured(part)?.tokens() {
-            Ok(tokens) => Some(sources.add(captured(part)?, tokens)),
-            Err(mistake) => {
-                unreadable.push(*mistake);
+            Ok(tokens) => Some(spans.add(captured(part)?, tokens)),
+            Err(error) => {
+                invalid.push(*error);
                 None
             }
         })
         .collect();
-    let place = |span: Span| sources.place(span);
-    let mut report = Report::new(&place);
-    unreadable.into_iter().for_each(|mistake| report.push(mistake));
-    let name = grammar::buffer_name(&parts.name, &mut report);
-    let preset = parts.preset.as_ref().map(|preset| grammar::word(preset, &mut report));
-    let mut assembly = Assembly { items: grammar::Items::default(), attributes: Vec::new(), uniforms: Vec::new() };
+    let locate = |span: Span| spans.locate(span);
+    let mut report = Report::new(&locate);
+    invalid.into_iter().for_each(|error| report.push(error));
+    let name = names::buffer(&parts.name, &mut report);
+    let preset = parts.preset.as_ref().map(|preset| names::identifier(preset, &mut report));
+    let mut assembly = Assembly { items: Items::default(), attributes: Vec::new(), uniforms: Vec::new() };
     for (part, tokens) in parts.items.iter().zip(tokens) {
-        // What went wrong is reported; the other parts are worth reading.
+        // An error is reported already; the other parts are still added.
         let _: Result<(), Stop> = assembly.add(part, tokens, &mut report);
     }
     let Assembly { mut items, attributes, uniforms } = assembly;
-    items.add_rows(attributes, uniforms, &mut report);
-    let draft = functions::finish(name, preset, items, &mut report);
+    items.add_attributes(attributes, &parts.name.span, &mut report);
+    items.add_uniforms(uniforms, &parts.name.span, &mut report);
+    let draft = draft::build(RawDescription { name, preset, items }, &mut report);
     Parsed { draft: Some(draft), diagnostics: report.finish() }
 }
 
-fn captured(part: &Part) -> Option<&Captured> {
+fn captured(part: &Part) -> Option<&CapturedTokens> {
     match part {
         Part::Constraint(function) | Part::Resolve(function, _) | Part::Helper(function) => Some(function),
         Part::Keep(_, criterion) => criterion.as_ref(),
@@ -80,33 +84,34 @@ fn captured(part: &Part) -> Option<&Captured> {
     }
 }
 
+/// The items so far, and the declarations of both blocks.
 struct Assembly {
-    items: grammar::Items,
-    attributes: Vec<Row>,
-    uniforms: Vec<Row>,
+    items: Items,
+    attributes: Vec<Declaration>,
+    uniforms: Vec<Declaration>,
 }
 
 impl Assembly {
     fn add(&mut self, part: &Part, tokens: Option<TokenStream>, report: &mut Report) -> Result<(), Stop> {
         match part {
-            Part::Attribute(name, format) => self.attributes.push(row(name, format.keyword())),
-            Part::Uniform(name, kind) => self.uniforms.push(row(name, kind.keyword())),
+            Part::Attribute(name, format) => self.attributes.push(declaration(name, format.keyword())),
+            Part::Uniform(name, kind) => self.uniforms.push(declaration(name, kind.keyword())),
             Part::Choice(choice) => {
-                let choice = grammar::given_choice(choice, report)?;
+                let choice = grammar::choice_from_builder(choice, report)?;
                 self.items.add_choice(choice, report);
             }
-            Part::Keep(count, None) => self.items.add_keep(count.clone(), None, count.origin.clone(), report),
+            Part::Keep(count, None) => self.items.add_keep(count.clone(), None, count.span.clone(), report),
             Part::Keep(count, Some(_)) => {
                 let function = closure(tokens, Role::Criterion, report)?;
-                self.items.add_keep(count.clone(), Some(function), count.origin.clone(), report);
+                self.items.add_keep(count.clone(), Some(function), count.span.clone(), report);
             }
             Part::Constraint(_) => {
                 let role = self.items.next_constraint();
                 self.items.functions.push(closure(tokens, role, report)?);
             }
-            Part::Resolve(_, origin) => {
+            Part::Resolve(_, span) => {
                 let function = closure(tokens, Role::Resolve, report)?;
-                self.items.add_resolve(function, origin, report);
+                self.items.add_resolve(function, span, report);
             }
             Part::Helper(_) => {
                 let tokens = bounded(tokens, report)?;
@@ -118,39 +123,40 @@ impl Assembly {
     }
 }
 
-fn row(name: &Spanned<String>, word: &str) -> Row {
-    Row { name: name.clone(), word: Spanned::new(word.to_owned(), name.origin.clone()) }
+fn declaration(name: &Spanned<String>, type_name: &str) -> Declaration {
+    Declaration { name: name.clone(), type_name: Spanned::new(type_name.to_owned(), name.span.clone()) }
 }
 
-fn closure(tokens: Option<TokenStream>, role: Role, report: &mut Report) -> Result<grammar::RawFunction, Stop> {
+fn closure(tokens: Option<TokenStream>, role: Role, report: &mut Report) -> Result<RawFunction, Stop> {
     let tokens = bounded(tokens, report)?;
     grammar::whole_closure(&tokens, role, report)
 }
 
 fn bounded(tokens: Option<TokenStream>, report: &mut Report) -> Result<TokenStream, Stop> {
-    tokens.and_then(|tokens| nesting::bounded(tokens, report)).ok_or(Stop)
+    tokens.and_then(|tokens| token_limits::bounded(tokens, report)).ok_or(Stop)
 }
 
-/// From a span to the user's place.
-type Placing = Box<dyn Fn(Span) -> Origin>;
+/// A function from token spans to source spans.
+type Locator = Box<dyn Fn(Span) -> SourceSpan>;
 
-/// Which span belongs to which captured function. Each is a text of its own to `proc_macro2`, under a name of its own.
-struct Sources {
-    read: Vec<(String, Placing)>,
-    otherwise: Origin,
+/// The source spans of all captured functions. `proc_macro2` gives each function's source a distinct file name.
+struct SpanTable {
+    /// File name and source spans of each function.
+    functions: Vec<(String, Locator)>,
+    default: SourceSpan,
 }
 
-impl Sources {
-    fn add(&mut self, captured: &Captured, tokens: TokenStream) -> TokenStream {
+impl SpanTable {
+    fn add(&mut self, captured: &CapturedTokens, tokens: TokenStream) -> TokenStream {
         if let Some(first) = tokens.clone().into_iter().next() {
-            self.read.push((first.span().file(), Box::new(captured.place())));
+            self.functions.push((first.span().file(), Box::new(captured.locator())));
         }
         tokens
     }
 
-    fn place(&self, span: Span) -> Origin {
+    fn locate(&self, span: Span) -> SourceSpan {
         let name = span.file();
-        let found = self.read.iter().find(|(file, _)| *file == name);
-        found.map_or_else(|| self.otherwise.clone(), |(_, place)| place(span))
+        let found = self.functions.iter().find(|(file, _)| *file == name);
+        found.map_or_else(|| self.default.clone(), |(_, locate)| locate(span))
     }
 }

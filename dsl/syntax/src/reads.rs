@@ -1,14 +1,14 @@
-//! What a function reads, helpers included, and which helpers call themselves.
+//! What a function reads, including through helpers, and recursion among helpers.
 //!
-//! In: checked functions and what their bodies mention. Out: attribute and uniform names in order of first use; a mistake
-//! for every ring of calls.
+//! Input: checked functions and the names that their bodies use. Output: attribute and uniform names in order of first use;
+//! an error for every cycle of calls.
 
-use fragbuf_model::{Diagnostic, Reads, codes};
+use fragbuf_model::{Diagnostic, Reads, SourceSpan, codes};
 
 use crate::report::Report;
 use crate::tree::{Function, Use};
 
-/// What `function` reads, itself and through helpers.
+/// Returns what `function` reads, directly and through helpers.
 pub(crate) fn of(function: &Function, helpers: &[Option<&Function>]) -> Reads {
     let mut reads = Reads::default();
     let mut entered = vec![false; helpers.len()];
@@ -34,15 +34,15 @@ fn add(names: &mut Vec<String>, name: &str) {
     }
 }
 
-/// Reports each ring of calls once, at the call that closes it.
-pub(crate) fn refuse_recursion(helpers: &[Option<&Function>], report: &mut Report) {
+/// Reports each cycle of calls once, at the call that closes it.
+pub(crate) fn reject_recursion(helpers: &[Option<&Function>], report: &mut Report) {
     let mut done = vec![false; helpers.len()];
     for start in 0..helpers.len() {
         search(start, helpers, &mut done, report);
     }
 }
 
-/// Depth first, with a stack of its own: each frame is a helper and the call that is looked at next.
+/// Searches depth first with an explicit stack of helpers, each with the index of its next call.
 fn search(start: usize, helpers: &[Option<&Function>], done: &mut [bool], report: &mut Report) {
     let mut path: Vec<(usize, usize)> = vec![(start, 0)];
     while let Some((helper, next)) = path.last().copied() {
@@ -57,34 +57,34 @@ fn search(start: usize, helpers: &[Option<&Function>], done: &mut [bool], report
         if let Some(top) = path.last_mut() {
             top.1 += 1;
         }
-        let Use::Helper(callee, origin) = used else { continue };
+        let Use::Helper(callee, span) = used else { continue };
         if let Some(first) = path.iter().position(|(other, _)| other == callee) {
-            let ring: Vec<usize> = path.iter().skip(first).map(|(index, _)| *index).collect();
-            report.push(recursion(&ring, origin, helpers));
+            let cycle: Vec<usize> = path.iter().skip(first).map(|(index, _)| *index).collect();
+            report.push(recursion(&cycle, span, helpers));
         } else {
             path.push((*callee, 0));
         }
     }
 }
 
-/// How many functions of a ring are named.
-const RING: usize = 6;
+/// The maximum number of functions of a cycle that a message names.
+const NAMED: usize = 6;
 
-fn recursion(ring: &[usize], origin: &fragbuf_model::Origin, helpers: &[Option<&Function>]) -> Diagnostic {
-    let functions: Vec<&Function> = ring.iter().filter_map(|index| helpers.get(*index).copied().flatten()).collect();
+fn recursion(cycle: &[usize], span: &SourceSpan, helpers: &[Option<&Function>]) -> Diagnostic {
+    let functions: Vec<&Function> = cycle.iter().filter_map(|index| helpers.get(*index).copied().flatten()).collect();
     let name = |function: &Function| function.name.trim_start_matches("user_").to_string();
     let mut names: Vec<String> = functions.iter().map(|function| format!("`{}`", name(function))).collect();
     let first = names.first().cloned().unwrap_or_default();
     names.push(first.clone());
     let message = match functions.len() {
         1 => format!("{first} calls itself"),
-        2..=RING => format!("{first} calls itself: {}", names.join(" calls ")),
+        2..=NAMED => format!("{first} calls itself: {}", names.join(" calls ")),
         count => format!("{first} calls itself through {} others", count - 1),
     };
-    let hint = "shaders have no recursion: write a loop, `for _ in 0..N { … }`";
-    let mut diagnostic = Diagnostic::new(codes::RECURSION, origin, message, hint);
-    for function in functions.into_iter().skip(1).take(RING) {
-        diagnostic = diagnostic.label(&function.origin, format!("`{}` is part of the ring", name(function)));
+    let help = "shaders have no recursion: write a loop, `for _ in 0..N { … }`";
+    let mut diagnostic = Diagnostic::new(codes::RECURSION, span, message, help);
+    for function in functions.into_iter().skip(1).take(NAMED) {
+        diagnostic = diagnostic.label(&function.span, format!("`{}` is part of the cycle", name(function)));
     }
     diagnostic
 }

@@ -1,59 +1,58 @@
-//! The reference of the closure language, computed from the tables that the type checker reads.
+//! The reference of the closure language.
 //!
-//! Out: Markdown. What stands here is what is accepted; nothing is described twice.
+//! Input: the tables that the type checker uses. Output: Markdown that lists what the checker accepts.
 
 use std::fmt::Write;
 
 use fragbuf_model::{Format, UniformType};
 
-use crate::constants;
-use crate::methods::{METHODS, Method, REFUSED, Slot, Spelling};
+use crate::methods::{METHODS, Method, MethodType, Spelling, UNSUPPORTED};
 use crate::types::Type;
 
-/// Types, methods, constants, and what Rust has and shaders have not: as Markdown.
+/// Returns the types, methods, constants and unsupported constructs as Markdown.
 pub fn reference() -> String {
-    let mut text = String::from(
-        "Closures and `fn` helpers are Rust, with the vectors of glam. Every value has one type, found as Rust finds it: literals \
-         take the type that they are used as, nothing is converted without `as`.\n",
+    let mut markdown = String::from(
+        "Closures and `fn` helpers are Rust, with the vectors of glam. Types are inferred as in Rust: a literal \
+         has the type that its use needs, and only `as` converts.\n",
     );
-    payload(&mut text);
-    statements(&mut text);
-    methods(&mut text);
-    values(&mut text);
-    refused(&mut text);
-    text
+    types(&mut markdown);
+    statements(&mut markdown);
+    methods(&mut markdown);
+    constants(&mut markdown);
+    unsupported(&mut markdown);
+    markdown
 }
 
-fn payload(text: &mut String) {
-    text.push_str("\n# Types\n\n| attribute | words | a closure sees |\n|---|---|---|\n");
+fn types(markdown: &mut String) {
+    markdown.push_str("\n# Types\n\n| attribute | words | type in a closure |\n|---|---|---|\n");
     for format in Format::ALL {
-        let seen = Type::of_attribute(format).rust();
-        let _ = writeln!(text, "| `{}` | {} | `{seen}` |", format.keyword(), format.words());
+        let ty = Type::of_attribute(format).rust();
+        let _ = writeln!(markdown, "| `{}` | {} | `{ty}` |", format.keyword(), format.words());
     }
-    let uniforms: Vec<String> = UniformType::ALL.iter().map(|kind| format!("`{}`", kind.keyword())).collect();
-    let _ = writeln!(text, "\nUniforms are {}.", uniforms.join(", "));
+    let uniforms: Vec<String> = UniformType::ALL.iter().map(|ty| format!("`{}`", ty.keyword())).collect();
+    let _ = writeln!(markdown, "\nTypes of uniforms: {}.", uniforms.join(", "));
     let named: Vec<String> = Type::NAMED.iter().map(|(name, _)| format!("`{name}`")).collect();
-    let _ = writeln!(text, "Helpers take and give {}.", named.join(", "));
+    let _ = writeln!(markdown, "Types of helper parameters and results: {}.", named.join(", "));
 }
 
-fn statements(text: &mut String) {
-    text.push_str(
+fn statements(markdown: &mut String) {
+    markdown.push_str(
         "\n# Statements\n\n\
          * `let`, `let mut`, assignment to variables and components, `=` and all of `+= -= *= /= %= &= |= ^= <<= >>=`;\n\
          * `if … { … } else { … }` as a statement or a value, `return`, blocks as values;\n\
          * `for i in a..b`, `for i in a..=b`, `for f in fragments`, `for (i, f) in fragments.iter().enumerate()`, each also with \
-         `.rev()`; `break`, `continue`. How often a loop goes round is known when it begins: there is no `while`;\n\
-         * `fragments.len()`, `fragments[i]`: nearest first in `resolve`;\n\
-         * `vec2(x, y)`, `Vec3::new(x, y, z)`, `Vec4::splat(x)`; components `v.x` and `v[0]`, several as `v.xy()`, `v.zyx()` …; `as` between numbers;\n\
+         `.rev()`; `break`, `continue`. The number of iterations is known when a loop starts: there is no `while`;\n\
+         * `fragments.len()`, `fragments[i]`: sorted from near to far in `resolve`;\n\
+         * `vec2(x, y)`, `Vec3::new(x, y, z)`, `Vec4::splat(x)`; components `v.x` and `v[0]`, swizzles `v.xy()`, `v.zyx()` …; `as` between numbers;\n\
          * helpers: `fn name(parameter: type, …) -> type { … }`, without recursion.\n",
     );
 }
 
-fn methods(text: &mut String) {
-    text.push_str("\n# Methods\n\n| on | method | in WGSL | |\n|---|---|---|---|\n");
+fn methods(markdown: &mut String) {
+    markdown.push_str("\n# Methods\n\n| receiver | method | in WGSL | |\n|---|---|---|---|\n");
     for method in METHODS {
         let _ = writeln!(
-            text,
+            markdown,
             "| {} | `{}` | `{}` | {} |",
             receivers(method.on),
             signature(method),
@@ -64,42 +63,42 @@ fn methods(text: &mut String) {
 }
 
 fn receivers(on: &[Type]) -> String {
-    on.iter().map(|kind| kind.rust()).collect::<Vec<_>>().join(" ")
+    on.iter().map(|ty| ty.rust()).collect::<Vec<_>>().join(" ")
 }
 
 fn signature(method: &Method) -> String {
-    let named = |slot: &Slot| match slot {
-        Slot::Own => "Self",
-        Slot::Is(kind) => kind.rust(),
+    let name = |ty: &MethodType| match ty {
+        MethodType::Receiver => "Self",
+        MethodType::Fixed(ty) => ty.rust(),
     };
-    let takes: Vec<&str> = method.takes.iter().map(named).collect();
-    format!("{}({}) -> {}", method.name, takes.join(", "), named(&method.gives))
+    let parameters: Vec<&str> = method.parameters.iter().map(name).collect();
+    format!("{}({}) -> {}", method.name, parameters.join(", "), name(&method.result))
 }
 
-/// With the receiver as `x`; a bar would end the cell of the table.
+/// Returns the WGSL expression with `x` as the receiver. A bar is escaped: it would end the cell of the table.
 fn spelling(wgsl: Spelling) -> String {
-    let text = match wgsl {
+    let expression = match wgsl {
         Spelling::Call(function) => format!("{function}(x, …)"),
-        Spelling::Text(text) => ["x", "a", "b"]
+        Spelling::Template(template) => ["x", "a", "b"]
             .iter()
             .enumerate()
-            .fold(text.to_owned(), |text, (i, name)| text.replace(&format!("${i}"), name)),
+            .fold(template.to_owned(), |template, (i, name)| template.replace(&format!("${i}"), name)),
     };
-    text.replace('|', "\\|")
+    expression.replace('|', "\\|")
 }
 
-fn values(text: &mut String) {
-    let names: Vec<String> = constants::names().iter().map(|name| format!("`{name}`")).collect();
-    let _ = writeln!(text, "\n# Constants\n\n{}.", names.join(", "));
+fn constants(markdown: &mut String) {
+    let names: Vec<String> = crate::constants::names().iter().map(|name| format!("`{name}`")).collect();
+    let _ = writeln!(markdown, "\n# Constants\n\n{}.", names.join(", "));
 }
 
-fn refused(text: &mut String) {
-    text.push_str("\n# What Rust has and shaders have not\n\n| on | method | why | instead |\n|---|---|---|---|\n");
-    for (on, name, why, way) in REFUSED {
-        let _ = writeln!(text, "| {} | `{name}` | {why} | {way} |", receivers(on));
+fn unsupported(markdown: &mut String) {
+    markdown.push_str("\n# Unsupported\n\n| receiver | method | why | instead |\n|---|---|---|---|\n");
+    for (on, name, why, instead) in UNSUPPORTED {
+        let _ = writeln!(markdown, "| {} | `{name}` | {why} | {instead} |", receivers(on));
     }
-    text.push_str(
-        "\nReferences, tuples, arrays, `match`, `if let`, macros, closures in closures and struct literals are refused with \
-         what to write instead.\n",
+    markdown.push_str(
+        "\nReferences, tuples, arrays, `match`, `if let`, macros, closures in closures and struct literals are errors; the \
+         message says what to write instead.\n",
     );
 }

@@ -1,50 +1,56 @@
-//! Where mistakes are gathered while a description is read, and how a token's place becomes the user's.
+//! Collects the errors of one description, and maps token spans to the user's source.
 
-use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin};
+use fragbuf_model::{Code, Diagnostic, Diagnostics, SourceSpan};
 use proc_macro2::Span;
 
-/// How many mistakes are kept. A text with more is not a description that went wrong, and nobody reads that far.
-const MOST: usize = 200;
+/// The greatest number of errors that are kept. Nobody reads more.
+const MAX_ERRORS: usize = 200;
 
-/// The mistakes so far, and the door's way from a span to a place.
+/// The label of the first of two duplicates.
+pub(crate) const FIRST: &str = "first given here";
+
+/// The mark that an error was reported and that the rest of the item is not parsed.
+pub(crate) struct Stop;
+
+/// The errors so far, and the function from token spans to source spans.
 pub(crate) struct Report<'a> {
-    place: &'a dyn Fn(Span) -> Origin,
+    locate: &'a dyn Fn(Span) -> SourceSpan,
     diagnostics: Diagnostics,
     count: usize,
 }
 
 impl<'a> Report<'a> {
-    /// None yet.
-    pub(crate) fn new(place: &'a dyn Fn(Span) -> Origin) -> Self {
-        Report { place, diagnostics: Diagnostics::new(), count: 0 }
+    /// Returns an empty report.
+    pub(crate) fn new(locate: &'a dyn Fn(Span) -> SourceSpan) -> Self {
+        Report { locate, diagnostics: Diagnostics::new(), count: 0 }
     }
 
-    /// Where this span stands in the user's text.
-    pub(crate) fn at(&self, span: Span) -> Origin {
-        (self.place)(span)
+    /// Returns the position of a token span in the user's source.
+    pub(crate) fn at(&self, span: Span) -> SourceSpan {
+        (self.locate)(span)
     }
 
-    /// Adds a mistake.
-    pub(crate) fn error(&mut self, code: Code, origin: &Origin, message: impl Into<String>, hint: impl Into<String>) {
-        self.push(Diagnostic::new(code, origin, message, hint));
+    /// Adds an error.
+    pub(crate) fn error(&mut self, code: Code, span: &SourceSpan, message: impl Into<String>, help: impl Into<String>) {
+        self.push(Diagnostic::new(code, span, message, help));
     }
 
-    /// Adds a mistake that may have labels.
+    /// Adds an error that may have labels.
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
         self.count += 1;
-        if self.count <= MOST {
+        if self.count <= MAX_ERRORS {
             self.diagnostics.push(diagnostic);
         }
     }
 
-    /// How many mistakes there are: a caller that saw fewer before knows that its part is wrong.
+    /// Returns the number of errors so far. A caller compares two counts to learn whether a part had errors.
     pub(crate) fn count(&self) -> usize {
         self.count
     }
 
-    /// Those that were kept, in the order of the user's text, each once.
+    /// Returns the kept errors in source order, without duplicates.
     pub(crate) fn finish(self) -> Diagnostics {
-        match self.diagnostics.gate(()) {
+        match self.diagnostics.into_result(()) {
             Ok(()) => Diagnostics::new(),
             Err(sorted) => sorted,
         }

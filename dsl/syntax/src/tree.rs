@@ -1,8 +1,8 @@
-//! A user function after checking: a small tree in which every node has a type and a place.
+//! A user function after type checking: a tree in which every node has a type and a span.
 //!
-//! In: nothing; these are plain data. The checker builds it, the printer and the constant pass read it.
+//! Input: none; these types are plain data. The type checker creates them; the WGSL printer and constant folding read them.
 
-use fragbuf_model::Origin;
+use fragbuf_model::SourceSpan;
 
 use crate::infer::Inference;
 use crate::methods::Spelling;
@@ -14,89 +14,89 @@ pub(crate) type VariableId = usize;
 /// One checked function.
 #[derive(Debug)]
 pub(crate) struct Function {
-    /// Its WGSL name.
+    /// The name in WGSL.
     pub name: String,
-    pub origin: Origin,
+    pub span: SourceSpan,
     pub rust: String,
     pub parameters: Vec<VariableId>,
     pub variables: Vec<Variable>,
     pub result: Type,
     pub body: Block,
-    /// What the body mentions, in order.
+    /// The names outside the function that the body uses, in order.
     pub uses: Vec<Use>,
-    /// What the undecided numbers turned out to be.
+    /// The inferred types of numbers.
     pub inference: Inference,
 }
 
 impl Function {
-    /// The type of an expression, numbers decided.
+    /// Returns the type of an expression, with numbers resolved.
     pub(crate) fn type_of(&self, expr: &Expr) -> Type {
-        self.inference.settle(expr.ty)
+        self.inference.resolve_or_default(expr.ty)
     }
 
-    /// Whether this variable can be assigned.
+    /// Returns whether this variable is mutable.
     pub(crate) fn is_mutable(&self, variable: VariableId) -> bool {
         self.variables.get(variable).is_some_and(|variable| variable.mutable)
     }
 }
 
-/// A name that a function gives to a value.
+/// A local variable or parameter.
 #[derive(Debug)]
 pub(crate) struct Variable {
-    /// As the user wrote it; `_` where the user gave none.
+    /// The name as the user wrote it.
     pub name: String,
     pub mutable: bool,
     /// Whether the user wrote its type.
     pub annotated: bool,
-    pub kind: Type,
-    pub origin: Origin,
+    pub ty: Type,
+    pub span: SourceSpan,
 }
 
-/// Something outside a function that its body mentions.
+/// A use of a name outside the function.
 #[derive(Clone, Debug)]
 pub(crate) enum Use {
     Attribute(String),
     Uniform(String),
-    /// Index of the helper, and the call's place.
-    Helper(usize, Origin),
+    /// The index of the helper, and the span of the call.
+    Helper(usize, SourceSpan),
 }
 
-/// Statements, and perhaps a value at the end.
+/// Statements and an optional final value.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub statements: Vec<Statement>,
     pub value: Option<Box<Expr>>,
-    /// The closing brace.
-    pub end: Origin,
+    /// The span of the closing brace.
+    pub end: SourceSpan,
 }
 
 #[derive(Debug)]
 pub(crate) enum Statement {
-    Let { variable: Option<VariableId>, value: Expr, origin: Origin },
+    Let { variable: Option<VariableId>, value: Expr, span: SourceSpan },
     Expr(Expr),
 }
 
-/// An expression, its type and its place.
+/// An expression, its type and its span.
 #[derive(Debug)]
 pub(crate) struct Expr {
     pub kind: Kind,
     pub ty: Type,
-    pub origin: Origin,
+    pub span: SourceSpan,
 }
 
 #[derive(Debug)]
 pub(crate) enum Kind {
-    /// What a mistake left.
+    /// An invalid expression.
     Error,
     Float(f32),
-    Whole(u64),
+    Integer(u64),
     Bool(bool),
     Variable(VariableId),
     /// `f.depth`
     Attribute(Box<Expr>, String),
     /// `u.cut`
     Uniform(String),
-    /// `v.x` and swizzles.
+    /// `v.x` and swizzles such as `v.xy()`.
     Components(Box<Expr>, String),
     /// `v[i]`
     Element(Box<Expr>, Box<Expr>),
@@ -107,13 +107,13 @@ pub(crate) enum Kind {
     Negate(Box<Expr>),
     Not(Box<Expr>),
     Binary(Operator, Box<Expr>, Box<Expr>),
-    /// `… as T`, T being the node's type.
+    /// `… as T`, where T is the node's type.
     Cast(Box<Expr>),
     /// A row of the method table; the receiver is the first argument.
     Method(Spelling, Vec<Expr>),
-    /// A helper of the user's, uniforms left out.
+    /// A call of a helper, without arguments that are uniforms.
     Helper(usize, Vec<Expr>),
-    /// A vector from its components, or one for all.
+    /// A vector from its components, or from one value for all components.
     Vector(Vec<Expr>),
     If(Box<If>),
     Block(Block),
@@ -133,19 +133,19 @@ pub(crate) struct If {
     pub condition: Expr,
     pub then: Block,
     /// A block or another `if`.
-    pub otherwise: Option<Expr>,
+    pub else_branch: Option<Expr>,
 }
 
 #[derive(Debug)]
 pub(crate) struct For {
-    pub over: Over,
+    pub sequence: Sequence,
     pub body: Block,
 }
 
-/// What a loop goes through.
+/// The sequence over which a loop iterates.
 #[derive(Debug)]
-pub(crate) enum Over {
-    Range { variable: Option<VariableId>, kind: Type, from: Box<Expr>, to: Box<Expr>, inclusive: bool, reversed: bool },
+pub(crate) enum Sequence {
+    Range { variable: Option<VariableId>, ty: Type, from: Box<Expr>, to: Box<Expr>, inclusive: bool, reversed: bool },
     Fragments { index: Option<VariableId>, fragment: Option<VariableId>, reversed: bool },
 }
 
@@ -172,8 +172,8 @@ pub(crate) enum Operator {
 }
 
 impl Operator {
-    /// The sign, the same in Rust and WGSL.
-    pub(crate) fn sign(self) -> &'static str {
+    /// Returns the symbol, which is the same in Rust and WGSL.
+    pub(crate) fn symbol(self) -> &'static str {
         match self {
             Operator::Add => "+",
             Operator::Subtract => "-",
@@ -196,45 +196,45 @@ impl Operator {
         }
     }
 
-    /// `+ - * / %`
+    /// Returns whether this is one of `+ - * / %`.
     pub(crate) fn is_arithmetic(self) -> bool {
         use Operator::*;
         matches!(self, Add | Subtract | Multiply | Divide | Remainder)
     }
 
-    /// `<< >>`
+    /// Returns whether this is `<<` or `>>`.
     pub(crate) fn is_shift(self) -> bool {
         matches!(self, Operator::ShiftLeft | Operator::ShiftRight)
     }
 
-    /// `& | ^`
+    /// Returns whether this is one of `& | ^`.
     pub(crate) fn is_bitwise(self) -> bool {
         matches!(self, Operator::BitAnd | Operator::BitOr | Operator::BitXor)
     }
 
-    /// `&& ||`
+    /// Returns whether this is `&&` or `||`.
     pub(crate) fn is_logical(self) -> bool {
         matches!(self, Operator::And | Operator::Or)
     }
 }
 
 impl Expr {
-    /// An expression at `origin`.
-    pub(crate) fn new(kind: Kind, ty: Type, origin: Origin) -> Self {
-        Expr { kind, ty, origin }
+    /// Returns an expression at `span`.
+    pub(crate) fn new(kind: Kind, ty: Type, span: SourceSpan) -> Self {
+        Expr { kind, ty, span }
     }
 
-    /// What a mistake leaves: agrees with everything.
-    pub(crate) fn error(origin: Origin) -> Self {
-        Expr::new(Kind::Error, Type::Error, origin)
+    /// Returns an invalid expression, whose type unifies with every type.
+    pub(crate) fn error(span: SourceSpan) -> Self {
+        Expr::new(Kind::Error, Type::Error, span)
     }
 }
 
 impl Kind {
-    /// The expressions directly inside, blocks of statements apart.
+    /// Returns the direct operands, without the contents of blocks.
     pub(crate) fn operands(&self) -> Vec<&Expr> {
         match self {
-            Kind::Error | Kind::Float(_) | Kind::Whole(_) | Kind::Bool(_) | Kind::Variable(_) => Vec::new(),
+            Kind::Error | Kind::Float(_) | Kind::Integer(_) | Kind::Bool(_) | Kind::Variable(_) => Vec::new(),
             Kind::Uniform(_) | Kind::LayerCount | Kind::Break | Kind::Continue | Kind::Block(_) => Vec::new(),
             Kind::Attribute(inner, _) | Kind::Components(inner, _) | Kind::Layer(inner) => vec![inner],
             Kind::Negate(inner) | Kind::Not(inner) | Kind::Cast(inner) | Kind::Return(inner) => vec![inner],
@@ -243,15 +243,15 @@ impl Kind {
                 arguments.iter().collect()
             }
             Kind::Assign { place, value, .. } => vec![place, value],
-            Kind::If(branch) => std::iter::once(&branch.condition).chain(&branch.otherwise).collect(),
-            Kind::For(each) => match &each.over {
-                Over::Range { from, to, .. } => vec![from, to],
-                Over::Fragments { .. } => Vec::new(),
+            Kind::If(branch) => std::iter::once(&branch.condition).chain(&branch.else_branch).collect(),
+            Kind::For(each) => match &each.sequence {
+                Sequence::Range { from, to, .. } => vec![from, to],
+                Sequence::Fragments { .. } => Vec::new(),
             },
         }
     }
 
-    /// The block of statements directly inside.
+    /// Returns the direct block of statements.
     pub(crate) fn block(&self) -> Option<&Block> {
         match self {
             Kind::Block(block) => Some(block),

@@ -1,6 +1,6 @@
-//! The types of the closure language: what each is called in Rust, in WGSL and in a message.
+//! The types of the closure language, and their names in Rust, in WGSL and in messages.
 //!
-//! In: words of the user's text and formats of the model. Out: [`Type`]. Nothing here infers or converts.
+//! Input: type names of the user's source, and formats of the model. Output: [`Type`].
 
 use fragbuf_model::{Format, UniformType};
 
@@ -17,27 +17,27 @@ pub(crate) enum Type {
     Vector(u8),
     /// One fragment.
     Fragment,
-    /// All uniforms; module scope in WGSL, so never a value there.
+    /// All uniforms. They have module scope in WGSL, so they are never a value there.
     Uniforms,
-    /// The whole sorted list; functions in WGSL, so never a value there.
+    /// The sorted list of fragments. WGSL accesses it by functions, so it is never a value there.
     Fragments,
     /// `()`
     Unit,
-    /// What never ends normally: `return`, `break`, `continue`.
+    /// The type of diverging expressions: `return`, `break`, `continue`.
     Never,
-    /// What a mistake left; agrees with everything, so one mistake is told once.
+    /// The type of an invalid expression. It unifies with every type, so that an error is reported once.
     Error,
-    /// A number whose type the rest of the function decides; an index into [`crate::infer::Inference`].
+    /// A number whose type is inferred from its uses; an index into [`crate::infer::Inference`].
     Unknown(usize),
 }
 
 impl Type {
-    /// The type of this Rust name.
+    /// Returns the type of this Rust name.
     pub(crate) fn from_rust(name: &str) -> Option<Type> {
-        Self::NAMED.iter().find(|(word, _)| *word == name).map(|(_, kind)| *kind)
+        Self::NAMED.iter().find(|(other, _)| *other == name).map(|(_, ty)| *ty)
     }
 
-    /// Every type that a user can write.
+    /// The types that a user can write.
     pub(crate) const NAMED: [(&'static str, Type); 10] = [
         ("f32", Type::F32),
         ("u32", Type::U32),
@@ -51,7 +51,7 @@ impl Type {
         ("Uniforms", Type::Uniforms),
     ];
 
-    /// What a closure sees of an attribute.
+    /// Returns the type of an attribute in a closure.
     pub(crate) fn of_attribute(format: Format) -> Type {
         match format {
             Format::F32 => Type::F32,
@@ -62,7 +62,7 @@ impl Type {
         }
     }
 
-    /// What a closure sees of a uniform.
+    /// Returns the type of a uniform in a closure.
     pub(crate) fn of_uniform(kind: UniformType) -> Type {
         match kind {
             UniformType::F32 => Type::F32,
@@ -74,7 +74,7 @@ impl Type {
         }
     }
 
-    /// The type as Rust spells it, for messages.
+    /// Returns the name in Rust, for messages.
     pub(crate) fn rust(self) -> &'static str {
         match self {
             Type::F32 => "f32",
@@ -90,12 +90,12 @@ impl Type {
             Type::Fragments => "the list of fragments",
             Type::Unit => "()",
             Type::Never => "!",
-            Type::Error => "a mistake",
+            Type::Error => "an invalid type",
             Type::Unknown(_) => "a number",
         }
     }
 
-    /// The type as WGSL spells it. Types that WGSL has no values of never reach the printer.
+    /// Returns the name in WGSL. Types without WGSL values never reach the printer.
     pub(crate) fn wgsl(self) -> &'static str {
         match self {
             Type::F32 | Type::Unknown(_) => "f32",
@@ -110,12 +110,12 @@ impl Type {
         }
     }
 
-    /// Whether it is a whole number of known type.
+    /// Returns whether this is a known integer type.
     pub(crate) fn is_integer(self) -> bool {
         matches!(self, Type::U32 | Type::I32 | Type::Usize)
     }
 
-    /// Whether a variable can hold it in WGSL.
+    /// Returns whether a WGSL variable can have this type.
     pub(crate) fn is_value(self) -> bool {
         !matches!(self, Type::Uniforms | Type::Fragments | Type::Unit | Type::Never)
     }

@@ -1,6 +1,6 @@
-//! Every bad description gives exactly the mistakes that its first lines announce, where they say, each with a way out.
+//! Every bad description gives exactly the errors that its first lines list, at the listed positions, each with help.
 
-#![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -18,24 +18,24 @@ fn descriptions() -> Vec<(String, String)> {
     paths.iter().map(|path| (name(path), fs::read_to_string(path).expect("readable"))).collect()
 }
 
-/// `code line:column`, one for each `// expect: …`.
-fn expected(text: &str) -> Vec<String> {
-    text.lines().map_while(|line| line.strip_prefix("// expect: ")).map(str::to_string).collect()
+/// Returns `code line:column` of each `// expect: …`.
+fn expected(source: &str) -> Vec<String> {
+    source.lines().map_while(|line| line.strip_prefix("// expect: ")).map(str::to_string).collect()
 }
 
 #[test]
-fn every_mistake_is_found_where_it_is() {
+fn every_error_is_at_its_position() {
     let all = descriptions();
     assert!(all.len() >= 40, "only {} descriptions", all.len());
     let mut wrong = Vec::new();
-    for (name, text) in all {
-        let parsed = parse(&text, &name);
+    for (name, source) in all {
+        let parsed = parse(&source, &name);
         let found: Vec<String> = parsed
             .diagnostics
             .iter()
-            .map(|found| format!("{} {}:{}", found.code.name, found.origin.line, found.origin.column))
+            .map(|found| format!("{} {}:{}", found.code.name, found.span.line, found.span.column))
             .collect();
-        if found != expected(&text) {
+        if found != expected(&source) {
             wrong.push(format!("{name} gives:\n{}\n{}", found.join("\n"), parsed.diagnostics));
         }
     }
@@ -43,36 +43,36 @@ fn every_mistake_is_found_where_it_is() {
 }
 
 #[test]
-fn every_mistake_has_a_way_out() {
-    for (name, text) in descriptions() {
-        for found in &parse(&text, &name).diagnostics {
-            assert!(found.hint.len() > 5, "{found}");
+fn every_error_has_help() {
+    for (name, source) in descriptions() {
+        for found in &parse(&source, &name).diagnostics {
+            assert!(found.help.len() > 5, "{found}");
             assert!(found.message.len() > 5, "{found}");
-            let line = text.lines().nth(found.origin.line as usize - 1).unwrap_or_default();
-            let end = found.origin.column + found.origin.length - 1;
+            let line = source.lines().nth(found.span.line as usize - 1).unwrap_or_default();
+            let end = found.span.column + found.span.length - 1;
             assert!(end as usize <= line.chars().count().max(1), "beyond the line: {found}");
         }
     }
 }
 
 #[test]
-fn every_code_of_text_and_closures_is_met() {
-    let met: BTreeSet<String> = descriptions()
+fn every_code_of_source_and_closures_occurs() {
+    let found: BTreeSet<String> = descriptions()
         .iter()
-        .flat_map(|(_, text)| expected(text))
+        .flat_map(|(_, source)| expected(source))
         .filter_map(|line| line.split(' ').next().map(str::to_string))
         .collect();
-    let ours = codes::ALL.iter().map(|code| code.name).take_while(|name| *name != codes::MISSING_FILE.name);
-    let missing: Vec<&str> = ours.filter(|name| !met.contains(*name)).collect();
+    let codes = codes::ALL.iter().map(|code| code.name).take_while(|name| *name != codes::MISSING_FILE.name);
+    let missing: Vec<&str> = codes.filter(|name| !found.contains(*name)).collect();
     assert!(missing.is_empty(), "no bad description for {missing:?}");
 }
 
 #[test]
-fn a_draft_survives_its_mistakes() {
-    let text = "buffer B { fragment { depth: f32, id: u33 } keep 8 least |f| f.deep; where |f| f.depth > 0.0; }";
-    let parsed = parse(text, "b");
+fn a_description_with_errors_has_a_draft() {
+    let source = "buffer B { fragment { depth: f32, id: u33 } keep 8 least |f| f.deep; where |f| f.depth > 0.0; }";
+    let parsed = parse(source, "b");
     assert_eq!(parsed.diagnostics.iter().count(), 2, "{}", parsed.diagnostics);
-    let draft = parsed.draft.expect("best effort");
+    let draft = parsed.draft.expect("a draft");
     assert_eq!(draft.attributes.len(), 1);
     assert!(draft.keep.is_some_and(|keep| keep.criterion.is_none()));
     assert_eq!(draft.constraints.len(), 1);

@@ -1,9 +1,9 @@
-//! Every good description reads without a mistake and is lowered to the WGSL beside it.
+//! Every good description parses without an error and is lowered to the WGSL next to it.
 //!
-//! `good/NAME.wgsl` is what a person would have written for `good/NAME.fragbuf`: helpers, criterion, constraints and
+//! `good/NAME.wgsl` is the WGSL that a person would write for `good/NAME.fragbuf`: helpers, criterion, constraints and
 //! resolve, in this order, with an empty line between.
 
-#![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,8 +25,8 @@ fn descriptions() -> Vec<PathBuf> {
 
 fn draft(name: &str) -> Draft {
     let path = directory().join(name).with_extension("fragbuf");
-    let text = fs::read_to_string(&path).expect("readable");
-    let parsed = parse(&text, name);
+    let source = fs::read_to_string(&path).expect("readable");
+    let parsed = parse(&source, name);
     assert!(parsed.diagnostics.is_empty(), "{name}:\n{}", parsed.diagnostics);
     parsed.draft.expect("a draft")
 }
@@ -37,47 +37,47 @@ fn functions(draft: &Draft) -> Vec<&UserFunction> {
 }
 
 #[test]
-fn every_description_is_lowered_as_written_beside_it() {
+fn every_description_is_lowered_to_the_expected_wgsl() {
     let paths = descriptions();
     assert!(paths.len() >= 25, "only {} descriptions", paths.len());
     let mut wrong = Vec::new();
     for path in paths {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
         let draft = draft(&name);
-        let text: Vec<&str> = functions(&draft).into_iter().map(|function| function.wgsl.as_str()).collect();
+        let wgsl: Vec<&str> = functions(&draft).into_iter().map(|function| function.wgsl.as_str()).collect();
         let expected = fs::read_to_string(path.with_extension("wgsl")).unwrap_or_default();
-        if text.join("\n") != expected {
-            wrong.push(format!("{name} gives:\n{}", text.join("\n")));
+        if wgsl.join("\n") != expected {
+            wrong.push(format!("{name} gives:\n{}", wgsl.join("\n")));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 #[test]
-fn every_line_has_its_place() {
+fn every_line_has_a_span() {
     for path in descriptions() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        let text = fs::read_to_string(&path).expect("readable");
+        let source = fs::read_to_string(&path).expect("readable");
         for function in functions(&draft(&name)) {
             assert!(function.wgsl.ends_with("}\n"), "{name}: {}", function.wgsl);
             assert_eq!(function.wgsl.lines().count(), function.lines.len(), "{name}: {}", function.name);
-            for origin in &function.lines {
-                let line = text.lines().nth(origin.line as usize - 1).expect("the line exists");
-                let end = origin.column + origin.length - 1;
-                assert!(end as usize <= line.chars().count(), "{name}: {origin} goes beyond its line");
+            for span in &function.lines {
+                let line = source.lines().nth(span.line as usize - 1).expect("the line exists");
+                let end = span.column + span.length - 1;
+                assert!(end as usize <= line.chars().count(), "{name}: {span} ends after its line");
             }
         }
     }
 }
 
 #[test]
-fn places_of_glass() {
+fn spans_of_glass() {
     let draft = draft("glass");
-    let resolve = draft.resolve.expect("it resolves");
-    let places: Vec<(u32, u32)> = resolve.lines.iter().map(|origin| (origin.line, origin.column)).collect();
+    let resolve = draft.resolve.expect("a resolve function");
+    let spans: Vec<(u32, u32)> = resolve.lines.iter().map(|span| (span.line, span.column)).collect();
     let expected =
         [(13, 13), (14, 9), (15, 9), (16, 9), (16, 9), (17, 13), (18, 13), (19, 13), (20, 9), (21, 9), (22, 5)];
-    assert_eq!(places, expected, "{}", resolve.wgsl);
+    assert_eq!(spans, expected, "{}", resolve.wgsl);
 }
 
 #[test]
@@ -93,9 +93,9 @@ fn glass_as_a_draft() {
     let uniforms: Vec<_> =
         draft.uniforms.iter().map(|row| (row.name.value.as_str(), row.kind.value.keyword())).collect();
     assert_eq!(uniforms, [("cut", "f32"), ("eye", "vec3"), ("steps", "u32")]);
-    let keep = draft.keep.expect("it keeps");
+    let keep = draft.keep.expect("a keep");
     assert_eq!(keep.count.value, KeepCount::AtMost(8));
-    assert_eq!(keep.criterion.expect("it has one").rust, "| f | f . depth - 0.25 * f . color . w");
+    assert_eq!(keep.criterion.expect("a criterion").rust, "| f | f . depth - 0.25 * f . color . w");
     assert_eq!(draft.constraints.len(), 2);
     assert_eq!(draft.choices.len(), 2);
 }
@@ -110,12 +110,12 @@ fn choices_as_written() {
     assert_eq!(values, ["interlock", "spin_lock", "none"]);
     let options: Vec<_> =
         sync[1].options.iter().map(|(name, value)| (name.value.as_str(), value.value.clone())).collect();
-    assert_eq!(options, [("limit", OptionValue::Number(4096)), ("order", OptionValue::Word("front".to_string()))]);
-    assert_eq!((sync[1].value.origin.line, sync[1].value.origin.column, sync[1].value.origin.length), (4, 26, 9));
+    assert_eq!(options, [("limit", OptionValue::Number(4096)), ("order", OptionValue::Name("front".to_string()))]);
+    assert_eq!((sync[1].value.span.line, sync[1].value.span.column, sync[1].value.span.length), (4, 26, 9));
 }
 
 #[test]
-fn the_default_payload_stays_unwritten() {
+fn the_default_payload_is_not_in_the_draft() {
     let draft = draft("default_payload");
     assert!(draft.attributes.is_empty());
     let reads = draft.keep.and_then(|keep| keep.criterion).expect("a criterion").reads;
@@ -123,7 +123,7 @@ fn the_default_payload_stays_unwritten() {
 }
 
 #[test]
-fn reads_go_through_helpers() {
+fn reads_include_those_of_helpers() {
     let draft = draft("helpers");
     let criterion = draft.keep.and_then(|keep| keep.criterion).expect("a criterion");
     assert_eq!(criterion.reads.attributes, ["depth", "color"]);
@@ -134,7 +134,7 @@ fn reads_go_through_helpers() {
 }
 
 #[test]
-fn the_same_tokens_make_the_same_draft() {
+fn equal_tokens_give_equal_drafts() {
     let spread = "buffer A { keep 2 least |f| f . depth\n *\n 2.0 ; }";
     let dense = "buffer A{keep 2 least|f|f.depth*2.0;}";
     assert_eq!(parse(spread, "a").draft, parse(dense, "b").draft);

@@ -1,13 +1,13 @@
-//! Mangled names: WGSL accepts them, nothing else has them, and different names stay different.
+//! Mangled names are valid in WGSL, unused otherwise, and distinct for distinct names.
 
-#![allow(clippy::expect_used, reason = "a test may stop where it cannot go on")]
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::collections::BTreeMap;
 
 use fragbuf_model::mangled;
 
-/// WGSL §15.1 and §15.2, and one or more of every other kind of name that is taken.
-const TAKEN: &str = "
+/// The names of WGSL §15.1 and §15.2, and examples of every other kind of reserved name.
+const RESERVED: &str = "
     alias break case const const_assert continue continuing default diagnostic discard else enable false fn for if let
     loop override requires return struct switch true var while
     NULL Self abstract active alignas alignof as asm asm_fragment async attribute auto await become cast catch class
@@ -29,17 +29,17 @@ const TAKEN: &str = "
     reverseBits round saturate sign smoothstep sqrt step tan transpose trunc dpdx fwidth textureLoad atomicAdd
     atomicCompareExchangeWeak pack4x8unorm unpack2x16float storageBarrier workgroupBarrier workgroupUniformLoad
     subgroupAdd subgroupBallot quadSwapX
-    Fragment Packed Placed Vertex Varyings coverage uniforms frame CAPACITY user_weight storage_bound sync_begin sort_layers layer
+    Fragment Packed VertexOutput Vertex FragmentInput coverage uniforms frame CAPACITY user_weight storage_bound sync_begin sort_layers layer
     layer_count layers rust_odd
 ";
 
-fn taken() -> Vec<&'static str> {
-    TAKEN.split_whitespace().collect()
+fn reserved() -> Vec<&'static str> {
+    RESERVED.split_whitespace().collect()
 }
 
 #[test]
-fn taken_names_change_and_others_stay() {
-    for name in taken() {
+fn only_reserved_names_change() {
+    for name in reserved() {
         assert_eq!(mangled(name), format!("{name}_"));
     }
     for name in ["f", "depth", "color", "id", "normal", "velocity", "x", "_x", "Glass", "sum", "weight", "min_", "a__b"]
@@ -50,31 +50,31 @@ fn taken_names_change_and_others_stay() {
 }
 
 #[test]
-fn different_names_stay_different() {
+fn distinct_names_stay_distinct() {
     let stems: Vec<&str> =
-        taken().into_iter().chain(["x", "_", "__", "__x", "_x", "rust", "rust_", "rust__x", "0"]).collect();
-    let mut spelled: BTreeMap<String, String> = BTreeMap::new();
+        reserved().into_iter().chain(["x", "_", "__", "__x", "_x", "rust", "rust_", "rust__x", "0"]).collect();
+    let mut mangled_names: BTreeMap<String, String> = BTreeMap::new();
     for stem in stems {
         for prefix in ["", "_", "__", "rust", "rust_", "user_"] {
             for suffix in ["", "_", "__", "___", "0", "0_", "_0", "_1", "x"] {
                 let name = format!("{prefix}{stem}{suffix}");
                 let result = mangled(&name).into_owned();
-                let other = spelled.insert(result.clone(), name.clone());
-                assert!(other.is_none_or(|other| other == name), "two names are spelled {result}: {name} and another");
+                let other = mangled_names.insert(result.clone(), name.clone());
+                assert!(other.is_none_or(|other| other == name), "two names become {result}: {name} and another");
             }
         }
     }
 }
 
 #[test]
-fn every_result_is_a_wgsl_identifier_that_is_free() {
-    let taken = taken();
-    for stem in taken.iter().copied().chain(["_", "__", "___", "__x", "_x_", "x"]) {
+fn every_result_is_an_unused_wgsl_identifier() {
+    let reserved = reserved();
+    for stem in reserved.iter().copied().chain(["_", "__", "___", "__x", "_x_", "x"]) {
         for suffix in ["", "_", "__"] {
             let name = format!("{stem}{suffix}");
             let result = mangled(&name);
             assert!(result != "_" && !result.starts_with("__"), "{name} becomes {result}");
-            assert!(!taken.contains(&result.as_ref()), "{name} becomes {result}, which is taken");
+            assert!(!reserved.contains(&result.as_ref()), "{name} becomes {result}, which is reserved");
         }
     }
 }

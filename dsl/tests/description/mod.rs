@@ -1,10 +1,10 @@
-//! A description as a test makes it: printed as a file, or handed to the builder part by part.
+//! A generated description: printed as a file, or given to the builder part by part.
 
 use std::fmt::Write as _;
 
 use fragbuf_dsl::Registry;
 use fragbuf_dsl::builder::{Buffer, Closure, Format, Function, KeepCount, OptionValue, UniformType, Value, value};
-use fragbuf_templates::vocabulary::Takes;
+use fragbuf_templates::vocabulary::ParameterType;
 
 /// A seeded generator (SplitMix64), the same on every machine.
 pub struct Random(pub u64);
@@ -22,13 +22,13 @@ impl Random {
         self.below(times) == 0
     }
 
-    pub fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+    pub fn choose_from<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }
 }
 
-type Option_ = (String, OptionValue);
-type Choice = (String, Vec<(String, Vec<Option_>)>);
+type OptionEntry = (String, OptionValue);
+type Choice = (String, Vec<(String, Vec<OptionEntry>)>);
 
 #[derive(Default)]
 pub struct Description {
@@ -55,35 +55,36 @@ impl Description {
 
     pub fn random(random: &mut Random, registry: &Registry) -> Self {
         let presets: Vec<&str> = registry.techniques().iter().map(|technique| technique.key.as_str()).collect();
-        let name = if random.once_in(25) { "lower" } else { random.pick(&["Glass", "MostVisible", "A"]) };
-        let mut made = Description { name: name.to_owned(), ..Description::default() };
-        made.preset = (!random.once_in(8)).then(|| (*random.pick(&presets)).to_owned());
-        made.rows(random);
-        made.functions(random);
+        let name = if random.once_in(25) { "lower" } else { random.choose_from(&["Glass", "MostVisible", "A"]) };
+        let mut description = Description { name: name.to_owned(), ..Description::default() };
+        description.preset = (!random.once_in(8)).then(|| (*random.choose_from(&presets)).to_owned());
+        description.rows(random);
+        description.functions(random);
         for _ in 0..random.below(3) {
-            made.choices.push(choice(random, registry));
+            description.choices.push(choice(random, registry));
         }
-        made
+        description
     }
 
     fn rows(&mut self, random: &mut Random) {
         if !random.once_in(3) {
-            self.attributes.push(("color".to_owned(), *random.pick(&[Format::Rgba8, Format::Vec4])));
+            self.attributes.push(("color".to_owned(), *random.choose_from(&[Format::Rgba8, Format::Vec4])));
             if !random.once_in(20) {
                 self.attributes.push(("depth".to_owned(), Format::F32));
             }
             for name in ["id", "normal", "r#type", "sample", "heat"] {
                 if random.once_in(3) {
-                    self.attributes.push((name.to_owned(), *random.pick(&Format::ALL)));
+                    self.attributes.push((name.to_owned(), *random.choose_from(&Format::ALL)));
                 }
             }
             if random.once_in(12) {
-                self.attributes.push((random.pick(&["depth", "vec3", "match", "größe"]).to_string(), Format::F32));
+                self.attributes
+                    .push((random.choose_from(&["depth", "vec3", "match", "größe"]).to_string(), Format::F32));
             }
         }
         for name in ["far", "eye", "steps", "texture"] {
             if random.once_in(2) {
-                self.uniforms.push((name.to_owned(), *random.pick(&UniformType::ALL)));
+                self.uniforms.push((name.to_owned(), *random.choose_from(&UniformType::ALL)));
             }
         }
     }
@@ -102,7 +103,7 @@ impl Description {
             self.constraints.push(format!("|f: Fragment, u| -> bool {{ {left} < {right} }}"));
         }
         if random.once_in(2) {
-            let name = random.pick(&["weight", "weight", "resolve", "vec2"]);
+            let name = random.choose_from(&["weight", "weight", "resolve", "vec2"]);
             let body = self.number(random, 2);
             self.helpers.push(format!("fn {name}(f: Fragment, u: Uniforms, x: f32) -> f32 {{ {body} + x }}"));
         }
@@ -121,11 +122,11 @@ impl Description {
         }
     }
 
-    /// An expression of type `f32`; now and then with a mistake in it.
+    /// Returns an expression of type `f32`; one in 100 has an error.
     fn number(&self, random: &mut Random, depth: usize) -> String {
         if random.once_in(100) {
             return random
-                .pick(&["f.deph", "1", "f.depth.round()", "true", "u.nothing", "x y", "&f.depth"])
+                .choose_from(&["f.deph", "1", "f.depth.round()", "true", "u.nothing", "x y", "&f.depth"])
                 .to_string();
         }
         if depth == 0 {
@@ -155,48 +156,48 @@ impl Description {
             UniformType::U32 | UniformType::I32 => format!("(u.{name} as f32)"),
             UniformType::Vec2 | UniformType::Vec3 | UniformType::Vec4 => format!("u.{name}.length()"),
         }));
-        random.pick(&leaves).clone()
+        random.choose_from(&leaves).clone()
     }
 
-    /// As a file.
-    pub fn text(&self) -> String {
-        let mut text = format!("buffer {}", self.name);
+    /// Returns the source of a `.fragbuf` file.
+    pub fn source(&self) -> String {
+        let mut source = format!("buffer {}", self.name);
         if let Some(preset) = &self.preset {
-            let _ = write!(text, " from {preset}");
+            let _ = write!(source, " from {preset}");
         }
-        text.push_str(" {\n");
-        let block = |word: &str, rows: Vec<String>| match rows.is_empty() {
+        source.push_str(" {\n");
+        let block = |keyword: &str, rows: Vec<String>| match rows.is_empty() {
             true => String::new(),
-            false => format!("    {word} {{ {} }}\n", rows.join(", ")),
+            false => format!("    {keyword} {{ {} }}\n", rows.join(", ")),
         };
         let rows = self.attributes.iter().map(|(name, format)| format!("{name}: {}", format.keyword()));
-        text.push_str(&block("fragment", rows.collect()));
+        source.push_str(&block("fragment", rows.collect()));
         let rows = self.uniforms.iter().map(|(name, kind)| format!("{name}: {}", kind.keyword()));
-        text.push_str(&block("uniform", rows.collect()));
+        source.push_str(&block("uniform", rows.collect()));
         for (count, criterion) in &self.keep {
             let count = count.map_or("all".to_owned(), |count| count.to_string());
             let criterion = criterion.as_ref().map_or(String::new(), |criterion| format!(" least {criterion}"));
-            let _ = writeln!(text, "    keep {count}{criterion};");
+            let _ = writeln!(source, "    keep {count}{criterion};");
         }
         for constraint in &self.constraints {
-            let _ = writeln!(text, "    where {constraint};");
+            let _ = writeln!(source, "    where {constraint};");
         }
         for helper in &self.helpers {
-            let _ = writeln!(text, "    {helper}");
+            let _ = writeln!(source, "    {helper}");
         }
         for (axis, alternatives) in &self.choices {
-            let alternatives: Vec<String> = alternatives.iter().map(written).collect();
-            let _ = writeln!(text, "    {axis}: {};", alternatives.join(" else "));
+            let alternatives: Vec<String> = alternatives.iter().map(alternative_source).collect();
+            let _ = writeln!(source, "    {axis}: {};", alternatives.join(" else "));
         }
         if let Some(resolve) = &self.resolve {
-            let _ = writeln!(text, "    resolve {resolve}");
+            let _ = writeln!(source, "    resolve {resolve}");
         }
-        text.push_str("}\n");
-        text
+        source.push_str("}\n");
+        source
     }
 
-    /// Through the builder.
-    pub fn built(&self) -> Buffer {
+    /// Returns the same description in the builder.
+    pub fn builder(&self) -> Buffer {
         let mut buffer = Buffer::named(&self.name);
         if let Some(preset) = &self.preset {
             buffer = buffer.from(preset);
@@ -215,14 +216,14 @@ impl Description {
             };
         }
         for constraint in &self.constraints {
-            buffer = buffer.admit(Closure::text(constraint));
+            buffer = buffer.constraint(Closure::text(constraint));
         }
         for helper in &self.helpers {
             buffer = buffer.helper(Function::text(helper));
         }
         for (axis, alternatives) in &self.choices {
-            let alternatives = alternatives.iter().map(|(word, options)| {
-                options.iter().fold(value(word), |value, (name, option)| value.option(name, option.clone()))
+            let alternatives = alternatives.iter().map(|(key, options)| {
+                options.iter().fold(value(key), |value, (name, option)| value.option(name, option.clone()))
             });
             buffer = buffer.choose(axis, alternatives.reduce(Value::or_else).unwrap());
         }
@@ -233,10 +234,11 @@ impl Description {
     }
 }
 
-fn written((value, options): &(String, Vec<Option_>)) -> String {
-    let option = |(name, value): &Option_| match value {
+/// Returns an alternative as a description writes it.
+fn alternative_source((value, options): &(String, Vec<OptionEntry>)) -> String {
+    let option = |(name, value): &OptionEntry| match value {
         OptionValue::Number(number) => format!("{name}: {number}"),
-        OptionValue::Word(word) => format!("{name}: {word}"),
+        OptionValue::Name(value) => format!("{name}: {value}"),
     };
     match options.is_empty() {
         true => value.clone(),
@@ -246,7 +248,7 @@ fn written((value, options): &(String, Vec<Option_>)) -> String {
 
 fn choice(random: &mut Random, registry: &Registry) -> Choice {
     let axes: Vec<&str> = registry.axes().iter().filter(|axis| axis.chosen).map(|axis| axis.key).collect();
-    let axis = if random.once_in(20) { "strage" } else { *random.pick(&axes) };
+    let axis = if random.once_in(20) { "strage" } else { *random.choose_from(&axes) };
     let rows: Vec<_> = registry.rows_of(axis).collect();
     let mut alternatives = Vec::new();
     for _ in 0..1 + random.below(2) {
@@ -254,14 +256,14 @@ fn choice(random: &mut Random, registry: &Registry) -> Choice {
             alternatives.push(("nothing".to_owned(), Vec::new()));
             continue;
         }
-        let row = random.pick(&rows);
-        let mut options: Vec<Option_> = Vec::new();
+        let row = random.choose_from(&rows);
+        let mut options: Vec<OptionEntry> = Vec::new();
         for parameter in &row.parameters {
             if random.once_in(2) {
-                let number = match parameter.takes {
-                    Takes::Number => OptionValue::Number(parameter.range.0 + random.below(3) as u32),
-                    Takes::PowerOfTwo => OptionValue::Number(parameter.range.0 << random.below(2)),
-                    Takes::Attribute => OptionValue::from("depth"),
+                let number = match parameter.kind {
+                    ParameterType::Number => OptionValue::Number(parameter.range.0 + random.below(3) as u32),
+                    ParameterType::PowerOfTwo => OptionValue::Number(parameter.range.0 << random.below(2)),
+                    ParameterType::Attribute => OptionValue::from("depth"),
                 };
                 let option = if random.once_in(10) { OptionValue::from("many") } else { number };
                 options.push((parameter.name.to_string(), option.clone()));

@@ -6,7 +6,7 @@ fragbuf_dsl::fragment_buffer! {
     }
 }
 
-// What could be emitted is there.
+// The attribute without an error is emitted.
 fn main() {
     let _ = glass::Fragment { depth: 0.5, ..Default::default() };
 }

@@ -1,4 +1,4 @@
-//! Nothing is imported, and the crate has names of its own for much of what expanded code needs.
+//! The crate imports nothing, and defines items with most of the names that expanded code uses.
 #![deny(warnings, missing_docs, unreachable_pub, unused_qualifications)]
 #![allow(dead_code, non_camel_case_types)]
 
@@ -27,7 +27,7 @@ struct u8;
 fn vec4() {}
 
 ::fragbuf_dsl::fragment_buffer! {
-    /// Glass, in front.
+    /// The documentation of the module.
     pub buffer Glass from kplus_array {
         fragment { color: rgba8, depth: f32, id: u32, normal: octahedral, r#type: u32 }
         uniform { first: f32, eye: vec3, _padding_0: vec2, steps: u32, last: vec4, step: i32 }

@@ -1,20 +1,17 @@
-//! Storages in textures that depth test, stencil and targets write: no shader decides what stays.
+//! Storages in textures: depth test, stencil test and render targets decide which fragments are kept, not a shader.
 
 use crate::conditions::{depth_key, keeps_one, word_per_target};
 use crate::vocabulary::{
-    Access, Blend, Capability, Compare, Condition, Coverage, DepthState, Element, Fact, Hazard, Pass, Permits, Repeat,
-    Resource, Row, Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
+    Access, Blend, Capability, Compare, Condition, Coverage, DepthState, Element, Feature, Hazard, Pass, Permits,
+    Repeat, Resource, Row, Samples, StencilOperation, StencilState, Step, Text, TextureFormat, Until,
 };
 
-/// The nearest fragment, by the depth test.
+/// Returns the row that keeps the nearest fragment by the depth test.
 pub(super) fn depth_tested() -> Row {
     let depths =
         Resource::new("depths", Element::Texture(TextureFormat::Depth32Float), "depth of the fragment; 1: none");
-    let entries = Resource::new(
-        "entries",
-        Element::BesideTextures(TextureFormat::R32Uint),
-        "what the fragment carries beside its depth",
-    );
+    let entries =
+        Resource::new("entries", Element::ValueTextures(TextureFormat::R32Uint), "the value words of the fragment");
     let mut store = Pass::geometry("store", "store_targets")
         .uses("depths", Access::Attachment)
         .uses("entries", Access::Attachment)
@@ -36,36 +33,37 @@ pub(super) fn depth_tested() -> Row {
                     .target("output", Blend::Over),
             ),
         ],
-        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        requires: vec![Capability::OneSample, Capability::SyncByFixedFunction],
         conditions: vec![depth_key(), keeps_one(), word_per_target()],
-        needs: vec![Capability::OwnEntryPoints],
+        needs: vec![Feature::OwnEntryPoints],
         hazards: vec![
             Hazard::new(
                 "equal-keys",
-                "of fragments with equal depths one is kept, the first to be submitted",
+                "of fragments with equal depths only the first submitted is kept",
                 Permits::ONE_OF_EQUAL_KEYS,
             ),
-            Hazard::new("far-plane", "a fragment at depth 1.0 exactly is not kept", Permits::NOTHING),
-            Hazard::new("uncounted", "what the depth test turns away is not counted", Permits::UNCOUNTED),
+            Hazard::new("far-plane", "a fragment at a depth of exactly 1.0 is not kept", Permits::NOTHING),
+            Hazard::new("uncounted", "fragments that the depth test rejects are not counted", Permits::UNCOUNTED),
         ],
-        // One fragment is in order.
-        offers: vec![Fact::KeepsBest, Fact::FixedFunction, Fact::LeavesDepth, Fact::Sorted],
-        defaults: vec![LEFT_TO_TESTS, ARRIVAL, UNSORTED],
+        // One fragment is sorted.
+        provides: vec![Capability::KeepsBest, Capability::FixedFunction, Capability::LeavesDepth, Capability::Sorted],
+        defaults: vec![BY_TESTS, ARRIVAL, UNSORTED],
         ..Row::new(
             "storage",
             "depth_tested",
-            "the nearest fragment, by the depth test, its words in targets",
+            "the nearest fragment by the depth test, with its words in render targets",
             "Catmull 1974; K15 §4.3 (Z-buffer)",
         )
     }
 }
 
-/// The first k fragments, each in a sample of its own, by the stencil.
+/// Returns the row that stores the first k fragments in the samples of a pixel by the stencil test.
 pub(super) fn stencil_routed() -> Row {
     let by_sample = |name: &str, element: Element, summary: &'static str| {
         Resource::new(name, element, summary).by("sample", "k").by("pixel", "pixels").cleared(0)
     };
-    // A fragment that covers some samples of a pixel is lost or doubled: where a device can, it covers all or none.
+    // A fragment with partial coverage is lost or duplicated. On devices that support it, it covers all samples or
+    // none.
     let samples = |mask: &'static str| {
         Some(Samples { count: "capacity".into(), mask: mask.into(), coverage: Coverage::WholePixel })
     };
@@ -98,7 +96,7 @@ pub(super) fn stencil_routed() -> Row {
             by_sample(
                 "routing",
                 Element::Texture(TextureFormat::Depth24PlusStencil8),
-                "stencil: how many fragments come before the sample's own; shaders read the stencil",
+                "stencil: how many fragments precede the one that the sample takes; shaders read the stencil",
             ),
         ],
         steps: vec![
@@ -111,47 +109,47 @@ pub(super) fn stencil_routed() -> Row {
             Step::Pass(resolve.uses("entries", Access::Sampled).target("output", Blend::Over)),
         ],
         calls: vec!["counters"],
-        offers: vec![Fact::FixedFunction],
-        requires: vec![Fact::OneSample, Fact::LeftToTests],
+        provides: vec![Capability::FixedFunction],
+        requires: vec![Capability::OneSample, Capability::SyncByFixedFunction],
         conditions: vec![
             depth_key(),
             Condition::new(
                 "keep == 2 || keep == 4 || keep == 8",
-                "a limit that is a number of samples: `keep 2`, `keep 4` or `keep 8`",
+                "a limit that is a sample count: `keep 2`, `keep 4` or `keep 8`",
                 "write `keep 4;`",
             ),
             word_per_target(),
         ],
-        needs: vec![Capability::SampleMask, Capability::OwnEntryPoints],
-        defaults: vec![LEFT_TO_TESTS, ARRIVAL],
+        needs: vec![Feature::SampleMask, Feature::OwnEntryPoints],
+        defaults: vec![BY_TESTS, ARRIVAL],
         hazards: vec![
             Hazard::new(
                 "first-k",
-                "the first k fragments are kept, in the order of submission, whatever their depth",
+                "the first k fragments in submission order are kept, whatever their depth",
                 Permits::NOTHING,
             ),
             Hazard::new(
                 "borders",
-                "where a triangle covers some samples of a pixel, fragments of that pixel may be lost or stored twice; \
-                 how many cover one in part is counted, so no more pixels than that are wrong",
+                "if a triangle covers only some samples of a pixel, fragments may be lost or stored twice there; \
+                 such fragments are counted, so at most that many pixels are wrong",
                 Permits::NOTHING,
             ),
             Hazard::new(
                 "many-late",
-                "beyond 255 - capacity fragments of a pixel that came too late, no more of them are counted",
+                "at most 255 - capacity fragments of a pixel that arrive too late are counted",
                 Permits::NOTHING,
             ),
         ],
         ..Row::new(
             "storage",
             "stencil_routed",
-            "the first k fragments, each in a sample of a multisampled target, by the stencil",
+            "the first k fragments, each in a sample of a multisampled target, by the stencil test",
             "Myers & Bavoil 2007; K15 §2 (KB-SR)",
         )
     }
 }
 
-/// Values on other axes that suit it.
-const LEFT_TO_TESTS: (Text, Text) = (Text::Borrowed("sync"), Text::Borrowed("fixed_function"));
+/// Defaults on other axes.
+const BY_TESTS: (Text, Text) = (Text::Borrowed("sync"), Text::Borrowed("fixed_function"));
 const ARRIVAL: (Text, Text) = (Text::Borrowed("ties"), Text::Borrowed("unordered"));
 const UNSORTED: (Text, Text) = (Text::Borrowed("sort"), Text::Borrowed("none"));

@@ -1,19 +1,19 @@
-//! Storages of lists: nodes of one pool, linked per pixel.
+//! Storages of linked lists per pixel, whose nodes are in one pool.
 
-use super::resolve;
-use crate::vocabulary::{Access, Capability, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use super::parts::resolve;
+use crate::vocabulary::{Access, Capability, Element, Feature, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
     let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
     Row {
         template: Some(template!("storage/linked_list")),
         resources: resources([
-            "first node of the pixel's list, plus one; 0: empty",
+            "the first node of the pixel's list, plus one; 0: empty",
             "the node after this one, plus one; 0: the last",
             "the fragment of this node",
         ]),
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        implies: vec![("limited".into(), Fact::BestSuffice)],
+        provides: vec![Capability::LockFree, Capability::KeepsAll, Capability::ReportsWholeFragments],
+        implies: vec![("limited".into(), Capability::AcceptsKBestOnly)],
         defaults: vec![("sync".into(), "slot_counter".into())],
         ..list(
             store,
@@ -27,7 +27,7 @@ pub(super) fn linked_list() -> Row {
     }
 }
 
-/// A list that is in order at every instant.
+/// Returns the row of a list that is sorted at every instant.
 pub(super) fn ordered_list() -> Row {
     let store = |pass: Pass| pass.uses("links", Access::Atomic).uses("nodes", Access::Coherent);
     Row {
@@ -37,48 +37,54 @@ pub(super) fn ordered_list() -> Row {
             "the next best node after this one, plus one; 0: the last",
             "the fragment of this node, written once",
         ]),
-        offers: vec![Fact::OwnAtomics, Fact::KeepsBest, Fact::BestSuffice, Fact::SparesRoom, Fact::LosesWhole],
-        // The list is in the order of its keys.
-        implies: vec![("depth_key".into(), Fact::Sorted)],
+        provides: vec![
+            Capability::LockFree,
+            Capability::KeepsBest,
+            Capability::AcceptsKBestOnly,
+            Capability::AllocatesKBestOnly,
+            Capability::ReportsWholeFragments,
+        ],
+        // The list is sorted by key.
+        implies: vec![("depth_key".into(), Capability::Sorted)],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],
         parameters: vec![Parameter::number(
             "retries",
             "LINK_TRIES",
             "4096",
             (1, 1 << 24),
-            "tries to link a node before its fragment is given up and counted",
+            "tries to link a node before its fragment times out and is counted",
         )],
-        // Readers follow a link to words that its writer stored plainly.
+        // Readers follow an atomic link to words that its writer stored with plain stores.
         soundness: Soundness::Lock,
         ..list(
             store,
             Row::new(
                 "storage",
                 "ordered_list",
-                "a list per pixel in order, linked by compare and exchange, read no further than k nodes",
+                "a sorted list per pixel, linked by compare-exchange and read up to k nodes",
                 "Yu et al. 2012; K15 §2 (KB-LL)",
             ),
         )
     }
 }
 
-/// What a list keeps in memory: what its heads, links and nodes are.
+/// Returns the resources of a list with these summaries of heads, links and nodes.
 fn resources([heads, links, nodes]: [&'static str; 3]) -> Vec<Resource> {
     vec![
         Resource::new("heads", Element::Word, heads).by("pixel", "pixels").cleared(0),
         Resource::new("links", Element::Word, links).by("node", "fragments"),
         Resource::new("nodes", Element::Entry, nodes).by("node", "fragments"),
-        Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
+        Resource::new("pool", Element::Word, "nodes allocated so far").cleared(0),
     ]
 }
 
-/// What lists share; `store` says how fragments touch links and nodes.
+/// Adds what lists share to a row; `store` declares how fragments access links and nodes.
 fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
-    let touched = store(Pass::geometry("store", "store").uses("heads", Access::Atomic));
+    let pass = store(Pass::geometry("store", "store").uses("heads", Access::Atomic));
     Row {
-        steps: vec![Step::Pass(touched.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
+        steps: vec![Step::Pass(pass.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
         calls: vec!["overflow", "counters"],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         ..row
     }
 }

@@ -1,22 +1,26 @@
-//! Storages of several lists or pages per pixel, through one pool.
+//! Storages of several lists or pages per pixel, which share one pool.
 
-use super::resolve;
+use super::parts::resolve;
 use crate::conditions::depth_key;
-use crate::vocabulary::{Access, Capability, Element, Fact, Hazard, Parameter, Pass, Permits, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Feature, Hazard, Parameter, Pass, Permits, Resource, Row, Step};
 
-/// Lists whose links lead from page to page.
+/// Returns the row of lists of pages.
 pub(super) fn paged_list() -> Row {
     let pages = "fragments / PAGE_ENTRIES";
     Row {
         template: Some(template!("storage/paged_list")),
         resources: vec![
-            Resource::new("cursors", Element::Word, "the place after the pixel's last fragment; 0: it has none")
+            Resource::new("cursors", Element::Word, "one past the slot of the pixel's last fragment; 0: none")
                 .by("pixel", "pixels")
                 .cleared(0),
-            Resource::new("links", Element::Word, "the end of the page before this one of the pool").by("page", pages),
-            Resource::new("entries", Element::Entry, "the fragments, page after page; the first are the pixels' own")
-                .by("place", "(pixels + fragments / PAGE_ENTRIES) * PAGE_ENTRIES"),
-            Resource::new("pool", Element::Word, "pages taken so far").cleared(0),
+            Resource::new("links", Element::Word, "the end of the page before this page of the pool").by("page", pages),
+            Resource::new(
+                "entries",
+                Element::Entry,
+                "the fragments by page; the first pages are reserved for the pixels",
+            )
+            .by("slot", "(pixels + fragments / PAGE_ENTRIES) * PAGE_ENTRIES"),
+            Resource::new("pool", Element::Word, "pages allocated so far").cleared(0),
         ],
         steps: vec![
             Step::Pass(
@@ -29,8 +33,8 @@ pub(super) fn paged_list() -> Row {
             resolve(&["cursors", "links", "entries"]),
         ],
         calls: vec!["addressing", "overflow", "counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
-        needs: vec![Capability::FragmentAtomics],
+        provides: vec![Capability::LockFree, Capability::KeepsAll, Capability::ReportsWholeFragments],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
         parameters: vec![
             Parameter::number(
@@ -38,49 +42,49 @@ pub(super) fn paged_list() -> Row {
                 "PAGE_ENTRIES",
                 "4",
                 (1, 256),
-                "fragments of a page; powers of two are divided by without a division",
+                "fragments per page; a power of two avoids integer divisions",
             ),
             Parameter::number(
                 "retries",
                 "PAGE_TRIES",
                 "4096",
                 (1, 1 << 24),
-                "tries to move the cursor before a fragment is given up and counted",
+                "tries to move the cursor before a fragment times out and is counted",
             ),
         ],
         hazards: vec![Hazard::new(
             "leaked-page",
-            "of pages that several fragments of a pixel take at once one is used: the others are missing from the \
-                   pool, and fragments may find it empty that there was room for; both are counted",
+            "if several fragments of a pixel take a page concurrently, one page is used and the others are missing \
+                   from the pool, which may overflow earlier; both are counted",
             Permits::NOTHING,
         )],
         ..Row::new(
             "storage",
             "paged_list",
-            "a list of pages per pixel, the first its own, the others through one pool",
+            "a list of pages per pixel: the first is reserved, the others are from one pool",
             "after Crassin 2010",
         )
     }
 }
 
-/// A list per depth bucket of every pixel.
+/// Returns the row of one list per depth bucket of every pixel.
 pub(super) fn bucket_lists() -> Row {
-    let ends = "the pixel's range of keys: the nearest with its bits flipped, the farthest; 0: none";
+    let ends = "the pixel's range of keys: the nearest with its bits inverted, the farthest; 0: none";
     Row {
         template: Some(template!("storage/bucket_lists")),
         resources: vec![
             Resource::new("ranges", Element::Word, ends).by("end", "2").by("pixel", "pixels").cleared(0),
-            Resource::new("heads", Element::Word, "first node of the bucket's list, plus one; 0: empty")
+            Resource::new("heads", Element::Word, "the first node of the bucket's list, plus one; 0: empty")
                 .by("bucket", "5")
                 .by("pixel", "pixels")
                 .cleared(0),
             Resource::new("links", Element::Word, "the node after this one, plus one; 0: the last")
                 .by("node", "fragments"),
             Resource::new("nodes", Element::Entry, "the fragment of this node").by("node", "fragments"),
-            Resource::new("pool", Element::Word, "nodes taken so far").cleared(0),
+            Resource::new("pool", Element::Word, "nodes allocated so far").cleared(0),
         ],
         steps: vec![
-            Step::Pass(Pass::geometry("survey", "survey").uses("ranges", Access::Atomic)),
+            Step::Pass(Pass::geometry("prepass", "prepass").uses("ranges", Access::Atomic)),
             Step::Pass(
                 Pass::geometry("store", "store")
                     .uses("ranges", Access::Read)
@@ -92,14 +96,14 @@ pub(super) fn bucket_lists() -> Row {
             resolve(&["ranges", "heads", "links", "nodes"]),
         ],
         calls: vec!["overflow", "counters"],
-        offers: vec![Fact::OwnAtomics, Fact::KeepsAll, Fact::LosesWhole],
+        provides: vec![Capability::LockFree, Capability::KeepsAll, Capability::ReportsWholeFragments],
         conditions: vec![depth_key()],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "insertion".into())],
         ..Row::new(
             "storage",
             "bucket_lists",
-            "a list per depth bucket of each pixel's range, through one pool of nodes",
+            "a list per depth bucket of each pixel's range, with one pool of nodes",
             "Vasilakis & Fudos 2013 (D13 §3.1.4, BUN-LL)",
         )
     }

@@ -1,14 +1,14 @@
-//! A storage that fragments pass through: what leaves it is composited in order.
+//! A storage that composites fragments in depth order as they leave it.
 
-use super::{array_resources, reset};
+use super::parts::{array_resources, reset};
 use crate::conditions::{depth_key, limited};
-use crate::vocabulary::{Access, Blend, Capability, Element, Fact, Hazard, Pass, Permits, Resource, Row, Step};
+use crate::vocabulary::{Access, Blend, Capability, Element, Feature, Hazard, Pass, Permits, Resource, Row, Step};
 
-/// The k nearest of those to come; the nearest of all leaves for every one that comes.
+/// Returns the row of the stream: a full array evicts the nearest fragment for every new one.
 pub(super) fn stream_array() -> Row {
     let mut resources = array_resources("keys in ascending order; EMPTY past the last");
     resources.push(
-        Resource::new("colors", Element::Word, "the premultiplied colour of what has left, as floats")
+        Resource::new("colors", Element::Word, "the premultiplied colour of the fragments that have left, as floats")
             .by("channel", "4")
             .by("pixel", "pixels")
             .cleared(0),
@@ -39,15 +39,15 @@ pub(super) fn stream_array() -> Row {
             ),
         ],
         calls: vec!["resolve", "counters"],
-        offers: vec![Fact::Streams, Fact::Indexed, Fact::Sorted],
+        provides: vec![Capability::Streams, Capability::Indexed, Capability::Sorted],
         requires: vec![
-            Fact::Critical,
-            Fact::ValuesPairs,
-            // What leaves is composited for the whole pixel.
-            Fact::OneSample,
+            Capability::MutualExclusion,
+            Capability::PairValues,
+            // Fragments that leave are composited for the whole pixel.
+            Capability::OneSample,
         ],
         conditions: vec![depth_key(), limited()],
-        needs: vec![Capability::FragmentAtomics],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![
             ("sync".into(), "spin_lock".into()),
             ("sort".into(), "none".into()),
@@ -55,14 +55,14 @@ pub(super) fn stream_array() -> Row {
         ],
         hazards: vec![Hazard::new(
             "out-of-order",
-            "a fragment that comes more than k places late is composited behind those it lies before, and \
-                   counted; equal depths are composited in the order of arrival",
+            "a fragment that arrives more than k positions late is composited behind farther ones, and counted; \
+                   equal depths are composited in the order of arrival",
             Permits::NOTHING,
         )],
         ..Row::new(
             "storage",
             "stream_array",
-            "k entries per pixel in order, the nearest composited whenever another comes",
+            "k sorted entries per pixel; a full array composites the nearest for every new fragment",
             "B06 §3, §4.3; Callahan et al. 2005",
         )
     }

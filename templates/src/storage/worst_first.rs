@@ -1,7 +1,7 @@
 //! Storages that keep the worst entry at slot 0 and replace it inside a critical section.
 
-use super::{OF_THE_K_BEST, array_resources, reset, resolve};
-use crate::vocabulary::{Access, Capability, Element, Fact, Parameter, Pass, Resource, Row, Soundness, Step};
+use super::parts::{REPLACES_WORST, array_resources, reset, resolve};
+use crate::vocabulary::{Access, Capability, Element, Feature, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn max_array() -> Row {
     Row {
@@ -17,16 +17,16 @@ pub(super) fn max_heap() -> Row {
     }
 }
 
-/// The array whose first k-1 fragments need no lock.
+/// Returns the row of the array whose first k-1 fragments need no lock.
 pub(super) fn revised_array() -> Row {
-    let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are in");
-    resources.push(Resource::new("tickets", Element::Word, "fragments that asked for a slot").by("pixel", "pixels"));
+    let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are kept");
+    resources.push(Resource::new("tickets", Element::Word, "fragments that requested a slot").by("pixel", "pixels"));
     Row {
         template: Some(template!("storage/revised_array")),
         resources,
         steps: vec![
             reset(&["keys", "tickets"]),
-            // Who waits reads keys that others write outside the lock: no load of them may be weakened.
+            // A waiting fragment reads keys that others write outside the lock, so their loads must be exact.
             Step::Pass(
                 Pass::geometry("store", "store_reserving")
                     .uses("keys", Access::Atomic)
@@ -36,48 +36,48 @@ pub(super) fn revised_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        offers: OF_THE_K_BEST.to_vec(),
-        requires: vec![Fact::Critical],
-        needs: vec![Capability::FragmentAtomics],
+        provides: REPLACES_WORST.to_vec(),
+        requires: vec![Capability::MutualExclusion],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         parameters: vec![Parameter::number(
             "wait",
             "WAIT_LIMIT",
             "4096",
             (1, 1 << 24),
-            "looks at the slots of others before a fragment is given up and counted",
+            "checks of the other slots before a fragment times out and is counted",
         )],
-        // What is stored outside the critical section reaches those inside by fences, whatever the section is made of.
+        // Fences order stores outside the critical section before it, whatever implements the section.
         soundness: Soundness::Lock,
         ..Row::new(
             "storage",
             "revised_array",
             "k entries per pixel, the worst at slot 0; the first k-1 are stored without the lock",
-            "K15 §3.2.1, Alg. 2, mended",
+            "K15 §3.2.1, Alg. 2, corrected",
         )
     }
 }
 
-/// What storages share that keep the worst entry at slot 0 and are written inside a critical section.
+/// Adds what storages share that keep the worst entry at slot 0 and are written inside a critical section.
 fn worst_first(row: Row) -> Row {
-    let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are in");
-    resources.push(Resource::new("filled", Element::Word, "fragments kept, at most k").by("pixel", "pixels"));
+    let mut resources = array_resources("slot 0 holds the worst kept key, EMPTY until k fragments are kept");
+    resources.push(Resource::new("kept_counts", Element::Word, "fragments kept, at most k").by("pixel", "pixels"));
     Row {
         resources,
         steps: vec![
-            reset(&["keys", "filled"]),
+            reset(&["keys", "kept_counts"]),
             Step::Pass(
                 Pass::geometry("store", "store")
                     .uses_rechecked("keys")
                     .uses("entries", Access::Coherent)
-                    .uses("filled", Access::Coherent),
+                    .uses("kept_counts", Access::Coherent),
             ),
-            resolve(&["keys", "entries", "filled"]),
+            resolve(&["keys", "entries", "kept_counts"]),
         ],
         calls: vec!["overflow"],
-        offers: OF_THE_K_BEST.to_vec(),
-        requires: vec![Fact::Critical],
-        needs: vec![Capability::FragmentAtomics],
+        provides: REPLACES_WORST.to_vec(),
+        requires: vec![Capability::MutualExclusion],
+        needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
         ..row
     }

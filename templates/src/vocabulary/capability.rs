@@ -1,23 +1,47 @@
-//! What a target or a device can express, and rows need of it. A description names several rows where one target lacks
-//! what the first needs (`interlock else spin_lock`); which of them is taken is decided per target.
+//! Capabilities that rows provide to each other. A combination of rows is legal if every required capability is
+//! provided and every condition holds.
 
-use super::words::words;
+use super::names::names;
 
-words! {
-    /// One thing that a target can offer, and a row need.
+names! {
+    /// Something that a row can provide and another row can require.
     Capability {
-        FragmentAtomics "atomic operations in fragment shaders";
-        Fences "memory fences in fragment shaders";
-        Coherent "coherent plain words in buffers";
-        Interlock "fragment shader interlock";
-        OrderedInterlock "fragment shader interlock in the order of submission";
-        U64Atomics "64-bit atomic operations that return a value";
-        EarlyDepth "a forced early depth test";
-        MinMaxBlend "blending by minimum and maximum";
-        SampleMask "a fixed sample mask and several samples per pixel";
-        Coverage "which samples of its pixel a fragment covers, several samples per pixel";
-        Linkable "functions that a caller's own shader can call";
-        OwnEntryPoints "entry points of its own: `--form program`";
-        PrimitiveIndex "the number of a fragment's triangle";
+        // Between a storage and a sync.
+        MutualExclusion "mutual exclusion between the fragments of one pixel";
+        OrderedMutualExclusion "mutual exclusion between the fragments of one pixel, in submission order";
+        Unsynchronised "unsynchronised fragments of one pixel";
+        LockFree "a storage that synchronises fragments by its own atomic operations";
+        RaceTolerant "a storage with defined behaviour when fragments race";
+        FixedFunction "a storage that depth test, stencil test or blending synchronises";
+        SyncInShader "synchronisation in shaders, so that the depth test is free";
+        CullInShader "a cull that leaves the depth test free";
+        SyncByFixedFunction "synchronisation by depth test, stencil test or blending";
+        // Of a storage.
+        KeepsAll "a storage that keeps every fragment";
+        KeepsBest "a storage that keeps the k best";
+        AllocatesKBestOnly "a storage that allocates no memory for a fragment behind k better ones";
+        SelectsBest "selection of the k best among all fragments";
+        AcceptsKBestOnly "a storage that can receive only the k best fragments";
+        ConservativeBound "a bound that no fragment of the final k best exceeds at any instant";
+        DisplacesUnderLock "a storage in which a better fragment displaces a kept one inside the critical section";
+        CanReplace "a full storage whose worst fragment can be replaced inside the critical section";
+        OrderedSlots "slots in depth order, each of which can be replaced inside the critical section";
+        Counted "the number of fragments of each pixel before they are stored";
+        ReportsWholeFragments "a storage that reports each lost fragment as a whole, with key and payload";
+        KeepsArrival "kept fragments in the order of arrival if their keys are equal";
+        Indexed "kept fragments with an index";
+        Streams "a storage that passes fragments on in order, two neighbours at a time";
+        // Of the fragments that reach a storage.
+        NoCull "a storage that receives every fragment, without a cull";
+        // Of the kept fragments in the resolve pass.
+        Sorted "fragments in depth order";
+        OneResolve "one resolve pass that serves every pixel";
+        OneSample "one sample per pixel";
+        StableSort "a sort that keeps the storage's order of fragments with equal depths";
+        // For the caller.
+        CountsEvents "counters of every event of a frame, not only of losses";
+        LeavesDepth "the depth of the nearest fragment in a depth buffer";
+        // Of an effect.
+        PairValues "a value for two neighbouring fragments";
     }
 }

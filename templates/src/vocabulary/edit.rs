@@ -1,40 +1,40 @@
-//! What the rows of other axes change in a storage's steps. In: what rows say. Out: nothing; plans apply it.
+//! Changes that rows of other axes make to the steps of a storage. Plans apply them.
 
-use super::{DepthState, Formula, Resource, Role, Samples, State, Step};
+use super::{DepthState, Formula, Implementation, Resource, Samples, State, Step};
 
-/// A change that the row of another axis makes to a technique's steps. Edits apply in the order of the axes.
+/// A change that a row makes to the steps of the storage. Edits apply in the order of the axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// New steps before an anchor.
+    /// Inserts steps before the pass of this name.
     Before(String, Vec<Step>),
-    /// New steps after an anchor.
+    /// Inserts steps after the pass of this name.
     After(String, Vec<Step>),
-    /// The fixed-function state of an anchor.
+    /// Sets the fixed-function state of the pass of this name.
     SetState(String, State),
-    /// Every geometry pass tests the depth of its fragments so, whatever its anchor. Refused where one tests already.
+    /// Adds this depth test to every geometry pass. An error if a geometry pass has a depth test.
     TestDepth(DepthState),
-    /// The skeleton of an anchor.
+    /// Sets the skeleton of the pass of this name.
     SetSkeleton(String, String),
-    /// Another form of the skeleton that an anchor has: (`store`, `ordered`) makes `x_ordered` of `x`.
+    /// Selects another form of the skeleton of the pass of this name: (`store`, `ordered`) changes `x` to `x_ordered`.
     FormOfSkeleton(String, String),
-    /// The technique keeps one resource more.
+    /// Adds a resource.
     AddResource(Resource),
-    /// One pass becomes several.
+    /// Splits a pass into several.
     Split(Split),
-    /// Every pass over the scene has these samples.
+    /// Sets the samples of every pass over the scene.
     Samples(Samples),
 }
 
-/// One pass becomes several, one after the other, each with constants of its own.
+/// The division of a pass into several that run in order, each with its own constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
     /// The pass.
-    pub anchor: String,
-    /// How many there are, over the constants of the chosen rows.
+    pub name: String,
+    /// The number of copies, over the constants of the chosen rows.
     pub copies: Formula,
-    /// Generated constants of each, over `copy` (from 0), `copies` and the constants of the chosen rows. The value of the first
-    /// tells the anchors apart: `resolve_8`, `resolve_16`, ….
+    /// The generated constants of each copy, over `copy` (from 0), `copies` and the constants of the chosen rows. The
+    /// value of the first constant is the suffix of the copy's name: `resolve_8`, `resolve_16`, ….
     pub constants: Vec<(String, Formula)>,
-    /// Who fulfils contracts otherwise in every one but the last.
-    pub before_last: Vec<Role>,
+    /// Other implementations of contracts in all copies but the last.
+    pub before_last: Vec<Implementation>,
 }

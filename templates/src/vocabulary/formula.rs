@@ -1,17 +1,18 @@
-//! Sizes and conditions as formulas: the same text in a row, in a plan's dump and in the manifest.
+//! Formulas of sizes and conditions: the same text in a row, in the dump of a plan and in the manifest.
 //!
-//! Grammar: whole numbers, symbols, `+ - * / ( )`, and the functions `min max ceil_div pow2 log2_ceil`; then the comparisons
-//! `== != < <= > >=`, then `&&`, then `||`, which bind ever more weakly. `/` rounds down. What holds is 1 and what does not
-//! is 0; any other number than 0 counts as holding. All values are unsigned. Parentheses and functions nest up to 40 deep, and a
-//! formula has up to 100 operators and functions: every text that one is written to holds these too.
+//! Grammar: whole numbers, symbols, `+ - * / ( )` and the functions `min max ceil_div pow2 log2_ceil`; then, with
+//! decreasing precedence, the comparisons `== != < <= > >=`, `&&`, and `||`. `/` rounds down. True is 1 and false is
+//! 0; every other number counts as true. All values are unsigned. Parentheses and functions nest up to 40 deep, and a
+//! formula has up to 100 operators and functions; every generated form of a formula stays within these limits.
+//!
 //! Symbols are those of [`SYMBOLS`](super::SYMBOLS), and parameters of the chosen rows by their constants, such as
-//! `PAGE_ENTRIES`; conditions are over those that a description gives ([`Given`](super::Given)).
+//! `PAGE_ENTRIES`. Conditions use the symbols of a description ([`DescriptionValues`](super::DescriptionValues)).
 
+use super::formula_error::{FormulaError, Limit, MAX_DEPTH, MAX_OPERATORS, MAX_TERMS};
 use std::borrow::Cow;
 use std::fmt;
 
-use super::formula_error::{FormulaError, Limit, MOST_DEPTH, MOST_OPERATORS, MOST_TERMS};
-use super::{KEY_SYMBOLS, Polynomial, SYMBOLS};
+use super::Polynomial;
 
 /// A formula as written in a row.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -35,39 +36,38 @@ impl fmt::Display for Formula {
     }
 }
 
-/// A formula, read.
+/// A parsed formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Expression {
     /// A whole number.
     Number(u64),
-    /// A named value.
+    /// A symbol.
     Symbol(String),
-    /// An operator, or a function of one or two arguments, by its spelling.
+    /// An operator, or a function of one or two arguments, by its name.
     Apply(&'static str, Vec<Expression>),
 }
 
-/// The functions and their number of arguments.
+/// The functions and their numbers of arguments.
 const FUNCTIONS: [(&str, usize); 5] = [("min", 2), ("max", 2), ("ceil_div", 2), ("pow2", 1), ("log2_ceil", 1)];
 
-/// The operators from the weakest to the strongest. Of two with the same beginning the longer comes first.
+/// The operators in increasing precedence. An operator precedes its prefixes.
 const OPERATORS: [&[&str]; 5] = [&["||"], &["&&"], &["==", "!=", "<=", ">=", "<", ">"], &["+", "-"], &["*", "/"]];
 
-/// The longest text of a symbol that stands for a function in a [`Polynomial`].
-const LONGEST_SYMBOL: usize = 4000;
+/// The greatest length of a symbol that stands for a function in a [`Polynomial`].
+const MAX_SYMBOL_LENGTH: usize = 4000;
 
-/// A name that means something in every formula: no constant of a row can have it.
-pub fn is_word_of_formulas(name: &str) -> bool {
-    let is_function = FUNCTIONS.iter().any(|(function, _)| *function == name);
-    is_function || KEY_SYMBOLS.contains(&name) || SYMBOLS.iter().any(|symbol| symbol.name == name)
+/// Returns whether a function of formulas has this name.
+pub(super) fn is_function(name: &str) -> bool {
+    FUNCTIONS.iter().any(|(function, _)| *function == name)
 }
 
 impl Formula {
-    /// Whether the value depends on this symbol.
+    /// Returns whether the value depends on this symbol.
     pub fn mentions(&self, symbol: &str) -> bool {
         self.0.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).any(|word| word == symbol)
     }
 
-    /// Reads the text.
+    /// Parses the text.
     pub fn read(&self) -> Result<Expression, FormulaError> {
         let mut reader = Reader { text: &self.0, at: 0, depth: 0, operators: 0 };
         let expression = reader.operation(0)?;
@@ -75,14 +75,14 @@ impl Formula {
         if reader.at < self.0.len() { Err(reader.malformed()) } else { Ok(expression) }
     }
 
-    /// Reads the text and computes its value; `value` gives each symbol's.
+    /// Parses the text and computes its value; `value` returns the value of a symbol.
     pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<u64, FormulaError> {
         self.read()?.evaluate(value)
     }
 }
 
 impl Expression {
-    /// The value, where `value` gives each symbol's.
+    /// Computes the value; `value` returns the value of a symbol.
     pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<u64, FormulaError> {
         match self {
             Expression::Number(number) => Ok(*number),
@@ -92,12 +92,12 @@ impl Expression {
                 for argument in arguments {
                     values.push(argument.evaluate(value)?);
                 }
-                applied(operator, &values)
+                apply_checked(operator, &values)
             }
         }
     }
 
-    /// The symbols that it names.
+    /// Returns the symbols of the expression.
     pub fn symbols(&self) -> Vec<&str> {
         match self {
             Expression::Number(_) => Vec::new(),
@@ -106,7 +106,7 @@ impl Expression {
         }
     }
 
-    /// The formula with every part that has a value computed. A part that can have none, whatever the symbols left are, is an
+    /// Computes every part whose symbols have values. A part that cannot have a value for any remaining symbols is an
     /// error: a division by 0, or numbers whose difference is below zero.
     pub fn folded(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<Expression, FormulaError> {
         let Expression::Apply(operator, arguments) = self else {
@@ -119,7 +119,7 @@ impl Expression {
         let numbers: Option<Vec<u64>> = parts.iter().map(Expression::as_number).collect();
         let divides_by_zero = matches!(*operator, "/" | "ceil_div") && parts[1].as_number() == Some(0);
         match numbers {
-            Some(numbers) => applied(operator, &numbers).map(Expression::Number),
+            Some(numbers) => apply_checked(operator, &numbers).map(Expression::Number),
             None if divides_by_zero => Err(FormulaError::Overflow(format!("{operator} 0"))),
             None => Ok(Expression::Apply(operator, parts)),
         }
@@ -132,7 +132,7 @@ impl Expression {
         }
     }
 
-    /// The formula as a sum of products. Divisions and functions that do not reduce to a number stay whole, as symbols.
+    /// Returns the formula as a sum of products. Divisions and functions that are not constant become symbols.
     pub fn polynomial(&self, value: &dyn Fn(&str) -> Option<u64>) -> Result<Polynomial, FormulaError> {
         match self {
             Expression::Number(number) => constant(*number),
@@ -142,7 +142,7 @@ impl Expression {
                 let sum = match (*operator, parts.as_slice()) {
                     ("+", [a, b]) => a.plus(b, 1),
                     ("-", [a, b]) => a.plus(b, -1),
-                    ("*", [a, b]) if a.terms() * b.terms() > MOST_TERMS => {
+                    ("*", [a, b]) if a.terms() * b.terms() > MAX_TERMS => {
                         return Err(FormulaError::TooLarge(Limit::Terms));
                     }
                     ("*", [a, b]) => a.times(b),
@@ -159,12 +159,12 @@ fn constant(number: u64) -> Result<Polynomial, FormulaError> {
     Ok(Polynomial::number(number))
 }
 
-fn applied(operator: &str, values: &[u64]) -> Result<u64, FormulaError> {
-    apply(operator, values).ok_or_else(|| FormulaError::Overflow(spelled(operator, values)))
+fn apply_checked(operator: &str, values: &[u64]) -> Result<u64, FormulaError> {
+    apply(operator, values).ok_or_else(|| FormulaError::Overflow(format_call(operator, values)))
 }
 
-/// An operator or a function with its arguments.
-fn spelled<T: fmt::Display>(operator: &str, arguments: &[T]) -> String {
+/// Formats an operator or a function with its arguments.
+fn format_call<T: fmt::Display>(operator: &str, arguments: &[T]) -> String {
     match arguments {
         [a, b] if !operator.starts_with(|sign: char| sign.is_ascii_alphabetic()) => format!("{a} {operator} {b}"),
         _ => {
@@ -174,7 +174,7 @@ fn spelled<T: fmt::Display>(operator: &str, arguments: &[T]) -> String {
     }
 }
 
-/// An operator or function of formulas, applied; `None`: a division by zero, or a result beyond 64 bits.
+/// Applies an operator or function; returns `None` for a division by zero, or a result below zero or beyond 64 bits.
 pub fn apply(operator: &str, values: &[u64]) -> Option<u64> {
     match (operator, values) {
         ("+", [a, b]) => a.checked_add(*b),
@@ -198,22 +198,22 @@ pub fn apply(operator: &str, values: &[u64]) -> Option<u64> {
     }
 }
 
-/// A function whose arguments are all numbers is a number; any other is one symbol, named by its text.
+/// Returns the value of a function of numbers, or a symbol named by the text of the function.
 fn opaque(operator: &str, parts: &[Polynomial]) -> Result<Polynomial, FormulaError> {
     let numbers: Option<Vec<u64>> = parts.iter().map(Polynomial::as_number).collect();
     if let Some(numbers) = numbers {
-        return constant(applied(operator, &numbers)?);
+        return constant(apply_checked(operator, &numbers)?);
     }
     let texts: Vec<String> = parts.iter().map(Polynomial::to_string).collect();
     let name = match (operator, texts.as_slice()) {
         ("/", [_, one]) if one == "1" => return Ok(parts[0].clone()),
         ("/", [a, b]) => format!("({a}/{b})"),
         (sign, [_, _]) if !sign.starts_with(|c: char| c.is_ascii_alphabetic()) => {
-            format!("({})", spelled(sign, &texts))
+            format!("({})", format_call(sign, &texts))
         }
-        _ => spelled(operator, &texts),
+        _ => format_call(operator, &texts),
     };
-    if name.len() > LONGEST_SYMBOL {
+    if name.len() > MAX_SYMBOL_LENGTH {
         return Err(FormulaError::TooLarge(Limit::Terms));
     }
     Ok(Polynomial::symbol(&name))
@@ -222,25 +222,25 @@ fn opaque(operator: &str, parts: &[Polynomial]) -> Result<Polynomial, FormulaErr
 struct Reader<'a> {
     text: &'a str,
     at: usize,
-    /// Parentheses and functions that are open.
+    /// The number of open parentheses and functions.
     depth: usize,
-    /// Operators and functions so far.
+    /// The number of operators and functions so far.
     operators: usize,
 }
 
 impl Reader<'_> {
-    /// Operands of the operators of this strength, joined from the left.
-    fn operation(&mut self, strength: usize) -> Result<Expression, FormulaError> {
-        let Some(operators) = OPERATORS.get(strength) else { return self.atom() };
-        let mut left = self.operation(strength + 1)?;
+    /// Parses operands of the operators of this precedence, which are left-associative.
+    fn operation(&mut self, precedence: usize) -> Result<Expression, FormulaError> {
+        let Some(operators) = OPERATORS.get(precedence) else { return self.atom() };
+        let mut left = self.operation(precedence + 1)?;
         let mut compares = false;
         while let Some(operator) = operators.iter().find(|operator| self.take(operator)) {
-            // `1 < k < 9` would compare what the first comparison came to.
+            // `1 < k < 9` would compare the result of the first comparison.
             if std::mem::replace(&mut compares, operators.contains(&"==")) {
                 return Err(FormulaError::Chained(self.text.to_owned()));
             }
             self.count(1)?;
-            left = Expression::Apply(operator, vec![left, self.operation(strength + 1)?]);
+            left = Expression::Apply(operator, vec![left, self.operation(precedence + 1)?]);
         }
         Ok(left)
     }
@@ -250,16 +250,16 @@ impl Reader<'_> {
             let inner = self.inside()?;
             return if self.take(")") { Ok(inner) } else { Err(self.malformed()) };
         }
-        let word = self.word();
-        if word.is_empty() {
+        let name = self.identifier();
+        if name.is_empty() {
             return Err(self.malformed());
         }
-        if word.starts_with(|c: char| c.is_ascii_digit()) {
-            return word.parse().map(Expression::Number).map_err(|_| self.malformed());
+        if name.starts_with(|c: char| c.is_ascii_digit()) {
+            return name.parse().map(Expression::Number).map_err(|_| self.malformed());
         }
-        match FUNCTIONS.iter().find(|(name, _)| *name == word) {
-            Some((name, arity)) if self.take("(") => self.arguments(name, *arity),
-            _ => Ok(Expression::Symbol(word)),
+        match FUNCTIONS.iter().find(|(function, _)| *function == name) {
+            Some((function, arity)) if self.take("(") => self.arguments(function, *arity),
+            _ => Ok(Expression::Symbol(name)),
         }
     }
 
@@ -269,7 +269,7 @@ impl Reader<'_> {
         while self.take(",") {
             let before = self.operators;
             arguments.push(self.inside()?);
-            // Shaders have no such function, and what is written instead names the divisor twice.
+            // Shaders have no such function, and its replacement contains the divisor twice.
             self.count(if name == "ceil_div" { self.operators - before } else { 0 })?;
         }
         if arguments.len() != arity || !self.take(")") {
@@ -278,10 +278,10 @@ impl Reader<'_> {
         Ok(Expression::Apply(name, arguments))
     }
 
-    /// What stands inside parentheses.
+    /// Parses the inside of parentheses.
     fn inside(&mut self) -> Result<Expression, FormulaError> {
         self.depth += 1;
-        if self.depth > MOST_DEPTH {
+        if self.depth > MAX_DEPTH {
             return Err(FormulaError::TooLarge(Limit::Depth));
         }
         let inner = self.operation(0)?;
@@ -291,10 +291,10 @@ impl Reader<'_> {
 
     fn count(&mut self, more: usize) -> Result<(), FormulaError> {
         self.operators += more;
-        if self.operators > MOST_OPERATORS { Err(FormulaError::TooLarge(Limit::Operators)) } else { Ok(()) }
+        if self.operators > MAX_OPERATORS { Err(FormulaError::TooLarge(Limit::Operators)) } else { Ok(()) }
     }
 
-    fn word(&mut self) -> String {
+    fn identifier(&mut self) -> String {
         self.skip_spaces();
         let rest = self.text.get(self.at..).unwrap_or("");
         let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn what_holds_is_one() {
+    fn true_is_one() {
         assert_eq!(value("k == 8 && k != 3"), Ok(1));
         assert_eq!(value("k < 8 || k <= 7 || k > 8"), Ok(0));
         assert_eq!(value("k - 1 >= 7 && 2"), Ok(1));
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_value_says_why() {
+    fn a_formula_without_a_value_is_an_error() {
         assert_eq!(value("n"), Err(FormulaError::Unbound("n".into())));
         assert!(matches!(value("k / 0"), Err(FormulaError::Overflow(_))));
         assert!(matches!(value("3 - k"), Err(FormulaError::Overflow(_))));
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn no_formula_goes_on_without_end() {
+    fn nesting_and_length_are_limited() {
         let read = |text: String| Formula::from(text).read().map(|_| ());
         let nested = |open: &str, close: &str, count| format!("{}k{}", open.repeat(count), close.repeat(count));
         for (open, close) in [("(", ")"), ("pow2(", ")"), ("(1 + min(2, ", "))"), ("k * (", ")")] {
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(read(nested("(", ")", 41)), Err(FormulaError::TooLarge(Limit::Depth)));
         assert_eq!(read(nested("", " + 1", 100)), Ok(()));
         assert_eq!(read(nested("", " + 1", 100_000)), Err(FormulaError::TooLarge(Limit::Operators)));
-        // Written out, each divisor would stand there twice.
+        // The replacement of `ceil_div` would contain each divisor twice.
         assert_eq!(read(nested("ceil_div(k, ", ")", 30)), Err(FormulaError::TooLarge(Limit::Operators)));
         for signs in ["!", "-", "("] {
             assert!(read(signs.repeat(100_000)).is_err(), "{signs}");
@@ -377,13 +377,13 @@ mod tests {
     }
 
     #[test]
-    fn products_of_sums_are_multiplied_out_up_to_a_bound() {
+    fn products_of_sums_are_expanded_up_to_a_limit() {
         let form = |text: &str| Formula::from(text.to_owned()).read().and_then(|e| e.polynomial(&|_| None));
         let sum = |letter: &str| format!("({})", [1, 2, 3, 4].map(|number| format!("{letter}{number}")).join(" + "));
         let product = |letters: &[&str]| letters.iter().map(|letter| sum(letter)).collect::<Vec<_>>().join(" * ");
         assert_eq!(form(&product(&["a", "b", "c", "d"])).map(|sum| sum.terms()), Ok(256));
         assert_eq!(form(&product(&["a", "b", "c", "d", "e", "f"])), Err(FormulaError::TooLarge(Limit::Terms)));
-        // Names of functions would grow the same way.
+        // Symbols of functions would grow in the same way.
         let mut name = "a".to_owned();
         for _ in 0..8 {
             name = format!("min({name}, 9) * (b + c + d + e + f + g)");
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_a_value_is_computed_beforehand() {
+    fn parts_with_a_value_are_folded() {
         let form = |text: &'static str| {
             Formula::from(text).read().and_then(|e| e.folded(&|name| (name == "w").then_some(1 << 32)))
         };

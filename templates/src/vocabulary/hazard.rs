@@ -1,28 +1,28 @@
-//! What can go wrong by design. In: what rows say. Out: hazards, whose names are for people and whose permits are for checks.
+//! Hazards: what can go wrong by design. The name and description are for people; the permits are for the checker.
 
-use super::{Fact, Permits, Text};
+use super::{Capability, Permits, Text};
 
-/// What can go wrong by design, and is kept.
+/// Something that can go wrong by design and that a row declares.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hazard {
-    /// Its name, for people.
+    /// The name, for people.
     pub name: Text,
     /// What happens.
-    pub what: Text,
-    /// What a pixel may hold then; a check lets it do this and nothing else.
+    pub description: Text,
+    /// What a pixel may then hold. The checker accepts this and nothing else.
     pub permits: Permits,
-    /// The hazard exists only while this is not offered.
-    pub unless: Option<Fact>,
+    /// The hazard exists only if no chosen row provides this capability.
+    pub unless: Option<Capability>,
 }
 
 impl Hazard {
-    /// One that nothing prevents.
-    pub fn new(name: impl Into<Text>, what: impl Into<Text>, permits: Permits) -> Self {
-        Hazard { name: name.into(), what: what.into(), permits, unless: None }
+    /// Makes a hazard that no capability prevents.
+    pub fn new(name: impl Into<Text>, description: impl Into<Text>, permits: Permits) -> Self {
+        Hazard { name: name.into(), description: description.into(), permits, unless: None }
     }
 
-    /// The same, where nothing offers `fact`.
-    pub fn unless(self, fact: Fact) -> Self {
-        Hazard { unless: Some(fact), ..self }
+    /// Limits the hazard to combinations in which no row provides `capability`.
+    pub fn unless(self, capability: Capability) -> Self {
+        Hazard { unless: Some(capability), ..self }
     }
 }

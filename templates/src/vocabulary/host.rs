@@ -1,7 +1,7 @@
-//! What the host decides between two submissions: a step of a frame, and the function behind it.
+//! Decisions of the host between two submissions: a step of a frame, and the function that it calls.
 //!
-//! In: words that passes have left, and the values of symbols. Out: new values of symbols. A function is a row of the axis
-//! `host`, so that a row of one's own can bring one; it allocates nothing and sees no device.
+//! Input: words that passes wrote, and values of symbols. Output: new values of symbols. A function is a row of the
+//! axis `host`, so a user row can supply one. It allocates nothing and has no access to a device.
 
 use std::fmt;
 
@@ -10,39 +10,39 @@ use super::Formula;
 /// A decision of the host between two submissions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Host {
-    /// The function, a key of the axis `host`.
+    /// The function: a key of the axis `host`.
     pub function: String,
-    /// The words that it reads back, in order.
+    /// The words to read back, in order.
     pub reads: Vec<Read>,
-    /// The symbols that it sets, in order.
+    /// The symbols to set, in order.
     pub sets: Vec<String>,
 }
 
-/// Words of a resource.
+/// A range of words of a resource that the host reads back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Read {
     /// The resource.
     pub resource: String,
-    /// Which of its words.
+    /// The words.
     pub words: Words,
 }
 
-/// Which words of a resource the host reads.
+/// The words of a resource that the host reads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Words {
-    /// All of them.
+    /// All words.
     All,
-    /// Some, by the index of the first and their number.
+    /// A range.
     Some {
-        /// The first.
+        /// The index of the first word.
         first: Formula,
-        /// How many.
+        /// The number of words.
         count: Formula,
     },
 }
 
 impl Host {
-    /// A step that calls `function`.
+    /// Makes a step that calls `function`.
     pub fn new(function: &str) -> Self {
         Host { function: function.to_owned(), reads: Vec::new(), sets: Vec::new() }
     }
@@ -72,16 +72,17 @@ impl Host {
     }
 }
 
-/// What a host function is given.
+/// The arguments of a host function.
 pub struct HostCall<'a> {
     /// The words of each read, in the order of [`Host::reads`].
     pub reads: Vec<&'a [u32]>,
-    /// The value of a symbol, the parameters of the chosen rows by their constants included; `None`: it has none.
+    /// Returns the value of a symbol, including parameters of the chosen rows by their constants; `None` if it has
+    /// none.
     pub symbol: &'a dyn Fn(&str) -> Option<u64>,
 }
 
-/// A host function: from what it is given to one value per symbol of [`Host::sets`]. Values that are missing leave their
-/// symbols as they are; values beyond a symbol's range are refused by the frame.
+/// A host function. It returns one value per symbol of [`Host::sets`]. A missing value leaves its symbol unchanged; the
+/// frame rejects values beyond a symbol's range.
 #[derive(Clone, Copy)]
 pub struct HostFunction(pub fn(&HostCall<'_>) -> Vec<u64>);
 
@@ -91,7 +92,7 @@ impl fmt::Debug for HostFunction {
     }
 }
 
-/// Rows are compared by what they say; a function's address says nothing.
+/// All host functions are equal: rows are compared by their data, and the address of a function is no data.
 impl PartialEq for HostFunction {
     fn eq(&self, _: &Self) -> bool {
         true

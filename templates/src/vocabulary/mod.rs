@@ -1,16 +1,17 @@
-//! What a row, and so a plan, can say.
+//! The types that a row, and so a plan, is made of.
 //!
-//! Rows are data: a pass, a resource or a legality rule that cannot be said in these words is a reason to widen the words,
-//! never to compare a key in code.
+//! Rows are data. If these types cannot express a pass, a resource or a legality rule, extend the types: code never
+//! compares a key.
 
 mod capability;
 mod condition;
 mod edit;
-mod fact;
+mod feature;
 mod formula;
 mod formula_error;
 mod hazard;
 mod host;
+mod names;
 mod pass;
 mod polynomial;
 mod reference;
@@ -19,24 +20,30 @@ mod row;
 mod state;
 mod symbol;
 mod technique;
-mod words;
 
-/// A text that a row includes, or that a user's file gave.
+/// A string that is built in or from a user's file.
 pub type Text = std::borrow::Cow<'static, str>;
 
 pub use capability::Capability;
-pub use condition::{Condition, Given};
+pub use condition::{Condition, DescriptionValues};
 pub use edit::{Edit, Split};
-pub use fact::Fact;
-pub use formula::{Expression, Formula, apply, is_word_of_formulas};
+pub use feature::Feature;
+pub use formula::{Expression, Formula, apply};
 pub use formula_error::{FormulaError, Limit};
 pub use hazard::Hazard;
 pub use host::{Host, HostCall, HostFunction, Read, Words};
-pub use pass::{Access, Instance, Kind, Loads, Memory, Objects, Pass, Repeat, Role, Step, Until, Use};
+pub use pass::{
+    Access, Implementation, Instance, InstanceMemory, Kind, Loads, Objects, Pass, Repeat, Step, Until, Use,
+};
 pub use polynomial::Polynomial;
-pub use reference::{Alike, Blended, KEY_SYMBOLS, Kept, Merges, Permits, PromisedKeys, Side, Torn};
-pub use resource::{Element, Extent, Init, Life, Resource, TextureFormat};
-pub use row::{Axis, Carried, Definition, Order, Parameter, Place, Row, Soundness, Takes, Template, Written};
-pub use state::{Blend, Compare, Coverage, DepthState, Samples, State, StencilOperation, StencilState, Target};
-pub use symbol::{SYMBOLS, SetBy, Symbol, When};
+pub use reference::{
+    BlendedEntries, Equivalence, KEY_SYMBOLS, KeptFragments, Merges, Permits, PromisedKeys, Side, Tearing,
+};
+pub use resource::{Element, Extent, Init, Lifetime, Resource, TextureFormat};
+pub use row::{
+    Axis, Definition, ImplicitAttribute, Parameter, ParameterType, Row, RowItem, RowItemSpan, Soundness, Template,
+    TieBreak,
+};
+pub use state::{Blend, ColorTarget, Compare, Coverage, DepthState, Samples, State, StencilOperation, StencilState};
+pub use symbol::{BindingTime, SYMBOLS, Setter, Symbol, is_reserved_in_formulas};
 pub use technique::{KeepDefault, Technique};

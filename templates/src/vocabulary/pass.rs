@@ -1,75 +1,75 @@
-//! What a technique does: passes and the steps around them.
+//! Steps of a frame: passes, loops, and operations between passes.
 
-use super::{Blend, Formula, Host, State, Target};
+use super::{Blend, ColorTarget, Formula, Host, State};
 
 /// One step of a frame, in order.
 #[allow(clippy::large_enum_variant, reason = "a plan has a dozen steps, and most are passes")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// Draw or dispatch.
+    /// A draw or dispatch.
     Pass(Pass),
-    /// Set every word of a resource.
+    /// Sets every word of a resource.
     Clear {
         /// The resource.
         resource: String,
         /// The word.
         value: u32,
     },
-    /// Copy one resource over another of the same shape.
+    /// Copies a resource to another of the same size.
     Copy {
-        /// Read.
+        /// The source.
         from: String,
-        /// Written.
+        /// The destination.
         to: String,
     },
-    /// Exchange the roles of two resources.
+    /// Exchanges the memory of two resources, without a copy.
     Swap(String, String),
-    /// Do the body again and again.
+    /// Repeats a body.
     Repeat(Repeat),
-    /// The host decides: what it reads must have arrived before the frame goes on.
+    /// Calls a host function. The frame waits for the words that the function reads.
     Host(Host),
 }
 
 /// A loop over steps. Inside, the symbol `iteration` counts from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repeat {
-    /// What is repeated.
+    /// The steps to repeat.
     pub body: Vec<Step>,
-    /// When it ends.
+    /// When the loop ends.
     pub until: Until,
-    /// The bound that holds in any case; reaching it before the end is counted.
+    /// The limit of iterations. Reaching it before the loop ends is counted.
     pub at_most: Formula,
 }
 
 /// When a loop ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Until {
-    /// After this many rounds.
+    /// After this many iterations.
     Times(Formula),
-    /// When this one-word resource is zero after a round.
-    Zero(String),
-    /// When no sample passed in the pass with this anchor.
+    /// When this resource of one word is zero after an iteration.
+    WordIsZero(String),
+    /// When no sample passed in the pass with this name.
     NoSamples(String),
 }
 
 /// One draw or dispatch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
-    /// The name that edits, manifests and files use.
-    pub anchor: String,
+    /// The name in edits, manifests and files.
+    pub name: String,
     /// What is drawn or dispatched.
     pub kind: Kind,
-    /// The template with the entry points, a key of the axis `pass`.
+    /// The template with the entry points: a key of the axis `pass`.
     pub skeleton: String,
-    /// Contracts bound otherwise than by the variant's own choice on the axis of that name.
-    pub roles: Vec<Role>,
-    /// Generated constants whose value is this pass's own.
+    /// Implementations of contracts that differ from the variant's choice on the axis of that name.
+    pub implementations: Vec<Implementation>,
+    /// Generated constants of this pass.
     pub constants: Vec<(String, u32)>,
-    /// The resources it touches, and how.
+    /// The resources that it accesses, and how.
     pub uses: Vec<Use>,
     /// Fixed-function state.
     pub state: State,
-    /// What is drawn, for a geometry pass.
+    /// The objects that a geometry pass draws.
     pub objects: Objects,
 }
 
@@ -82,7 +82,7 @@ pub enum Kind {
     Fullscreen,
     /// Workgroups.
     Compute {
-        /// How many along x, y and z.
+        /// The numbers of workgroups along x, y and z.
         groups: [Formula; 3],
     },
 }
@@ -92,64 +92,64 @@ pub enum Kind {
 pub enum Objects {
     /// All of them.
     All,
-    /// The box of each instead, with an occlusion query each: those that have been dropped are asked for no more.
+    /// The bounding box of each, in an occlusion query. Dropped objects are not queried again.
     Boxes,
-    /// Those whose box passed the occlusion query of the pass with this anchor, whenever it was last asked in the frame; all, before it
-    /// was. A box that crosses the near plane passes. The objects that fail are dropped until the frame ends.
+    /// The objects whose box passed the last occlusion query of the pass with this name in the frame; before the first
+    /// query, all. A box that intersects the near plane passes. Objects that fail are dropped until the frame ends.
     Visible(String),
 }
 
-/// A contract and the template instance that fulfils it.
+/// A contract and the template instance that implements it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Role {
+pub struct Implementation {
     /// The contract, by the name of its axis.
     pub contract: String,
-    /// Who fulfils it.
+    /// The instance.
     pub instance: Instance,
 }
 
-/// One use of a template in a program. Two instances of one template have different names.
+/// A template instance in a program. Two instances of one template have different names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
     /// The row.
     pub row: String,
-    /// What replaces the contract's name in the names that the template exports, and precedes its private names. An
-    /// instance named after its contract keeps the template's names.
+    /// The name of the instance. It replaces the contract's name in exported names and is the prefix of private names.
+    /// An instance with the name of its contract keeps the names of the template.
     pub name: String,
-    /// Whose memory it works on.
-    pub memory: Memory,
+    /// The memory that it accesses.
+    pub memory: InstanceMemory,
 }
 
-/// Whose memory an instance works on.
+/// The memory that an instance accesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Memory {
-    /// The row's resources, named for the instance.
+pub enum InstanceMemory {
+    /// The resources of the row, with the instance's name as prefix.
     Own,
-    /// The pass's own storage's: its template has functions of the names of the row's accessors.
-    Borrowed,
+    /// The memory of the pass's storage, whose template defines functions with the names of the row's accessors.
+    Delegated,
 }
 
-/// How a pass touches a resource: this decides the type it is declared with there.
+/// The access of a pass to a resource. It decides the declared type of the resource in the pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Use {
     /// The resource.
     pub resource: String,
-    /// How.
+    /// The kind of access.
     pub access: Access,
-    /// What its loads must be.
+    /// The required strength of loads.
     pub loads: Loads,
 }
 
-/// Ways to touch a resource.
+/// Kinds of access to a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Read only.
     Read,
-    /// Read and written, never the same word by two invocations at once.
+    /// Reads and writes, never of one word by two concurrent invocations.
     Plain,
     /// Atomic operations.
     Atomic,
-    /// Words that the critical section of one pixel reads and writes: coherent where the target has it, else atomic.
+    /// Reads and writes inside the critical section of a pixel: coherent if the target supports it, else atomic.
     Coherent,
     /// Bound as a render target.
     Attachment,
@@ -159,37 +159,37 @@ pub enum Access {
     Indirect,
 }
 
-/// What the loads of an atomic resource must be on a target without atomic loads.
+/// The required strength of loads of an atomic resource on a target without atomic loads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loads {
-    /// As strong as the atomic load that was checked.
+    /// As strong as an atomic load.
     Exact,
-    /// A hint only, or made again inside the critical section: a plain load of a volatile word will do.
+    /// A hint, or repeated inside the critical section: a plain load of a volatile word is sufficient.
     Rechecked,
 }
 
 impl Pass {
-    /// A geometry pass.
-    pub fn geometry(anchor: &str, skeleton: &str) -> Self {
-        Self::new(anchor, Kind::Geometry, skeleton)
+    /// Makes a geometry pass.
+    pub fn geometry(name: &str, skeleton: &str) -> Self {
+        Self::new(name, Kind::Geometry, skeleton)
     }
 
-    /// A pass over the whole frame.
-    pub fn fullscreen(anchor: &str, skeleton: &str) -> Self {
-        Self::new(anchor, Kind::Fullscreen, skeleton)
+    /// Makes a pass over the whole frame.
+    pub fn fullscreen(name: &str, skeleton: &str) -> Self {
+        Self::new(name, Kind::Fullscreen, skeleton)
     }
 
-    /// A compute pass of `x` × `y` workgroups.
-    pub fn compute(anchor: &str, skeleton: &str, x: impl Into<Formula>, y: impl Into<Formula>) -> Self {
-        Self::new(anchor, Kind::Compute { groups: [x.into(), y.into(), Formula::from("1")] }, skeleton)
+    /// Makes a compute pass of `x` × `y` workgroups.
+    pub fn compute(name: &str, skeleton: &str, x: impl Into<Formula>, y: impl Into<Formula>) -> Self {
+        Self::new(name, Kind::Compute { groups: [x.into(), y.into(), Formula::from("1")] }, skeleton)
     }
 
-    fn new(anchor: &str, kind: Kind, skeleton: &str) -> Self {
+    fn new(name: &str, kind: Kind, skeleton: &str) -> Self {
         Pass {
-            anchor: anchor.to_owned(),
+            name: name.to_owned(),
             kind,
             skeleton: skeleton.to_owned(),
-            roles: Vec::new(),
+            implementations: Vec::new(),
             constants: Vec::new(),
             uses: Vec::new(),
             state: State::default(),
@@ -197,34 +197,34 @@ impl Pass {
         }
     }
 
-    /// Touches `resource` by `access`.
+    /// Adds a use of `resource` by `access`.
     pub fn uses(mut self, resource: &str, access: Access) -> Self {
         self.uses.push(Use::new(resource, access));
         self
     }
 
-    /// Touches `resource` atomically; its loads are hints, or made again inside the critical section.
+    /// Adds an atomic use of `resource` whose loads are hints, or are repeated inside the critical section.
     pub fn uses_rechecked(mut self, resource: &str) -> Self {
         self.uses.push(Use { loads: Loads::Rechecked, ..Use::new(resource, Access::Atomic) });
         self
     }
 
     /// Binds `contract` to the row `row` under the name `name`.
-    pub fn role(mut self, contract: &str, row: &str, name: &str) -> Self {
-        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: Memory::Own };
-        self.roles.push(Role { contract: contract.to_owned(), instance });
+    pub fn implementation(mut self, contract: &str, row: &str, name: &str) -> Self {
+        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: InstanceMemory::Own };
+        self.implementations.push(Implementation { contract: contract.to_owned(), instance });
         self
     }
 
-    /// Lets the storage call the functions of the row `row` under the name `name`, on memory of its own.
-    pub fn borrows(mut self, name: &str, row: &str) -> Self {
-        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: Memory::Borrowed };
-        self.roles.push(Role { contract: name.to_owned(), instance });
+    /// Lets the storage delegate to the functions of the row `row` under the name `name`, on the storage's memory.
+    pub fn delegates_to(mut self, name: &str, row: &str) -> Self {
+        let instance = Instance { row: row.to_owned(), name: name.to_owned(), memory: InstanceMemory::Delegated };
+        self.implementations.push(Implementation { contract: name.to_owned(), instance });
         self
     }
 
-    /// Whether it uses, tests or draws to `resource`.
-    pub fn touches(&self, resource: &str) -> bool {
+    /// Returns whether the pass uses, tests or draws to `resource`.
+    pub fn accesses(&self, resource: &str) -> bool {
         let state = &self.state;
         self.uses.iter().any(|usage| usage.resource == resource)
             || state.targets.iter().any(|target| target.resource == resource)
@@ -232,23 +232,23 @@ impl Pass {
             || state.stencil.as_ref().is_some_and(|stencil| stencil.resource == resource)
     }
 
-    /// Writes to `resource` with `blend`.
+    /// Adds the colour target `resource` with `blend`.
     pub fn target(mut self, resource: &str, blend: Blend) -> Self {
-        self.state.targets.push(Target { resource: resource.to_owned(), blend });
+        self.state.targets.push(ColorTarget { resource: resource.to_owned(), blend });
         self
     }
 }
 
-impl Role {
-    /// `contract`, fulfilled by the row `row` of the axis of that name.
+impl Implementation {
+    /// Implements `contract` by the row `row` of the axis of that name.
     pub fn of(contract: &str, row: &str) -> Self {
-        let instance = Instance { row: row.to_owned(), name: contract.to_owned(), memory: Memory::Own };
-        Role { contract: contract.to_owned(), instance }
+        let instance = Instance { row: row.to_owned(), name: contract.to_owned(), memory: InstanceMemory::Own };
+        Implementation { contract: contract.to_owned(), instance }
     }
 }
 
 impl Use {
-    /// `resource` by `access`, loads exact.
+    /// Makes a use of `resource` by `access` with exact loads.
     pub fn new(resource: &str, access: Access) -> Self {
         Use { resource: resource.to_owned(), access, loads: Loads::Exact }
     }

@@ -1,5 +1,5 @@
-//! Formulas in normal form. In: sums and products of numbers and symbols. Out: what two formulas have in common, and a text
-//! as the papers write it. No value of a symbol is asked for here.
+//! Formulas in normal form, with the operations on them and a text in the notation of the papers. No symbol has a value
+//! here.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,7 +9,7 @@ use std::fmt;
 pub struct Polynomial(BTreeMap<Vec<String>, i64>);
 
 impl Polynomial {
-    /// The constant `number`.
+    /// Makes the constant `number`.
     pub fn number(number: i64) -> Self {
         let mut terms = BTreeMap::new();
         if number != 0 {
@@ -18,12 +18,12 @@ impl Polynomial {
         Polynomial(terms)
     }
 
-    /// The symbol `name`.
+    /// Makes the symbol `name`.
     pub fn symbol(name: &str) -> Self {
         Polynomial(BTreeMap::from([(vec![name.to_owned()], 1)]))
     }
 
-    /// `self + factor * other`. Coefficients end at the bounds of `i64`.
+    /// Returns `self + factor * other`. Coefficients saturate at the bounds of `i64`.
     pub fn plus(&self, other: &Polynomial, factor: i64) -> Polynomial {
         let mut terms = self.0.clone();
         for (symbols, coefficient) in &other.0 {
@@ -33,7 +33,7 @@ impl Polynomial {
         Polynomial(terms)
     }
 
-    /// `self * other`. Coefficients end at the bounds of `i64`.
+    /// Returns `self * other`. Coefficients saturate at the bounds of `i64`.
     pub fn times(&self, other: &Polynomial) -> Polynomial {
         let mut terms = BTreeMap::new();
         for (left, a) in &self.0 {
@@ -47,17 +47,17 @@ impl Polynomial {
         Polynomial(terms)
     }
 
-    /// How many products are summed.
+    /// Returns the number of terms.
     pub fn terms(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether a coefficient has reached the bounds of `i64`, and may be another.
+    /// Returns whether a coefficient has reached the bounds of `i64`, and may be wrong.
     pub(super) fn is_saturated(&self) -> bool {
         self.0.values().any(|coefficient| matches!(*coefficient, i64::MIN | i64::MAX))
     }
 
-    /// The coefficient of the single factor `name`: what remains of each term that has `name` in it, without one of them.
+    /// Returns the coefficient of `name`: every term that contains `name`, divided by one factor `name`.
     pub fn coefficient(&self, name: &str) -> Polynomial {
         let mut terms = BTreeMap::new();
         for (symbols, coefficient) in &self.0 {
@@ -70,8 +70,8 @@ impl Polynomial {
         Polynomial(terms)
     }
 
-    /// The terms with a fraction of the symbol `name` in them, whose fractions are called those of `other`: `8(a/4)` is
-    /// `8b/4` for `a` and `b`.
+    /// Returns the terms that contain a fraction of the symbol `name`, with `other` in its place: `8(a/4)` is `8b/4`
+    /// for `a` and `b`.
     pub fn fractions(&self, name: &str, other: &str) -> Polynomial {
         let renamed = |symbol: &String| {
             let below = symbol.strip_prefix('(')?.strip_prefix(name)?.strip_prefix('/')?.strip_suffix(')')?;
@@ -87,7 +87,7 @@ impl Polynomial {
         Polynomial(terms)
     }
 
-    /// Whether nothing is left.
+    /// Returns whether the polynomial is zero.
     pub fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
@@ -107,7 +107,8 @@ fn add(terms: &mut BTreeMap<Vec<String>, i64>, symbols: Vec<String>, more: i64) 
 }
 
 impl fmt::Display for Polynomial {
-    /// The papers' notation: `2k+2`, `3f+1`; products of symbols are joined by `*`; the constant comes last.
+    /// Writes the notation of the papers: `2k+2`, `3f+1`. Products of symbols are joined by `*`, and the constant is
+    /// last.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return f.write_str("0");

@@ -1,155 +1,156 @@
-//! What a pixel may hold in the end, worked out from its fragments alone: the reference model that rows state.
+//! The reference model that rows declare: which contents a pixel may have in a final state, given its fragments.
 //!
-//! In: which fragments stay, what is merged, what may go wrong. Out: nothing; a checker compares end states with it, and a
-//! plan's summary follows from it. Neither knows a row: whatever a technique promises is said in these parts.
+//! A row declares which fragments are kept, how entries are merged, and what can go wrong. The checker compares final
+//! states with the model, and the summary of a plan follows from it. Neither reads the keys of rows.
 
 use super::{Formula, Text};
 
-/// Which of a pixel's fragments stay.
+/// Which of a pixel's fragments are kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Kept {
-    /// Which of a group.
+pub struct KeptFragments {
+    /// Which fragments of a group.
     pub side: Side,
-    /// How many of a group, over `k`; `None`: all.
+    /// The number kept of a group, over `k`; `None`: all.
     pub most: Option<Formula>,
-    /// The number of a fragment's group, below the number of a pixel's entries; `None`: all fragments are one group. Over `k`,
-    /// constants of rows, `key` (the word that orders fragments) and `depth_millionths` (the key read as a depth).
+    /// The index of a fragment's group, less than the number of a pixel's entries; `None`: all fragments are one
+    /// group. Over `k`, constants of rows, `key` (the word that orders fragments) and `depth_millionths` (the key as a
+    /// depth).
     pub group: Option<Formula>,
 }
 
-/// What only the groups of fragments are over.
+/// Symbols that only the groups of fragments use.
 pub const KEY_SYMBOLS: [&str; 2] = ["key", "depth_millionths"];
 
 /// An end of the order of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The better stay.
+    /// The better fragments are kept.
     Best,
-    /// The worse stay: the better leave, and are handed on.
+    /// The worse fragments are kept; the better leave and are passed on.
     Worst,
 }
 
-impl Kept {
-    /// Every fragment.
+impl KeptFragments {
+    /// Keeps every fragment.
     pub const fn all() -> Self {
-        Kept { side: Side::Best, most: None, group: None }
+        KeptFragments { side: Side::Best, most: None, group: None }
     }
 
-    /// The k best.
+    /// Keeps the k best.
     pub const fn best() -> Self {
-        Kept { side: Side::Best, most: Some(Formula(Text::Borrowed("k"))), group: None }
+        KeptFragments { side: Side::Best, most: Some(Formula(Text::Borrowed("k"))), group: None }
     }
 
-    /// The k worst.
+    /// Keeps the k worst.
     pub const fn worst() -> Self {
-        Kept { side: Side::Worst, most: Some(Formula(Text::Borrowed("k"))), group: None }
+        KeptFragments { side: Side::Worst, most: Some(Formula(Text::Borrowed("k"))), group: None }
     }
 
-    /// The best of each group.
+    /// Keeps the best of each group.
     pub const fn best_of_each(group: &'static str) -> Self {
         let one = Some(Formula(Text::Borrowed("1")));
-        Kept { side: Side::Best, most: one, group: Some(Formula(Text::Borrowed(group))) }
+        KeptFragments { side: Side::Best, most: one, group: Some(Formula(Text::Borrowed(group))) }
     }
 }
 
-/// How entries become one. Which colours are blended in which order is left open; how much light all entries together let
-/// through is not.
+/// How entries are merged. The order in which colours are blended is not specified; the transmittance of all entries
+/// together is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merges {
-    /// The attribute that is blended, with its opacity last; all else of an entry is one fragment's.
+    /// The attribute that is blended, with its opacity last; the other words of an entry come from one fragment.
     pub attribute: Text,
-    /// Whose keys are promised.
+    /// The entries whose keys are specified.
     pub keys: PromisedKeys,
-    /// Which entries may be made of several fragments.
-    pub blended: Blended,
+    /// The entries that can be merged from several fragments.
+    pub blended: BlendedEntries,
 }
 
-/// Whose keys are those of the fragments that would stay without merging.
+/// The entries whose keys equal those of the fragments kept without merging.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PromisedKeys {
-    /// Every entry's.
+    /// Every entry.
     All,
-    /// The best entry's; the others are some fragments', as many as promised.
+    /// The best entry. The keys of the others are those of some fragments, in the specified number.
     Best,
 }
 
-/// Entries that may be made of several fragments.
+/// Entries that can be merged from several fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Blended {
-    /// One with the worst key, and none where no fragment is missing.
+pub enum BlendedEntries {
+    /// One entry with the worst key, if a fragment is missing.
     Worst,
-    /// Any.
+    /// Any entry.
     Any,
 }
 
-/// What a hazard lets a pixel hold or show in the end, against what the rows promise. Parts that several hazards state add up.
+/// Deviations from the specification that a hazard permits in a final state. Permits of several hazards add up.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Permits {
-    /// It takes a race: fragments that come one after the other never show it.
+    /// The hazard needs a race: sequential fragments never show it.
     pub needs_race: bool,
-    /// It shows only where this counter is not 0.
+    /// The hazard occurs only if this counter is not 0.
     pub where_counted: Option<Text>,
-    /// A fragment that should be there is not, and no counter says so.
+    /// A fragment that should be kept is missing, and no counter counts it.
     pub lost: bool,
-    /// A fragment stands there several times.
+    /// A fragment is stored several times.
     pub duplicate: bool,
-    /// Every word of an entry is that word of some fragment, but not all of one.
-    pub torn: Torn,
-    /// A word beside a key is what stood there before the frame.
+    /// Every word of an entry comes from a fragment, but not all from the same one.
+    pub torn: Tearing,
+    /// A value word is from before the frame.
     pub stale: bool,
-    /// Entries are not in the order that the row promises.
+    /// Entries are not in the order that the row declares.
     pub unsorted: bool,
-    /// Of fragments that are alike one is kept, and the others are counted.
-    pub one_of: Alike,
-    /// Fragments that are not kept, as they should not be, are counted nowhere.
+    /// One of several equivalent fragments is kept, and the others are counted.
+    pub one_of: Equivalence,
+    /// Fragments that are rightly not kept are not counted.
     pub uncounted: bool,
     /// A fragment that is not kept is counted several times.
     pub counted_twice: bool,
-    /// A fragment is given up after its tries, and counted, though nobody waits for a lock.
-    pub gives_up: bool,
-    /// What a pixel shows, but not what it holds, depends on the order of arrival.
-    pub shows_arrival: bool,
+    /// A fragment times out after its tries, and is counted, although no lock is involved.
+    pub times_out: bool,
+    /// The image of a pixel depends on the order of arrival, but its content does not.
+    pub order_dependent: bool,
 }
 
-/// Whose words an entry may be made of.
+/// The fragments whose words an entry can mix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Torn {
-    /// One fragment's.
+pub enum Tearing {
+    /// No others: all words are from one fragment.
     #[default]
     No,
-    /// Those of fragments with its key.
+    /// Fragments with its key.
     EqualKeys,
-    /// Those of any fragments.
+    /// Any fragments.
     Any,
 }
 
-/// Which fragments are alike.
+/// Which fragments are equivalent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Alike {
-    /// None: each stays.
+pub enum Equivalence {
+    /// None: each is kept.
     #[default]
     None,
-    /// Those that nothing tells apart.
+    /// Fragments with equal words.
     Fragments,
-    /// Those with equal keys.
+    /// Fragments with equal keys.
     Keys,
 }
 
 impl Permits {
-    /// Nothing that can be checked.
+    /// Permits nothing.
     pub const NOTHING: Permits = Permits {
         needs_race: false,
         where_counted: None,
         lost: false,
         duplicate: false,
-        torn: Torn::No,
+        torn: Tearing::No,
         stale: false,
         unsorted: false,
-        one_of: Alike::None,
+        one_of: Equivalence::None,
         uncounted: false,
         counted_twice: false,
-        gives_up: false,
-        shows_arrival: false,
+        times_out: false,
+        order_dependent: false,
     };
     const RACE: Permits = Permits { needs_race: true, ..Permits::NOTHING };
     /// A race loses a fragment.
@@ -157,50 +158,50 @@ impl Permits {
     /// A race stores a fragment twice.
     pub const DUPLICATE: Permits = Permits { duplicate: true, ..Permits::RACE };
     /// A race mixes the words of fragments.
-    pub const TORN: Permits = Permits { torn: Torn::Any, ..Permits::RACE };
+    pub const TORN: Permits = Permits { torn: Tearing::Any, ..Permits::RACE };
     /// A race mixes the words of fragments with equal keys.
-    pub const TORN_EQUAL_KEYS: Permits = Permits { torn: Torn::EqualKeys, ..Permits::RACE };
+    pub const TORN_EQUAL_KEYS: Permits = Permits { torn: Tearing::EqualKeys, ..Permits::RACE };
     /// A race leaves a word of an earlier frame.
     pub const STALE: Permits = Permits { stale: true, ..Permits::RACE };
     /// A race leaves entries out of order.
     pub const UNSORTED: Permits = Permits { unsorted: true, ..Permits::RACE };
-    /// Of equal keys one stays.
-    pub const ONE_OF_EQUAL_KEYS: Permits = Permits { one_of: Alike::Keys, ..Permits::NOTHING };
-    /// Of equal fragments one stays.
-    pub const ONE_OF_EQUAL_FRAGMENTS: Permits = Permits { one_of: Alike::Fragments, ..Permits::NOTHING };
-    /// A race keeps losses from being counted.
+    /// One of several equal keys is kept.
+    pub const ONE_OF_EQUAL_KEYS: Permits = Permits { one_of: Equivalence::Keys, ..Permits::NOTHING };
+    /// One of several equal fragments is kept.
+    pub const ONE_OF_EQUAL_FRAGMENTS: Permits = Permits { one_of: Equivalence::Fragments, ..Permits::NOTHING };
+    /// A race prevents losses from being counted.
     pub const UNCOUNTED: Permits = Permits { uncounted: true, ..Permits::RACE };
-    /// A race has a loss counted several times.
+    /// A race counts a loss several times.
     pub const COUNTED_TWICE: Permits = Permits { counted_twice: true, ..Permits::RACE };
     /// A race exhausts the tries of a fragment.
-    pub const GIVES_UP: Permits = Permits { gives_up: true, ..Permits::RACE };
-    /// The picture follows the order of arrival.
-    pub const SHOWS_ARRIVAL: Permits = Permits { shows_arrival: true, ..Permits::NOTHING };
-    /// Where the last round of a loop still changed something, a race may have left anything of the pixel's own words.
-    pub const UNSETTLED: Permits = Permits {
-        where_counted: Some(Text::Borrowed("unsettled")),
+    pub const TIMED_OUT: Permits = Permits { times_out: true, ..Permits::RACE };
+    /// The image depends on the order of arrival.
+    pub const ORDER_DEPENDENT: Permits = Permits { order_dependent: true, ..Permits::NOTHING };
+    /// If the last iteration of a loop still changed a slot, races may have mixed any words of the pixel's fragments.
+    pub const NOT_CONVERGED: Permits = Permits {
+        where_counted: Some(Text::Borrowed("not_converged")),
         lost: true,
         duplicate: true,
-        torn: Torn::Any,
+        torn: Tearing::Any,
         unsorted: true,
         uncounted: true,
         ..Permits::RACE
     };
 
-    /// What either permits, where both show under the same conditions. `None`: they do not, and each keeps its own.
+    /// Joins two permits with the same conditions; returns `None` if the conditions differ.
     pub fn and(&self, other: &Permits) -> Option<Permits> {
-        let is_alike = self.needs_race == other.needs_race && self.where_counted == other.where_counted;
+        let has_same_conditions = self.needs_race == other.needs_race && self.where_counted == other.where_counted;
         let conditions =
             Permits { where_counted: self.where_counted.clone(), needs_race: self.needs_race, ..Permits::NOTHING };
-        is_alike.then(|| conditions.with(self).with(other))
+        has_same_conditions.then(|| conditions.with(self).with(other))
     }
 
-    /// What these permit together where the conditions of all are met: it has none itself.
+    /// Joins permits whose conditions are all met. The result has no conditions.
     pub fn together<'a>(met: impl Iterator<Item = &'a Permits>) -> Permits {
         met.fold(Permits::NOTHING, Permits::with)
     }
 
-    /// The same conditions, and what either permits.
+    /// Adds what `other` permits, with the conditions of `self`.
     fn with(self, other: &Permits) -> Permits {
         Permits {
             needs_race: self.needs_race,
@@ -213,17 +214,17 @@ impl Permits {
             one_of: self.one_of.max(other.one_of),
             uncounted: self.uncounted || other.uncounted,
             counted_twice: self.counted_twice || other.counted_twice,
-            gives_up: self.gives_up || other.gives_up,
-            shows_arrival: self.shows_arrival || other.shows_arrival,
+            times_out: self.times_out || other.times_out,
+            order_dependent: self.order_dependent || other.order_dependent,
         }
     }
 
-    /// Whether it permits anything, whenever that is.
+    /// Returns whether it permits anything under its conditions.
     pub fn is_something(&self) -> bool {
         Permits { needs_race: false, where_counted: None, ..self.clone() } != Permits::NOTHING
     }
 
-    /// Whether pictures can show it, as counters do not count for that.
+    /// Returns whether it affects images and not only counters.
     pub fn shows(&self) -> bool {
         Permits { uncounted: false, counted_twice: false, ..self.clone() }.is_something()
     }
@@ -234,19 +235,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn permits_join_under_the_same_conditions_alone() {
-        let both = Permits { torn: Torn::Any, ..Permits::LOST };
+    fn permits_join_only_under_the_same_conditions() {
+        let both = Permits { torn: Tearing::Any, ..Permits::LOST };
         assert_eq!(Permits::LOST.and(&Permits::TORN), Some(both));
         for (one, other) in [
-            (Permits::TORN, Permits::UNSETTLED),
-            (Permits::UNSETTLED, Permits::TORN),
+            (Permits::TORN, Permits::NOT_CONVERGED),
+            (Permits::NOT_CONVERGED, Permits::TORN),
             (Permits::TORN, Permits::ONE_OF_EQUAL_KEYS),
             (Permits::ONE_OF_EQUAL_KEYS, Permits::UNCOUNTED),
         ] {
             assert_eq!(one.and(&other), None, "{one:?} {other:?}");
         }
-        let all = Permits::together([Permits::UNSETTLED, Permits::STALE, Permits::ONE_OF_EQUAL_KEYS].iter());
-        assert!(all.stale && all.lost && all.one_of == Alike::Keys);
+        let all = Permits::together([Permits::NOT_CONVERGED, Permits::STALE, Permits::ONE_OF_EQUAL_KEYS].iter());
+        assert!(all.stale && all.lost && all.one_of == Equivalence::Keys);
         assert_eq!((all.needs_race, all.where_counted), (false, None));
     }
 }

@@ -1,34 +1,34 @@
-//! What a technique keeps in memory.
+//! Buffers and textures of a technique.
 
 use super::{Formula, Text};
 
-/// One buffer or texture.
+/// A buffer or texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resource {
-    /// Its name; generated accessors are `<name>_load`, `<name>_store`, `<name>_atomic_…`.
+    /// The name. Generated accessors are `<name>_load`, `<name>_store`, `<name>_atomic_…`.
     pub name: String,
-    /// What one element is.
+    /// The type of one element.
     pub element: Element,
-    /// The index, slowest part first. The length is the product; none is a single element.
+    /// The parts of the index, slowest first. The length is the product; without extents it is one element.
     pub extents: Vec<Extent>,
-    /// What it holds when a frame begins.
+    /// The content at the beginning of a frame.
     pub init: Init,
-    /// How long its contents matter.
-    pub life: Life,
-    /// One line for the reader of a plan.
+    /// How long the content is needed.
+    pub lifetime: Lifetime,
+    /// A line for readers of a plan.
     pub summary: Text,
 }
 
 /// One part of an index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
-    /// The accessor parameter.
+    /// The parameter of the accessor.
     pub name: String,
-    /// How many.
+    /// The length.
     pub length: Formula,
 }
 
-/// What one element of a resource is.
+/// The type of one element of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {
     /// A 32-bit word.
@@ -37,14 +37,14 @@ pub enum Element {
     Word64,
     /// All words of a fragment, the key first.
     Entry,
-    /// The words of a fragment beside its key. No words at all where the key is the whole payload.
-    Beside,
-    /// A texel of a frame-sized texture. An extent `sample` says how many samples a pixel has; without it there is one.
+    /// The value words of a fragment: all words but the key. There are none if the key is the whole payload.
+    Value,
+    /// A texel of a frame-sized texture. An extent `sample` gives the number of samples; without it there is one.
     Texture(TextureFormat),
-    /// The words of a fragment beside its key, each in a texture of its own of this format. The plan has one resource for
-    /// each; what a pass does with the name it does with all of them.
-    BesideTextures(TextureFormat),
-    /// The same for all words of a fragment, the key first.
+    /// The value words of a fragment, one per texture of this format. The plan has a resource for each texture, and a
+    /// use of the resource applies to all of them.
+    ValueTextures(TextureFormat),
+    /// All words of a fragment, the key first, one per texture of this format.
     EntryTextures(TextureFormat),
 }
 
@@ -53,7 +53,7 @@ pub enum Element {
 pub enum TextureFormat {
     /// One unsigned word.
     R32Uint,
-    /// One unsigned word as two halves, the lower first: unlike whole words, it may have several samples.
+    /// One unsigned word as two halves, the lower first: unlike whole words it can be multisampled.
     Rg16Uint,
     /// One float.
     R32Float,
@@ -70,7 +70,7 @@ pub enum TextureFormat {
 }
 
 impl TextureFormat {
-    /// 32-bit words of a texel.
+    /// Returns the number of 32-bit words of a texel.
     pub fn words(self) -> u32 {
         match self {
             TextureFormat::Rg32Float | TextureFormat::Rgba16Float => 2,
@@ -79,59 +79,59 @@ impl TextureFormat {
     }
 }
 
-/// What a resource holds when a frame begins.
+/// The content of a resource at the beginning of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Init {
     /// Every word is this value.
     Clear(u32),
-    /// Whatever it held: a pass of the plan writes before any reads.
+    /// The previous content. A pass of the plan writes the resource before another reads it.
     Keep,
-    /// The host writes it. A texture is the host's own: it is brought as it is, and is no memory of the plan's.
-    Host,
+    /// Content that the host supplies. A texture belongs to the host and is not part of the plan's memory.
+    External,
 }
 
-/// How long a resource's contents matter.
+/// How long the content of a resource is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Life {
-    /// One frame; the memory may serve others after it.
+pub enum Lifetime {
+    /// One frame. The memory can be reused afterwards.
     Frame,
-    /// From frame to frame.
+    /// Across frames.
     Persistent,
 }
 
 impl Resource {
-    /// Whether its size depends on this symbol.
+    /// Returns whether the size depends on this symbol.
     pub fn mentions(&self, symbol: &str) -> bool {
         self.extents.iter().any(|extent| extent.length.mentions(symbol))
     }
 
-    /// A buffer of `element`s without extents, kept from nothing.
+    /// Makes a resource of one `element` without extents or initial content.
     pub fn new(name: &str, element: Element, summary: impl Into<Text>) -> Self {
         Resource {
             name: name.to_owned(),
             element,
             extents: Vec::new(),
             init: Init::Keep,
-            life: Life::Frame,
+            lifetime: Lifetime::Frame,
             summary: summary.into(),
         }
     }
 
-    /// Adds an index part inside those already there.
+    /// Adds an extent that varies faster than the existing ones.
     pub fn by(mut self, name: &str, length: impl Into<Formula>) -> Self {
         self.extents.push(Extent { name: name.to_owned(), length: length.into() });
         self
     }
 
-    /// Cleared to `value` when a frame begins.
+    /// Clears the resource to `value` at the beginning of a frame.
     pub fn cleared(mut self, value: u32) -> Self {
         self.init = Init::Clear(value);
         self
     }
 
-    /// Kept from frame to frame.
+    /// Keeps the content across frames.
     pub fn persistent(mut self) -> Self {
-        self.life = Life::Persistent;
+        self.lifetime = Lifetime::Persistent;
         self
     }
 }

@@ -1,89 +1,91 @@
-//! One row of the registry: a value on an axis, and all that the rules and the plan need to know of it.
+//! A row of the registry: one value on an axis, with the data that the legality rules and the plan read.
 
 use super::{
-    Capability, Condition, Edit, Fact, Formula, Given, Hazard, HostFunction, Kept, Merges, Resource, Step, Text, Use,
+    Capability, Condition, DescriptionValues, Edit, Feature, Formula, Hazard, HostFunction, KeptFragments, Merges,
+    Resource, Step, Text, Use,
 };
 
-/// One way to choose: `storage`, `sync`, `sort`, …
+/// One choice that a description makes: `storage`, `sync`, `sort`, …
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The word of the language.
+    /// The keyword of the language.
     pub key: &'static str,
     /// What is chosen.
     pub summary: &'static str,
-    /// The value taken when neither the description, the preset nor another row's defaults say one.
+    /// The value if neither the description, the preset nor another row's defaults give one.
     pub default: Option<&'static str>,
-    /// Whether a user chooses on it; the others (`pass`, `shared`) hold texts that plans refer to.
+    /// Whether a description can choose a value. The other axes (`pass`, `host`) hold rows that plans refer to.
     pub chosen: bool,
 }
 
 /// One value on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The word of the language, and the stem of the template's file.
+    /// The keyword of the language, and the stem of the template's file name.
     pub key: String,
-    /// Its axis.
+    /// The axis.
     pub axis: String,
-    /// What it does, in one line.
+    /// What the row does, in one line.
     pub summary: Text,
-    /// Where it comes from: paper and section.
+    /// The source: paper and section.
     pub paper: Text,
-    /// The template; `None` where the row only changes plans or constants.
+    /// The template; `None` if the row only changes plans or constants.
     pub template: Option<Template>,
-    /// What it keeps in memory.
+    /// The resources that the row keeps in memory.
     pub resources: Vec<Resource>,
-    /// How a pass that calls this row touches the row's own resources. A row with steps says so in its passes instead.
+    /// How a pass that calls this row accesses the row's resources. A row with steps declares this in its passes
+    /// instead.
     pub uses: Vec<Use>,
     /// The steps of a frame, for the row that a plan starts from (a storage).
     pub steps: Vec<Step>,
     /// Contracts that the template calls, by axis.
     pub calls: Vec<&'static str>,
-    /// What it gives to the other rows.
-    pub offers: Vec<Fact>,
-    /// (condition, fact): what it offers only where the description meets a condition.
-    pub implies: Vec<(Formula, Fact)>,
-    /// What it needs from them.
-    pub requires: Vec<Fact>,
-    /// What it needs of the description.
+    /// Capabilities that the row provides to the other rows.
+    pub provides: Vec<Capability>,
+    /// (condition, capability): capabilities that the row provides only if the description meets a condition.
+    pub implies: Vec<(Formula, Capability)>,
+    /// Capabilities that the row requires of the other rows.
+    pub requires: Vec<Capability>,
+    /// What the row requires of the description.
     pub conditions: Vec<Condition>,
-    /// What it needs of the target and the device.
-    pub needs: Vec<Capability>,
-    /// What it changes in the steps of others.
+    /// Features that the row requires of the target and the device.
+    pub needs: Vec<Feature>,
+    /// Changes to the steps of other rows.
     pub edits: Vec<Edit>,
-    /// Values on other axes that suit it, taken when nothing else is said.
+    /// Values on other axes that are used if the description gives none.
     pub defaults: Vec<(Text, Text)>,
-    /// Words that every fragment carries beside the description's payload.
-    pub carries: Vec<Carried>,
-    /// What a user can set on it.
+    /// Words that the row adds to every fragment.
+    pub extra_words: Vec<ImplicitAttribute>,
+    /// The options of the row.
     pub parameters: Vec<Parameter>,
-    /// The least that an option may be for what is kept, as (option, formula over `k`). Defaults must meet it.
+    /// (option, formula over `k`): the least value of an option. Defaults must meet it.
     pub least: Vec<(Text, Formula)>,
-    /// Symbols of formulas that it gives a value.
+    /// Symbols of formulas that the row defines.
     pub defines: Vec<Definition>,
-    /// Which fragments stay, said more closely than by a fact that it offers; `None`: by a fact, or not at all.
-    pub keeps: Option<Kept>,
-    /// How entries become one.
+    /// Which fragments are kept, if no capability describes it; `None`: a capability does, or nothing does.
+    pub keeps: Option<KeptFragments>,
+    /// How entries are merged.
     pub merges: Option<Merges>,
     /// What can go wrong by design.
     pub hazards: Vec<Hazard>,
-    /// What its safety under concurrency rests on.
+    /// What safety under concurrency depends on.
     pub soundness: Soundness,
-    /// The order it imposes on fragments with equal keys, for an axis that says so.
-    pub order: Option<Order>,
-    /// The function that the host calls, for a row of the axis `host`.
+    /// The order of fragments with equal keys, for rows of the axis `ties`.
+    pub order: Option<TieBreak>,
+    /// The function that the host calls, for rows of the axis `host`.
     pub host: Option<HostFunction>,
-    /// For a row in a user's file: where its names and formulas stand.
-    pub places: Vec<Place>,
+    /// The spans of names and formulas, for a row in a user's file.
+    pub item_spans: Vec<RowItemSpan>,
 }
 
-/// What a row in a user's file writes somewhere.
+/// A name or formula in the header of a user's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
+pub enum RowItem {
     /// The name of a buffer.
     Resource,
     /// The length of an extent.
     Length,
-    /// The words that a host step reads: the first, or how many.
+    /// The words that a host step reads: the index of the first, or their number.
     Read,
     /// The constant of a parameter.
     Constant,
@@ -93,86 +95,86 @@ pub enum Written {
     Definition,
 }
 
-/// Where a row in a user's file writes a name or a formula. Lines and columns count from 1, columns in characters.
+/// The span of a name or formula in a user's file. Lines and columns count from 1, columns in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// What it is.
-    pub what: Written,
+pub struct RowItemSpan {
+    /// The kind of item.
+    pub item: RowItem,
     /// The name or formula.
     pub text: Text,
-    /// Its line.
+    /// The line.
     pub line: u32,
-    /// Its first column.
+    /// The first column.
     pub column: u32,
-    /// Its length in characters.
+    /// The length in characters.
     pub length: u32,
 }
 
-/// A whole WGSL file.
+/// A complete WGSL file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Template {
-    /// Its path under `templates/`; a user's file as the description names it.
+    /// The path under `templates/`; for a user's file, the path that the description gives.
     pub path: Text,
-    /// Its text.
-    pub text: Text,
-    /// For a file of the user's own: what messages call it.
-    pub own: Option<Text>,
+    /// The WGSL source.
+    pub source: Text,
+    /// For a user's file, its name in messages.
+    pub user_file: Option<Text>,
 }
 
-/// A word that every fragment carries beside the description's payload: a member `u32` of `Fragment`, a word of an entry.
+/// A word that a row adds to every fragment: a member `u32` of `Fragment`, one word of an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Carried {
-    /// The member. No attribute of a user's is spelled so.
+pub struct ImplicitAttribute {
+    /// The member. No attribute of a description can have this name.
     pub name: Text,
-    /// The WGSL built-in of fragment shaders that gives its value; a caller's own shader gives it in module form.
+    /// The WGSL built-in of fragment shaders that gives the value. In module form the caller's shader gives it.
     pub built_in: Text,
 }
 
-/// What is written as the value of a parameter.
+/// The type of a parameter's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
+pub enum ParameterType {
     /// A whole number.
     Number,
     /// A power of two.
     PowerOfTwo,
-    /// The name of an attribute, which stands for its place among the attributes.
+    /// The name of an attribute, which stands for its index among the attributes.
     Attribute,
 }
 
-/// A number that a user can set on a row; it becomes a generated constant.
+/// An option of a row. It becomes a generated constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// The word in `{ name: value }`.
+    /// The name in `{ name: value }`.
     pub name: Text,
     /// The generated constant.
     pub constant: Text,
-    /// What a user writes.
-    pub takes: Takes,
-    /// The value when nothing is said, over the symbols of generation time.
+    /// The type of the value.
+    pub kind: ParameterType,
+    /// The default, over the symbols of generation time.
     pub default: Formula,
-    /// Least and greatest.
+    /// The least and the greatest value.
     pub range: (u32, u32),
     /// What it does.
     pub summary: Text,
 }
 
-/// A symbol of formulas that a row gives a value, over the symbols of allocation.
+/// A symbol of formulas that a row defines, over the symbols of allocation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
     /// The symbol.
     pub symbol: Text,
-    /// Its value.
+    /// The value.
     pub value: Formula,
 }
 
-/// What the safety of a row under concurrency rests on. The weakest of the chosen rows decides the tier on a target.
+/// What the safety of a row under concurrency depends on. The weakest of the chosen rows decides the tier on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Soundness {
-    /// Nothing concurrent, or single-object atomics and pass borders: T1.
+    /// Nothing concurrent, or atomics on single objects and pass boundaries: T1.
     Atomics,
     /// Interlock: T2.
     Interlock,
-    /// A lock, or plain words that others read once they see an atomic one: T3 with fences, T4 without.
+    /// A lock, or plain words that others read after they have seen an atomic one: T3 with fences, T4 without.
     Lock,
     /// Nothing: T5.
     Racy,
@@ -180,36 +182,36 @@ pub enum Soundness {
 
 /// How fragments with equal keys are ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// By their remaining words: the result depends on the multiset of fragments alone.
+pub enum TieBreak {
+    /// By their remaining words: the result depends only on the multiset of fragments.
     Payload,
-    /// As `Payload`, the words of the attribute that the row's parameter names before all others.
+    /// As `Payload`, but the words of the attribute that the row's parameter names come first.
     Attribute,
     /// By their order of submission.
     Submission,
-    /// Not at all: whichever comes first.
+    /// By their order of arrival.
     Unordered,
 }
 
 impl Soundness {
-    /// Every kind, the strongest first.
+    /// Every value, the strongest first.
     pub const ALL: [Soundness; 4] = [Soundness::Atomics, Soundness::Interlock, Soundness::Lock, Soundness::Racy];
 
-    /// The word of plans and of rows in files.
-    pub fn word(self) -> String {
+    /// Returns the name in plans and in row headers.
+    pub fn name(self) -> String {
         format!("{self:?}").to_lowercase()
     }
 }
 
 impl Template {
-    /// A file of fragbuf's own, or one that code has made.
-    pub fn new(path: impl Into<Text>, text: impl Into<Text>) -> Self {
-        Template { path: path.into(), text: text.into(), own: None }
+    /// Makes a template of fragbuf or of generated source.
+    pub fn new(path: impl Into<Text>, source: impl Into<Text>) -> Self {
+        Template { path: path.into(), source: source.into(), user_file: None }
     }
 }
 
 impl Parameter {
-    /// A whole number.
+    /// Makes a parameter whose value is a whole number.
     pub fn number(
         name: impl Into<Text>,
         constant: impl Into<Text>,
@@ -218,29 +220,36 @@ impl Parameter {
         summary: impl Into<Text>,
     ) -> Self {
         let (name, constant, summary) = (name.into(), constant.into(), summary.into());
-        Parameter { name, constant, takes: Takes::Number, default: default.into(), range, summary }
+        Parameter { name, constant, kind: ParameterType::Number, default: default.into(), range, summary }
     }
 }
 
 impl Row {
-    /// Whether it offers a fact to a description that gives this.
-    pub fn offers_to(&self, given: &Given, fact: Fact) -> bool {
-        self.offers.contains(&fact) || self.implies.iter().any(|(when, then)| *then == fact && given.meets(when))
+    /// Returns whether the row provides a capability to a description with these values.
+    pub fn provides_to(&self, given: &DescriptionValues, capability: Capability) -> bool {
+        self.provides.contains(&capability)
+            || self.implies.iter().any(|(when, then)| *then == capability && given.meets(when))
     }
 
-    /// Which fragments stay of those that it is handed; `None`: it does not say, or does not store.
-    pub fn kept(&self) -> Option<Kept> {
-        let by_fact = [(Fact::KeepsAll, Kept::all()), (Fact::KeepsBest, Kept::best()), (Fact::Streams, Kept::worst())];
-        let by_fact = || by_fact.into_iter().find(|(fact, _)| self.offers.contains(fact)).map(|(_, kept)| kept);
-        self.keeps.clone().or_else(by_fact)
+    /// Returns which of the stored fragments the row keeps; `None` if the row does not declare it, or does not store.
+    pub fn kept(&self) -> Option<KeptFragments> {
+        let by_capability = [
+            (Capability::KeepsAll, KeptFragments::all()),
+            (Capability::KeepsBest, KeptFragments::best()),
+            (Capability::Streams, KeptFragments::worst()),
+        ];
+        let by_capability = || {
+            by_capability.into_iter().find(|(capability, _)| self.provides.contains(capability)).map(|(_, kept)| kept)
+        };
+        self.keeps.clone().or_else(by_capability)
     }
 
-    /// Whether it offers a fact to some description.
-    pub fn may_offer(&self, fact: Fact) -> bool {
-        self.offers.contains(&fact) || self.implies.iter().any(|(_, implied)| *implied == fact)
+    /// Returns whether the row provides a capability to some description.
+    pub fn may_provide(&self, capability: Capability) -> bool {
+        self.provides.contains(&capability) || self.implies.iter().any(|(_, implied)| *implied == capability)
     }
 
-    /// A row with nothing but its names.
+    /// Makes a row that has only names and texts.
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
         Row {
             key: key.to_owned(),
@@ -252,14 +261,14 @@ impl Row {
             uses: Vec::new(),
             steps: Vec::new(),
             calls: Vec::new(),
-            offers: Vec::new(),
+            provides: Vec::new(),
             implies: Vec::new(),
             requires: Vec::new(),
             conditions: Vec::new(),
             needs: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),
-            carries: Vec::new(),
+            extra_words: Vec::new(),
             parameters: Vec::new(),
             least: Vec::new(),
             defines: Vec::new(),
@@ -269,7 +278,7 @@ impl Row {
             soundness: Soundness::Atomics,
             order: None,
             host: None,
-            places: Vec::new(),
+            item_spans: Vec::new(),
         }
     }
 }

@@ -1,61 +1,61 @@
-//! Fixed-function state of a pass: depth and stencil tests, targets, samples. In: what rows say. Out: nothing; plans and
-//! manifests carry it, devices and engines set it.
+//! Fixed-function state of a pass: depth and stencil tests, targets, samples. Plans and manifests contain it; devices
+//! and engines set it.
 
 use super::Formula;
 
 /// Fixed-function state of a pass.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
-    /// Depth test; `None`: off.
+    /// The depth test; `None`: off.
     pub depth: Option<DepthState>,
-    /// Stencil test; `None`: off.
+    /// The stencil test; `None`: off.
     pub stencil: Option<StencilState>,
-    /// Colour targets, in the order of their locations.
-    pub targets: Vec<Target>,
-    /// Samples; `None`: one.
+    /// The colour targets, in the order of their locations.
+    pub targets: Vec<ColorTarget>,
+    /// The samples; `None`: one.
     pub samples: Option<Samples>,
 }
 
-/// Depth test of a pass.
+/// The depth test of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthState {
     /// The attachment.
     pub resource: String,
     /// The test.
     pub compare: Compare,
-    /// Whether passing fragments write their depth.
+    /// Whether fragments that pass write their depth.
     pub write: bool,
-    /// Whether the test must come before the shader.
+    /// Whether the test must run before the shader.
     pub early: bool,
 }
 
-/// Stencil test of a pass.
+/// The stencil test of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilState {
     /// The attachment.
     pub resource: String,
     /// The test of the reference against the stored value.
     pub compare: Compare,
-    /// What a failing fragment does.
+    /// The operation of a fragment that fails.
     pub fail: StencilOperation,
-    /// What a passing fragment does.
+    /// The operation of a fragment that passes.
     pub pass: StencilOperation,
     /// The reference value.
     pub reference: Formula,
 }
 
-/// What the stencil test does to the stored value.
+/// An operation on the stored stencil value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StencilOperation {
-    /// Leaves it.
+    /// Keeps it.
     Keep,
     /// Sets it to the reference.
     Replace,
-    /// One less, never below zero.
+    /// Decrements it, clamped at zero.
     DecrementClamp,
 }
 
-/// Comparisons of depth and stencil tests.
+/// A comparison of a depth or stencil test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
     /// Always passes.
@@ -72,19 +72,19 @@ pub enum Compare {
     GreaterEqual,
 }
 
-/// One colour target of a pass.
+/// A colour target of a pass.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Target {
-    /// The attachment; `output` is the caller's.
+pub struct ColorTarget {
+    /// The attachment; `output` is the target of the caller.
     pub resource: String,
-    /// How the new value meets the old.
+    /// How the new value is combined with the old.
     pub blend: Blend,
 }
 
 /// How a colour target blends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blend {
-    /// The new value stands.
+    /// The new value.
     Replace,
     /// new + (1 − new.alpha) · old: premultiplied *over*.
     Over,
@@ -98,23 +98,23 @@ pub enum Blend {
     Add,
 }
 
-/// Samples of a pass.
+/// The samples of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
-    /// Per pixel.
+    /// The number per pixel.
     pub count: Formula,
-    /// Which are written, as a bit mask.
+    /// The bit mask of samples that are written.
     pub mask: Formula,
-    /// Which of them a triangle covers.
+    /// Which samples a triangle covers.
     pub coverage: Coverage,
 }
 
-/// Which samples of a pixel a triangle covers, where there are several.
+/// Which samples of a multisampled pixel a triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
-    /// Those that lie inside of it.
+    /// The samples inside the triangle.
     PerSample,
-    /// All, where the pixel's middle lies inside: multisample coverage is switched off, and no fragment is half there.
-    /// OpenGL can do it; where a device cannot, fragments at edges cover some samples.
+    /// All samples if the pixel centre is inside: multisample coverage is off, and no fragment has partial coverage.
+    /// OpenGL supports it; on other devices, fragments at edges cover some samples.
     WholePixel,
 }

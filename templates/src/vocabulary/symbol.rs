@@ -1,50 +1,52 @@
-//! The symbols of formulas: one table, read by plans, manifests, bindings, devices, the checker and rows in users' files.
+//! The table of symbols of formulas. Plans, manifests, bindings, devices, the checker and row headers of users' files
+//! use it.
 //!
-//! Parameters of the chosen rows are symbols too, by their constants (`PAGE_ENTRIES`); a plan adds them to these. Nothing
-//! here has a value: values belong to a description, to a plan or to a frame.
+//! Parameters of the chosen rows are symbols too, by their constants (`PAGE_ENTRIES`); a plan adds them. The table has
+//! no values: a description, a plan or a frame gives them.
 
-use super::Formula;
+use super::formula::is_function;
+use super::{Formula, KEY_SYMBOLS};
 
-/// One symbol.
+/// A symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// The word in formulas, and the field's name in the shaders' `frame`.
+    /// The name in formulas, and of the field in the shaders' `frame`.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// The meaning, in one line.
     pub meaning: &'static str,
-    /// When it gets its value.
-    pub when: When,
-    /// Who gives it its value.
-    pub set_by: SetBy,
-    /// The value where nobody sets one, over other symbols.
+    /// When the value is set.
+    pub when: BindingTime,
+    /// What sets the value.
+    pub set_by: Setter,
+    /// The default value, over other symbols.
     pub default: Option<&'static str>,
     /// The least and the greatest value.
     pub range: (u64, u64),
 }
 
-/// When a symbol gets its value, the earliest first.
+/// When the value of a symbol is set, the earliest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum When {
-    /// By the description alone: what the conditions of rows are over. A number in every text.
+pub enum BindingTime {
+    /// In the description. Conditions of rows use these symbols. A number in every generated file.
     Description,
-    /// When code is generated: a number in every text.
+    /// When code is generated. A number in every generated file.
     Generation,
     /// When memory is allocated for a frame's size.
     Allocation,
-    /// Before a frame, without new memory, up to what memory was allocated for.
+    /// Before a frame, without a new allocation, up to the allocated size.
     Frame,
-    /// Inside a frame, by a host step; before that, what the caller reserves.
+    /// Inside a frame, by a host step; before it, the value that the caller reserves memory for.
     Readback,
-    /// Anew in every iteration of a loop, or in every slice.
-    Round,
+    /// In every iteration of a loop, or in every slice.
+    Iteration,
 }
 
-/// Who gives a symbol its value.
+/// What sets the value of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SetBy {
+pub enum Setter {
     /// The description, through the plan.
     Description,
-    /// The caller alone.
+    /// Only the caller.
     Caller,
     /// The caller, or a host step of the plan.
     Host,
@@ -52,83 +54,102 @@ pub enum SetBy {
     Device,
 }
 
-impl When {
-    /// The word of manifests.
-    pub fn word(self) -> &'static str {
+impl BindingTime {
+    /// Returns the name in manifests.
+    pub fn name(self) -> &'static str {
         match self {
-            When::Description => "description",
-            When::Generation => "generation",
-            When::Allocation => "allocation",
-            When::Frame => "frame",
-            When::Readback => "readback",
-            When::Round => "round",
+            BindingTime::Description => "description",
+            BindingTime::Generation => "generation",
+            BindingTime::Allocation => "allocation",
+            BindingTime::Frame => "frame",
+            BindingTime::Readback => "readback",
+            BindingTime::Iteration => "iteration",
         }
     }
 }
 
-impl SetBy {
-    /// The word of manifests.
-    pub fn word(self) -> &'static str {
+impl Setter {
+    /// Returns the name in manifests.
+    pub fn name(self) -> &'static str {
         match self {
-            SetBy::Description => "description",
-            SetBy::Caller => "caller",
-            SetBy::Host => "host",
-            SetBy::Device => "device",
+            Setter::Description => "description",
+            Setter::Caller => "caller",
+            Setter::Host => "host",
+            Setter::Device => "device",
         }
     }
 }
 
 impl Symbol {
-    /// The default, as a formula.
+    /// Returns the default as a formula.
     pub fn default_formula(&self) -> Option<Formula> {
         self.default.map(Formula::from)
     }
 }
 
-/// A word of the shaders' uniform block.
+/// The greatest value of a word of the shaders' uniform block.
 const WORD: u64 = u32::MAX as u64;
 
-/// The symbols that every plan has, in the order in which the shaders' `frame` has those that it needs.
+/// The symbols of every plan, in the order of the fields of the shaders' `frame`.
 pub const SYMBOLS: [Symbol; 17] = [
-    symbol("width", "columns of the frame", When::Allocation, SetBy::Caller, (1, WORD)),
-    symbol("height", "rows of the frame; of a slice, its rows", When::Allocation, SetBy::Caller, (1, WORD)),
-    symbol("first_row", "the row at which a slice of the picture begins", When::Round, SetBy::Device, (0, WORD)),
+    symbol("width", "columns of the frame", BindingTime::Allocation, Setter::Caller, (1, WORD)),
+    symbol("height", "rows of the frame or slice", BindingTime::Allocation, Setter::Caller, (1, WORD)),
+    symbol("first_row", "the first row of a slice of the frame", BindingTime::Iteration, Setter::Device, (0, WORD)),
     Symbol {
         default: Some("width * height"),
         ..symbol(
             "pixels",
-            "pixels of the frame and of the padding that the addressing adds",
-            When::Allocation,
-            SetBy::Description,
+            "pixels of the frame, including the padding of the addressing",
+            BindingTime::Allocation,
+            Setter::Description,
             (1, WORD),
         )
     },
-    symbol("k", "fragments that a pixel keeps, up to `capacity`", When::Frame, SetBy::Host, (1, WORD)),
+    symbol("k", "fragments that a pixel keeps, at most `capacity`", BindingTime::Frame, Setter::Host, (1, WORD)),
     Symbol {
         default: Some("ceil_div(fragments, width * height)"),
-        ..symbol("n", "slots of every pixel of a fixed array", When::Readback, SetBy::Host, (0, WORD))
+        ..symbol("n", "slots per pixel of a fixed array", BindingTime::Readback, Setter::Host, (0, WORD))
     },
-    symbol("fragments", "fragments that a pool has memory for", When::Readback, SetBy::Host, (0, WORD)),
-    symbol("kept", "fragments that exact regions have memory for", When::Readback, SetBy::Host, (0, WORD)),
-    symbol("iteration", "the iteration of the innermost loop, from 0", When::Round, SetBy::Device, (0, WORD)),
-    symbol("capacity", "the greatest k that the code serves", When::Generation, SetBy::Description, (1, WORD)),
-    described(
-        "keep",
-        "the number on the `keep` line; for `keep all` more than any number that can be written there",
-        (1, WORD + 1),
+    symbol("fragments", "fragments that the pool has memory for", BindingTime::Readback, Setter::Host, (0, WORD)),
+    symbol("kept", "fragments that exact regions have memory for", BindingTime::Readback, Setter::Host, (0, WORD)),
+    symbol(
+        "iteration",
+        "the iteration of the innermost loop, from 0",
+        BindingTime::Iteration,
+        Setter::Device,
+        (0, WORD),
     ),
-    described("limited", "1 where the description keeps no more than k fragments; 0 for `keep all`", (0, 1)),
-    described("payload_words", "32-bit words of the payload, depth included, with those that rows add", (1, WORD)),
-    described("entry_words", "32-bit words of a stored fragment: the payload, and a criterion's word", (1, WORD)),
-    described("beside_words", "those words without the key", (0, WORD)),
-    described("depth_key", "1 where depth decides which fragment is worst; 0 with a criterion", (0, 1)),
-    described("color", "1 where the payload has a `color` of format rgba8, rgba16 or vec4; else 0", (0, 1)),
+    symbol(
+        "capacity",
+        "the greatest k that the generated code supports",
+        BindingTime::Generation,
+        Setter::Description,
+        (1, WORD),
+    ),
+    described("keep", "the number on the `keep` line; 2^32 for `keep all`", (1, WORD + 1)),
+    described("limited", "1 if the description limits the fragments kept; 0 for `keep all`", (0, 1)),
+    described("payload_words", "32-bit words of the payload, including depth and the words that rows add", (1, WORD)),
+    described("entry_words", "32-bit words of a stored fragment: the payload, and the word of a criterion", (1, WORD)),
+    described("value_words", "words of a stored fragment without the key", (0, WORD)),
+    described("depth_key", "1 if depth is the key; 0 with a criterion", (0, 1)),
+    described("color", "1 if the payload has a `color` of format rgba8, rgba16 or vec4; else 0", (0, 1)),
 ];
 
-const fn described(name: &'static str, meaning: &'static str, range: (u64, u64)) -> Symbol {
-    symbol(name, meaning, When::Description, SetBy::Description, range)
+/// Returns whether a name has a meaning in every formula, so that no constant of a row can have it.
+pub fn is_reserved_in_formulas(name: &str) -> bool {
+    is_function(name) || KEY_SYMBOLS.contains(&name) || SYMBOLS.iter().any(|symbol| symbol.name == name)
 }
 
-const fn symbol(name: &'static str, meaning: &'static str, when: When, set_by: SetBy, range: (u64, u64)) -> Symbol {
+const fn described(name: &'static str, meaning: &'static str, range: (u64, u64)) -> Symbol {
+    symbol(name, meaning, BindingTime::Description, Setter::Description, range)
+}
+
+const fn symbol(
+    name: &'static str,
+    meaning: &'static str,
+    when: BindingTime,
+    set_by: Setter,
+    range: (u64, u64),
+) -> Symbol {
     Symbol { name, meaning, when, set_by, default: None, range }
 }

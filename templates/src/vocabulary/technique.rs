@@ -1,9 +1,9 @@
-//! A named point on the axes: a technique of a paper, and a preset to start a description from.
+//! Techniques: named points on the axes, which descriptions can start from.
 
-/// One technique.
+/// A technique of a paper.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Technique {
-    /// The word of the language.
+    /// The keyword of the language.
     pub key: String,
     /// The paper's name for it.
     pub title: &'static str,
@@ -11,16 +11,16 @@ pub struct Technique {
     pub paper: &'static str,
     /// What it does, in one line.
     pub summary: &'static str,
-    /// How many fragments it keeps when nothing is said.
+    /// The default number of fragments kept.
     pub keep: KeepDefault,
-    /// Its choices, as (axis, value); the value may be `a else b`.
+    /// The choices as (axis, value); the value can be `a else b`.
     pub choices: Vec<(&'static str, &'static str)>,
 }
 
-/// How many fragments a technique keeps when the description does not say.
+/// The number of fragments that a technique keeps by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeepDefault {
-    /// Every one.
+    /// Every fragment.
     All,
     /// The k best.
     Best(u32),

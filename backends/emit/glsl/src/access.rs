@@ -1,18 +1,18 @@
-//! Reaching into values and memory: members, components, elements, loads.
+//! Prints accesses to members, components and elements, and loads.
 //!
-//! In: accesses and loads. Out: `a.b`, `v.x`, `a[i]`. Indices print as they are: WGSL lets an implementation do what it
-//! likes with an index out of range, and generated code has none.
+//! Input: accesses and loads. Output: `a.b`, `v.x`, `a[i]`. Indices print unchanged, without bounds checks: generated code
+//! has no index out of range, and WGSL leaves its effect to the implementation.
 
 use naga::{AddressSpace, Expression, GlobalVariable, Handle, TypeInner};
 
-use crate::expression::{Level, Text};
 use crate::function::FunctionPrinter;
 use crate::interface::Argument;
 use crate::names;
+use crate::precedence::{Precedence, Text};
 
 impl FunctionPrinter<'_, '_> {
-    /// What is indexed: the type of a value, or of what a pointer points to.
-    fn accessed(&self, base: Handle<Expression>) -> TypeInner {
+    /// Returns the indexed type: that of a value, or the pointee of a pointer.
+    fn accessed_type(&self, base: Handle<Expression>) -> TypeInner {
         let module = self.printer.module;
         match *self.order.inner(base) {
             TypeInner::Pointer { base, .. } => module.types[base].inner.clone(),
@@ -21,12 +21,14 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Prints `a[i]` with a computed index.
     pub fn access(&mut self, base: Handle<Expression>, index: Handle<Expression>) -> Text {
         let base = self.primary(base);
         let index = self.expression(index);
         Text::primary(format!("{base}[{index}]"))
     }
 
+    /// Prints an access with a constant index: `a.b`, `v.x` or `a[2]`.
     pub fn access_index(&mut self, expression: Handle<Expression>, base: Handle<Expression>, index: u32) -> Text {
         if let Expression::FunctionArgument(argument) = self.function.expressions[base]
             && let Some(Argument::Members(members)) =
@@ -38,11 +40,11 @@ impl FunctionPrinter<'_, '_> {
         if let Expression::AtomicResult { comparison: true, .. } = self.function.expressions[base] {
             return self.compare_exchange_member(base, index);
         }
-        let inner = self.accessed(base);
+        let inner = self.accessed_type(base);
         let base = self.primary(base);
         match inner {
             TypeInner::Struct { ref members, .. } => {
-                Text::primary(format!("{base}.{}", names::field(members, index as usize)))
+                Text::primary(format!("{base}.{}", names::field_name(members, index as usize)))
             }
             TypeInner::Vector { .. } => {
                 let letter = ['x', 'y', 'z', 'w'].get(index as usize).copied().unwrap_or('x');
@@ -53,7 +55,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// `old_value` or `exchanged` of a compare-exchange, which GLSL has only the old value of.
+    /// Prints `old_value` or `exchanged` of a compare-exchange; GLSL returns only the old value.
     fn compare_exchange_member(&mut self, result: Handle<Expression>, index: u32) -> Text {
         let old = self.text(result);
         if index == 0 {
@@ -62,15 +64,16 @@ impl FunctionPrinter<'_, '_> {
         let Some(compared) = self.order.compared.get(&result).copied() else {
             return Text::primary(self.error("a compare-exchange result without its exchange", result));
         };
-        let compared = self.text(compared).above(Level::Equality);
-        Text::new(format!("{} == {compared}", old.above(Level::Equality)), Level::Equality)
+        let compared = self.text(compared).above(Precedence::Equality);
+        Text::new(format!("{} == {compared}", old.above(Precedence::Equality)), Precedence::Equality)
     }
 
+    /// Prints an argument.
     pub fn argument(&mut self, expression: Handle<Expression>, index: u32) -> Text {
         if let Some(interface) = &self.interface {
             return match interface.arguments.get(index as usize) {
                 Some(Argument::Value(text)) => text.clone(),
-                _ => Text::primary(self.error("an entry point's argument in this place", expression)),
+                _ => Text::primary(self.error("an entry point's argument in this position", expression)),
             };
         }
         match self.arguments.get(index as usize) {
@@ -79,11 +82,13 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Prints a global variable.
     pub fn global(&mut self, global: Handle<GlobalVariable>) -> Text {
-        self.printer.needs.globals.insert(global);
+        self.printer.requirements.globals.insert(global);
         Text::primary(self.printer.names.globals.get(&global).cloned().unwrap_or_default())
     }
 
+    /// Prints a load.
     pub fn load(&mut self, expression: Handle<Expression>, pointer: Handle<Expression>) -> Text {
         self.check_scalar(expression);
         if crate::footprint::is_atomic(self.printer.module, self.function, pointer) {

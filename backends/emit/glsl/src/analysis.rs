@@ -1,7 +1,7 @@
-//! The order of a function: its tree of statements in, a flat list of steps out.
+//! Flattens the statements of a function into an ordered list of steps.
 //!
-//! A step is one evaluation of an expression, or one statement. Steps are numbered in the order of the text, inner blocks
-//! included, so that "between" is a range of numbers. No decision is made here; `schedule` makes them.
+//! A step is one evaluation of an expression, or one statement. Steps are numbered in source order, inner blocks included,
+//! so that "between" is a range of numbers. `schedule` makes the decisions.
 
 use std::collections::BTreeMap;
 
@@ -10,53 +10,57 @@ use naga::{
     Statement, TypeInner,
 };
 
-use crate::footprint::{self, Calls, Footprint};
+use crate::footprint::{self, CallFootprints, Footprint};
 use crate::types::numeric;
 
-pub struct Step<'m> {
+/// One evaluation of an expression, or one statement.
+pub struct OrderedStep<'m> {
     pub block: usize,
-    /// Nothing for the evaluation of an expression and for a loop's `break if`.
+    /// None for the evaluation of an expression and for a loop's `break if`.
     pub statement: Option<&'m Statement>,
     pub footprint: Footprint,
 }
 
+/// A block: its parent and the step that contains it.
 pub struct BlockOrder {
     pub parent: Option<usize>,
-    /// The step of the statement the block belongs to.
+    /// The step of the statement that contains the block.
     pub owner: usize,
     pub is_loop: bool,
 }
 
-/// Where an operand is used, how often it is written there, and whether it may be skipped there (as in `c ? a : b`).
+/// A use of an operand. `times` is how often the user prints it; a `lazy` use may be skipped, as in `c ? a : b`.
 #[derive(Clone, Copy)]
 pub enum Use {
     Expression { user: Handle<Expression>, times: usize, lazy: bool },
     Step { step: usize, times: usize },
 }
 
+/// The steps of a function in source order, and the uses of its expressions.
 pub struct Order<'m> {
     pub module: &'m Module,
     pub function: &'m Function,
     pub info: &'m naga::valid::FunctionInfo,
     pub source: &'m str,
-    pub steps: Vec<Step<'m>>,
+    pub steps: Vec<OrderedStep<'m>>,
     pub blocks: Vec<BlockOrder>,
-    /// The step at which an expression is evaluated; none for those that never change.
+    /// The step that evaluates an expression; none for constants, arguments and variables.
     pub evaluated: BTreeMap<Handle<Expression>, usize>,
     pub uses: BTreeMap<Handle<Expression>, Vec<Use>>,
-    /// Only ever looked up, so that addresses leave no trace in the text.
+    /// Used for look-up only, so that addresses do not affect the output.
     statements: BTreeMap<*const Statement, usize>,
-    /// The value that each compare-exchange compares with, by its result.
+    /// The comparison value of each compare-exchange, by its result.
     pub compared: BTreeMap<Handle<Expression>, Handle<Expression>>,
 }
 
 impl<'m> Order<'m> {
+    /// Analyses a function.
     pub fn new(
         module: &'m Module,
         function: &'m Function,
         info: &'m naga::valid::FunctionInfo,
         source: &'m str,
-        calls: &Calls,
+        calls: &CallFootprints,
     ) -> Self {
         let mut order = Self {
             module,
@@ -79,34 +83,38 @@ impl<'m> Order<'m> {
         order
     }
 
+    /// Returns the step of a statement; for an `Emit`, that of its first expression.
     pub fn step_of(&self, statement: &Statement) -> usize {
         self.statements.get(&std::ptr::from_ref(statement)).copied().unwrap_or_default()
     }
 
+    /// Returns the type of an expression.
     pub fn inner(&self, expression: Handle<Expression>) -> &TypeInner {
         self.info[expression].ty.inner_with(&self.module.types)
     }
 
+    /// Tests whether an expression is a pointer.
     pub fn is_pointer(&self, expression: Handle<Expression>) -> bool {
         self.inner(expression).pointer_space().is_some()
     }
 
-    fn walk(&mut self, block: &'m Block, id: usize, calls: &Calls) {
+    /// Adds the steps of a block and of its inner blocks.
+    fn walk(&mut self, block: &'m Block, id: usize, calls: &CallFootprints) {
         for statement in block {
             if let Statement::Emit(range) = statement {
                 self.statements.insert(std::ptr::from_ref(statement), self.steps.len());
                 for expression in range.clone() {
                     self.evaluated.insert(expression, self.steps.len());
                     let footprint = footprint::of_expression(self.module, self.function, expression);
-                    self.steps.push(Step { block: id, statement: None, footprint });
+                    self.steps.push(OrderedStep { block: id, statement: None, footprint });
                 }
                 continue;
             }
             let step = self.steps.len();
             self.statements.insert(std::ptr::from_ref(statement), step);
             let footprint = footprint::of_statement(self.module, self.function, statement, calls);
-            self.steps.push(Step { block: id, statement: Some(statement), footprint });
-            self.note_uses(statement, step);
+            self.steps.push(OrderedStep { block: id, statement: Some(statement), footprint });
+            self.record_uses(statement, step);
             for inner in footprint::inner_blocks(statement) {
                 let inner_id = self.blocks.len();
                 self.blocks.push(BlockOrder {
@@ -120,13 +128,14 @@ impl<'m> Order<'m> {
                 {
                     // The condition is evaluated at the end of the continuing block.
                     self.uses.entry(*condition).or_default().push(Use::Step { step: self.steps.len(), times: 1 });
-                    self.steps.push(Step { block: inner_id, statement: None, footprint: Footprint::default() });
+                    self.steps.push(OrderedStep { block: inner_id, statement: None, footprint: Footprint::default() });
                 }
             }
         }
     }
 
-    fn note_uses(&mut self, statement: &Statement, step: usize) {
+    /// Records the operands and results of a statement.
+    fn record_uses(&mut self, statement: &Statement, step: usize) {
         let mut results = Vec::new();
         let mut use_once = |operand: Handle<Expression>| {
             self.uses.entry(operand).or_default().push(Use::Step { step, times: 1 });
@@ -175,7 +184,7 @@ impl<'m> Order<'m> {
         matches!(self.inner(expression), TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Bool)
     }
 
-    /// The operands of an expression as they are printed: which, how often, and whether evaluation may skip them.
+    /// Returns the operands of an expression as printed: which, how often, and whether evaluation may skip them.
     pub fn operands(&self, expression: Handle<Expression>) -> Vec<(Handle<Expression>, usize, bool)> {
         let once = |operand: Handle<Expression>| (operand, 1, false);
         match self.function.expressions[expression] {
@@ -224,7 +233,7 @@ impl<'m> Order<'m> {
                 vec![once(condition), (accept, 1, lazy), (reject, 1, lazy)]
             }
             Expression::Math { fun, arg, arg1, arg2, arg3 } => {
-                // A dot product of integers is written out, component by component.
+                // A dot product of integers prints component by component.
                 let integers = numeric(self.inner(arg)).is_some_and(|(_, scalar)| scalar.kind != ScalarKind::Float);
                 let times = if fun == MathFunction::Dot && integers { 2 } else { 1 };
                 [Some(arg), arg1, arg2, arg3].into_iter().flatten().map(|operand| (operand, times, false)).collect()

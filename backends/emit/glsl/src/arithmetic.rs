@@ -1,39 +1,40 @@
-//! Operators: WGSL operators in, GLSL operators or calls of the same meaning out.
+//! Prints WGSL operators as GLSL operators or calls with the same meaning.
 //!
-//! Where GLSL leaves undefined what WGSL defines (division by zero, remainders of negatives, wide shifts) and the operands
-//! are not known to be harmless, the text says what WGSL means, if need be through a function of `helpers`.
+//! WGSL defines division by zero, remainders of negative operands and shifts by too many bits; GLSL leaves them undefined.
+//! Unless the operands are known to be safe, the text has the WGSL meaning, if necessary through a function of `helpers`.
 
 use naga::{BinaryOperator, Expression, Handle, Literal, ScalarKind, TypeInner, UnaryOperator};
 
-use crate::expression::{Level, Text};
 use crate::function::FunctionPrinter;
 use crate::helpers::Helper;
+use crate::precedence::{Precedence, Text};
 use crate::types::numeric_name;
 
-fn symbol(op: BinaryOperator) -> (&'static str, Level) {
+/// Returns the symbol and the precedence of an operator.
+fn symbol(op: BinaryOperator) -> (&'static str, Precedence) {
     match op {
-        BinaryOperator::Add => ("+", Level::Sum),
-        BinaryOperator::Subtract => ("-", Level::Sum),
-        BinaryOperator::Multiply => ("*", Level::Product),
-        BinaryOperator::Divide => ("/", Level::Product),
-        BinaryOperator::Modulo => ("%", Level::Product),
-        BinaryOperator::Equal => ("==", Level::Equality),
-        BinaryOperator::NotEqual => ("!=", Level::Equality),
-        BinaryOperator::Less => ("<", Level::Relation),
-        BinaryOperator::LessEqual => ("<=", Level::Relation),
-        BinaryOperator::Greater => (">", Level::Relation),
-        BinaryOperator::GreaterEqual => (">=", Level::Relation),
-        BinaryOperator::And => ("&", Level::BitAnd),
-        BinaryOperator::ExclusiveOr => ("^", Level::BitXor),
-        BinaryOperator::InclusiveOr => ("|", Level::BitOr),
-        BinaryOperator::LogicalAnd => ("&&", Level::LogicalAnd),
-        BinaryOperator::LogicalOr => ("||", Level::LogicalOr),
-        BinaryOperator::ShiftLeft => ("<<", Level::Shift),
-        BinaryOperator::ShiftRight => (">>", Level::Shift),
+        BinaryOperator::Add => ("+", Precedence::Sum),
+        BinaryOperator::Subtract => ("-", Precedence::Sum),
+        BinaryOperator::Multiply => ("*", Precedence::Product),
+        BinaryOperator::Divide => ("/", Precedence::Product),
+        BinaryOperator::Modulo => ("%", Precedence::Product),
+        BinaryOperator::Equal => ("==", Precedence::Equality),
+        BinaryOperator::NotEqual => ("!=", Precedence::Equality),
+        BinaryOperator::Less => ("<", Precedence::Relation),
+        BinaryOperator::LessEqual => ("<=", Precedence::Relation),
+        BinaryOperator::Greater => (">", Precedence::Relation),
+        BinaryOperator::GreaterEqual => (">=", Precedence::Relation),
+        BinaryOperator::And => ("&", Precedence::BitAnd),
+        BinaryOperator::ExclusiveOr => ("^", Precedence::BitXor),
+        BinaryOperator::InclusiveOr => ("|", Precedence::BitOr),
+        BinaryOperator::LogicalAnd => ("&&", Precedence::LogicalAnd),
+        BinaryOperator::LogicalOr => ("||", Precedence::LogicalOr),
+        BinaryOperator::ShiftLeft => ("<<", Precedence::Shift),
+        BinaryOperator::ShiftRight => (">>", Precedence::Shift),
     }
 }
 
-/// GLSL's comparison of vectors, component by component.
+/// Returns GLSL's function that compares vectors by component.
 fn vector_comparison(op: BinaryOperator) -> Option<&'static str> {
     Some(match op {
         BinaryOperator::Equal => "equal",
@@ -46,31 +47,36 @@ fn vector_comparison(op: BinaryOperator) -> Option<&'static str> {
     })
 }
 
-/// Whether the parentheses, though not needed, spare the reader a look at the table of precedences.
-fn reads_better(parent: Level, child: Level) -> bool {
-    let bitwise = matches!(parent, Level::Shift | Level::BitAnd | Level::BitXor | Level::BitOr);
-    let operator = (Level::BitOr..=Level::Product).contains(&child);
-    (bitwise && operator && child != parent) || (parent == Level::LogicalOr && child == Level::LogicalAnd)
+/// Tests whether unnecessary parentheses help readers who do not remember the precedences.
+fn reads_better(parent: Precedence, child: Precedence) -> bool {
+    let bitwise = matches!(parent, Precedence::Shift | Precedence::BitAnd | Precedence::BitXor | Precedence::BitOr);
+    let operator = (Precedence::BitOr..=Precedence::Product).contains(&child);
+    (bitwise && operator && child != parent) || (parent == Precedence::LogicalOr && child == Precedence::LogicalAnd)
 }
 
-fn join(symbol: &str, level: Level, left: Text, right: Text) -> Text {
-    let left = if reads_better(level, left.level) { format!("({})", left.text) } else { left.at_least(level) };
-    let right = if reads_better(level, right.level) { format!("({})", right.text) } else { right.above(level) };
-    Text::new(format!("{left} {symbol} {right}"), level)
+/// Prints an operator between two operands, with parentheses where needed.
+fn join(symbol: &str, precedence: Precedence, left: Text, right: Text) -> Text {
+    let left =
+        if reads_better(precedence, left.precedence) { format!("({})", left.text) } else { left.at_least(precedence) };
+    let right =
+        if reads_better(precedence, right.precedence) { format!("({})", right.text) } else { right.above(precedence) };
+    Text::new(format!("{left} {symbol} {right}"), precedence)
 }
 
 impl FunctionPrinter<'_, '_> {
+    /// Prints `&&` or `||`.
     pub fn logical(&mut self, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Text {
-        let (symbol, level) = symbol(op);
+        let (symbol, precedence) = symbol(op);
         let left = self.text(left);
         let mut right = self.text(right);
         // `a && (b && c)` is `a && b && c`.
-        if right.level == level {
-            right.level = Level::Equality;
+        if right.precedence == precedence {
+            right.precedence = Precedence::Equality;
         }
-        join(symbol, level, left, right)
+        join(symbol, precedence, left, right)
     }
 
+    /// Prints a binary operator.
     pub fn binary(
         &mut self,
         expression: Handle<Expression>,
@@ -79,16 +85,16 @@ impl FunctionPrinter<'_, '_> {
         right: Handle<Expression>,
     ) -> Text {
         self.check_scalar(left);
-        if let Some(text) = self.special(expression, op, left, right) {
+        if let Some(text) = self.special_operator(expression, op, left, right) {
             return text;
         }
-        let (symbol, level) = symbol(op);
+        let (symbol, precedence) = symbol(op);
         let (left, right) = (self.text(left), self.text(right));
-        join(symbol, level, left, right)
+        join(symbol, precedence, left, right)
     }
 
-    /// The operators that GLSL has otherwise, or not with this meaning.
-    fn special(
+    /// Prints an operator that GLSL lacks or defines differently; returns none for others.
+    fn special_operator(
         &mut self,
         expression: Handle<Expression>,
         op: BinaryOperator,
@@ -104,24 +110,27 @@ impl FunctionPrinter<'_, '_> {
                 Some(self.boolean(op, lanes, left, right))
             }
             (BinaryOperator::Divide | BinaryOperator::Modulo, _) if scalar.width > 4 => (!self.is_safe_divisor(right))
-                .then(|| Text::primary(self.error("a division of u64 values by what may be zero", expression))),
+                .then(|| {
+                    Text::primary(self.error("a division of u64 values by a divisor that may be zero", expression))
+                }),
             (BinaryOperator::Divide, ScalarKind::Uint) if !self.is_safe_divisor(right) => {
-                Some(self.help(Helper::DivideUint(lanes), &[left, right]))
+                Some(self.call_helper(Helper::DivideUint(lanes), &[left, right]))
             }
             (BinaryOperator::Divide, ScalarKind::Sint) if !self.is_safe_divisor(right) => {
-                Some(self.help(Helper::DivideInt(lanes), &[left, right]))
+                Some(self.call_helper(Helper::DivideInt(lanes), &[left, right]))
             }
             (BinaryOperator::Modulo, ScalarKind::Uint) if !self.is_safe_divisor(right) => {
-                Some(self.help(Helper::RemainderUint(lanes), &[left, right]))
+                Some(self.call_helper(Helper::RemainderUint(lanes), &[left, right]))
             }
-            (BinaryOperator::Modulo, ScalarKind::Sint) => Some(self.help(Helper::RemainderInt(lanes), &[left, right])),
+            (BinaryOperator::Modulo, ScalarKind::Sint) => {
+                Some(self.call_helper(Helper::RemainderInt(lanes), &[left, right]))
+            }
             (BinaryOperator::Modulo, ScalarKind::Float) => {
-                Some(self.help(Helper::RemainderFloat(lanes), &[left, right]))
+                Some(self.call_helper(Helper::RemainderFloat(lanes), &[left, right]))
             }
             (BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight, _) => Some(self.shift(op, left, right)),
             _ if lanes > 1 => {
                 let name = vector_comparison(op)?;
-                let _ = expression;
                 let (left, right) = (self.expression(left), self.expression(right));
                 Some(Text::primary(format!("{name}({left}, {right})")))
             }
@@ -129,7 +138,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// `a & b` of truth values; GLSL has it for scalars only, as `&&`.
+    /// Prints `a & b` of booleans. GLSL has it for scalars only, as `&&`.
     fn boolean(&mut self, op: BinaryOperator, lanes: u8, left: Handle<Expression>, right: Handle<Expression>) -> Text {
         let and = op == BinaryOperator::And;
         if lanes == 1 {
@@ -140,15 +149,16 @@ impl FunctionPrinter<'_, '_> {
         Text::primary(format!("bvec{lanes}(uvec{lanes}({left}) {symbol} uvec{lanes}({right}))"))
     }
 
-    /// Calls a helper with the operands.
-    pub fn help(&mut self, helper: Helper, operands: &[Handle<Expression>]) -> Text {
+    /// Prints a call of a helper.
+    pub fn call_helper(&mut self, helper: Helper, operands: &[Handle<Expression>]) -> Text {
         let name = self.printer.helper(helper);
         let operands: Vec<String> = operands.iter().map(|operand| self.expression(*operand)).collect();
         Text::primary(format!("{name}({})", operands.join(", ")))
     }
 
+    /// Tests whether a divisor is a literal other than 0 and -1.
     fn is_safe_divisor(&self, divisor: Handle<Expression>) -> bool {
-        match self.known(divisor) {
+        match self.known_literal(divisor) {
             Some(Literal::U32(value)) => value != 0,
             Some(Literal::U64(value)) => value != 0,
             Some(Literal::I32(value)) => value != 0 && value != -1,
@@ -156,47 +166,54 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// WGSL shifts by the amount modulo the bits of what is shifted; GLSL by less than those only.
+    /// Prints a shift. WGSL takes the amount modulo the bit width; in GLSL it must be less than the bit width.
     fn shift(&mut self, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Text {
-        let (symbol, level) = symbol(op);
+        let (symbol, precedence) = symbol(op);
         let bits = self.shape(left).map_or(32, |(_, scalar)| 8 * u32::from(scalar.width));
-        let known = matches!(self.known(right), Some(Literal::U32(amount)) if amount < bits);
-        let harmless = known || self.is_masked(right, bits);
+        let known = matches!(self.known_literal(right), Some(Literal::U32(amount)) if amount < bits);
+        let safe = known || self.is_masked(right, bits);
         let left = self.text(left);
         let right_text = self.text(right);
-        if harmless {
-            return join(symbol, level, left, right_text);
+        if safe {
+            return join(symbol, precedence, left, right_text);
         }
         let mask = if self.shape(right).is_some_and(|(lanes, _)| lanes > 1) {
             format!("{}({}u)", self.type_name(right), bits - 1)
         } else {
             format!("{}u", bits - 1)
         };
-        let masked = join("&", Level::BitAnd, right_text, Text::primary(mask));
-        join(symbol, level, left, masked)
+        let masked = join("&", Precedence::BitAnd, right_text, Text::primary(mask));
+        join(symbol, precedence, left, masked)
     }
 
-    /// Already `x & 31u` or less, for 32 bits.
+    /// Tests whether an amount is masked to the bit width, as `x & 31u` for 32 bits.
     fn is_masked(&self, amount: Handle<Expression>, bits: u32) -> bool {
         let Expression::Binary { op: BinaryOperator::And, left, right } = self.function.expressions[amount] else {
             return false;
         };
-        [left, right].into_iter().any(|side| matches!(self.known(side), Some(Literal::U32(mask)) if mask < bits))
+        [left, right]
+            .into_iter()
+            .any(|side| matches!(self.known_literal(side), Some(Literal::U32(mask)) if mask < bits))
     }
 
+    /// Prints a unary operator.
     pub fn unary(&mut self, op: UnaryOperator, operand: Handle<Expression>) -> Text {
         self.check_scalar(operand);
         let vector = matches!(self.order.inner(operand), TypeInner::Vector { .. });
         let text = self.text(operand);
         match op {
             UnaryOperator::LogicalNot if vector => Text::primary(format!("not({})", text.text)),
-            UnaryOperator::LogicalNot => Text::new(format!("!{}", text.at_least(Level::Primary)), Level::Unary),
-            UnaryOperator::BitwiseNot => Text::new(format!("~{}", text.at_least(Level::Primary)), Level::Unary),
-            UnaryOperator::Negate => Text::new(format!("-{}", text.at_least(Level::Primary)), Level::Unary),
+            UnaryOperator::LogicalNot => {
+                Text::new(format!("!{}", text.at_least(Precedence::Primary)), Precedence::Unary)
+            }
+            UnaryOperator::BitwiseNot => {
+                Text::new(format!("~{}", text.at_least(Precedence::Primary)), Precedence::Unary)
+            }
+            UnaryOperator::Negate => Text::new(format!("-{}", text.at_least(Precedence::Primary)), Precedence::Unary),
         }
     }
 
-    /// `!condition`; comparisons of integers turn around instead.
+    /// Prints `!condition`; a comparison of integers prints as the opposite comparison.
     pub fn negated(&mut self, condition: Handle<Expression>) -> String {
         if let (Expression::Binary { op, left, right }, false) =
             (&self.function.expressions[condition], self.values.contains_key(&condition))
@@ -206,17 +223,17 @@ impl FunctionPrinter<'_, '_> {
                 lanes == 1 && matches!(scalar.kind, ScalarKind::Uint | ScalarKind::Sint)
             });
             if let (true, Some(opposite)) = (integers, opposite(op)) {
-                let (symbol, level) = symbol(opposite);
+                let (symbol, precedence) = symbol(opposite);
                 let (left, right) = (self.text(left), self.text(right));
-                return join(symbol, level, left, right).text;
+                return join(symbol, precedence, left, right).text;
             }
         }
         let text = self.text(condition);
-        format!("!{}", text.at_least(Level::Primary))
+        format!("!{}", text.at_least(Precedence::Primary))
     }
 
-    /// The type with the lanes of an expression and another scalar.
-    pub fn like(&self, expression: Handle<Expression>, scalar: naga::Scalar) -> String {
+    /// Returns the type with the lanes of an expression and another scalar.
+    pub fn type_with_scalar(&self, expression: Handle<Expression>, scalar: naga::Scalar) -> String {
         let size = match *self.order.inner(expression) {
             TypeInner::Vector { size, .. } => Some(size),
             _ => None,
@@ -225,6 +242,7 @@ impl FunctionPrinter<'_, '_> {
     }
 }
 
+/// Returns the comparison with the opposite result.
 fn opposite(op: BinaryOperator) -> Option<BinaryOperator> {
     Some(match op {
         BinaryOperator::Equal => BinaryOperator::NotEqual,

@@ -1,6 +1,7 @@
-//! What might be printed as the source had it: short circuits, and stores of the form `x op= y`.
+//! Finds candidates for `a && b`, `a || b` and `x op= y`: code that naga lowered to an `if` or to a load and a store.
 //!
-//! In: the order of a function. Out: candidates by their shape alone; `schedule` drops those that would change the meaning.
+//! Input: the order of a function. Output: candidates, found by their form alone. `schedule` drops those that would change
+//! the meaning.
 
 use std::collections::BTreeMap;
 
@@ -9,28 +10,29 @@ use naga::{BinaryOperator, Block, Expression, Handle, Literal, LocalVariable, St
 use crate::analysis::Order;
 use crate::footprint;
 
-/// `left && right` or `left || right`, which naga has lowered to an `if` that stores to a nameless variable.
+/// `left && right` or `left || right`, which naga lowers to an `if` that stores to an unnamed variable.
 #[derive(Clone, Copy)]
-pub struct Circuit {
+pub struct ShortCircuit {
     pub operator: BinaryOperator,
     pub left: Handle<Expression>,
     pub right: Handle<Expression>,
     pub variable: Handle<LocalVariable>,
-    /// The expression that loads the variable, which stands for the whole.
+    /// The expression that loads the variable, and so has the value of the short circuit.
     pub value: Handle<Expression>,
-    /// Its steps: the `if` and everything inside.
+    /// Its first step, the `if`.
     pub first: usize,
+    /// The first step after it.
     pub end: usize,
 }
 
-/// By the expression that stands for the value.
-pub type Circuits = BTreeMap<Handle<Expression>, Circuit>;
-/// The value and the load within it of each store of the form `x = x op y`.
-pub type Compound = BTreeMap<usize, (Handle<Expression>, Handle<Expression>)>;
+/// Short circuits, by the expression that loads their value.
+pub type ShortCircuits = BTreeMap<Handle<Expression>, ShortCircuit>;
+/// Stores of the form `x = x op y`, by step: the value, and the load within it.
+pub type CompoundAssignments = BTreeMap<usize, (Handle<Expression>, Handle<Expression>)>;
 
-/// What naga lowered from `&&` and `||`, as far as its shape tells.
-pub fn find_circuits(order: &Order) -> Circuits {
-    let mut found = Circuits::new();
+/// Returns the statements that have the form of a lowered `&&` or `||`.
+pub fn find_short_circuits(order: &Order) -> ShortCircuits {
+    let mut found = ShortCircuits::new();
     for (step, entry) in order.steps.iter().enumerate() {
         let Some(Statement::If { condition, accept, reject }) = entry.statement else { continue };
         let Some((variable, right)) = last_store(order, accept) else { continue };
@@ -49,12 +51,12 @@ pub fn find_circuits(order: &Order) -> Circuits {
         };
         let Some(value) = only_load(order, variable, entry.block) else { continue };
         let end = step + 1 + count_steps(order, step);
-        found.insert(value, Circuit { operator, left, right, variable, value, first: step, end });
+        found.insert(value, ShortCircuit { operator, left, right, variable, value, first: step, end });
     }
     found
 }
 
-/// Steps inside the statement at `step`.
+/// Counts the steps inside the statement at `step`.
 fn count_steps(order: &Order, step: usize) -> usize {
     let inside = |mut block: usize| loop {
         if block != 0 && order.blocks[block].owner == step {
@@ -68,6 +70,7 @@ fn count_steps(order: &Order, step: usize) -> usize {
     order.steps[step + 1..].iter().take_while(|entry| inside(entry.block)).count()
 }
 
+/// Returns the variable and the value of a store at the end of a block.
 fn last_store(order: &Order, block: &Block) -> Option<(Handle<LocalVariable>, Handle<Expression>)> {
     let Some(Statement::Store { pointer, value }) = block.last() else { return None };
     match order.function.expressions[*pointer] {
@@ -76,7 +79,7 @@ fn last_store(order: &Order, block: &Block) -> Option<(Handle<LocalVariable>, Ha
     }
 }
 
-/// The single load of a variable, if it is in the given block.
+/// Returns the load of a variable, if it is the only one and in the given block.
 fn only_load(order: &Order, variable: Handle<LocalVariable>, block: usize) -> Option<Handle<Expression>> {
     let mut loads = order.function.expressions.iter().filter(|(_, expression)| {
         matches!(expression, Expression::Load { pointer } if order.function.expressions[*pointer] == Expression::LocalVariable(variable))
@@ -86,24 +89,24 @@ fn only_load(order: &Order, variable: Handle<LocalVariable>, block: usize) -> Op
     (loads.next().is_none() && order.steps[step].block == block).then_some(load)
 }
 
-/// Stores that the source may have written as `x op= y`.
-pub fn find_compound(order: &Order) -> Compound {
-    let mut found = Compound::new();
+/// Returns the stores that the source may contain as `x op= y`.
+pub fn find_compound_assignments(order: &Order) -> CompoundAssignments {
+    let mut found = CompoundAssignments::new();
     for (step, entry) in order.steps.iter().enumerate() {
         let Some(statement @ Statement::Store { pointer, value }) = entry.statement else { continue };
         let Expression::Binary { op, left, .. } = order.function.expressions[*value] else { continue };
         let Expression::Load { pointer: loaded } = order.function.expressions[left] else { continue };
         let single = |expression| order.uses.get(&expression).is_some_and(|uses| uses.len() == 1);
         let nameless = |expression| !order.function.named_expressions.contains_key(&expression);
-        let unlike = footprint::is_atomic(order.module, order.function, *pointer);
+        let atomic = footprint::is_atomic(order.module, order.function, *pointer);
         if loaded == *pointer
             && can_assign(op)
             && single(*value)
             && single(left)
             && nameless(*value)
             && nameless(left)
-            && !unlike
-            && is_written_so(order, statement)
+            && !atomic
+            && is_compound_in_source(order, statement)
         {
             found.insert(step, (*value, left));
         }
@@ -111,8 +114,8 @@ pub fn find_compound(order: &Order) -> Compound {
     found
 }
 
-/// Whether the source has `x op= y` or `x++` here; without a source, it might have.
-fn is_written_so(order: &Order, statement: &Statement) -> bool {
+/// Tests whether the source of a store is `x op= y` or `x++`; without a source, this is assumed.
+fn is_compound_in_source(order: &Order, statement: &Statement) -> bool {
     let Statement::Store { value, .. } = statement else { return false };
     let range = order.function.expressions.get_span(*value).to_range();
     let written = range.and_then(|range| order.source.get(range)).unwrap_or_default();
@@ -120,7 +123,7 @@ fn is_written_so(order: &Order, statement: &Statement) -> bool {
         || ["+=", "-=", "*=", "&=", "|=", "^=", "++", "--"].iter().any(|operator| written.contains(operator))
 }
 
-/// Division, remainder and shifts are left out: they need more than GLSL's operator.
+/// Tests whether GLSL's operator has WGSL's meaning. Division, remainder and shifts may print as more than an operator.
 fn can_assign(op: BinaryOperator) -> bool {
     use BinaryOperator::{Add, And, ExclusiveOr, InclusiveOr, Multiply, Subtract};
     matches!(op, Add | Subtract | Multiply | And | ExclusiveOr | InclusiveOr)

@@ -1,19 +1,20 @@
-//! Comments of the WGSL text: which stand above a statement, which follow it on its line.
+//! Finds the comments of the WGSL source, above a statement or after it on its line.
 //!
-//! In: the source and byte positions of statements. Out: each `//` comment at most once, with its statement. Doc comments
-//! are not looked for here, since the module carries them.
+//! Input: the source and byte positions of statements. Output: each `//` comment at most once, with its statement. Doc
+//! comments are skipped, because the module contains them.
 
+/// A `//` comment.
 struct Comment<'a> {
     start: usize,
     text: &'a str,
-    /// The brace pair the comment stands in, by the position of the opening brace.
+    /// The innermost brace pair around the comment, by the position of the opening brace.
     block: usize,
-    /// Has code before it on its line.
+    /// True if code precedes the comment on its line.
     trailing: bool,
     used: bool,
 }
 
-/// All line comments of a source text, and its brace structure.
+/// All line comments of a source, and its brace structure.
 pub struct Comments<'a> {
     source: &'a str,
     comments: Vec<Comment<'a>>,
@@ -22,6 +23,7 @@ pub struct Comments<'a> {
 }
 
 impl<'a> Comments<'a> {
+    /// Scans a source.
     pub fn new(source: &'a str) -> Self {
         let mut found = Self { source, comments: Vec::new(), braces: Vec::new() };
         let mut open = Vec::new();
@@ -31,7 +33,7 @@ impl<'a> Comments<'a> {
             match byte {
                 b'/' if source[at..].starts_with("//") => {
                     let end = source[at..].find('\n').map_or(source.len(), |length| at + length);
-                    found.note(at, end, open.last().copied().unwrap_or_default());
+                    found.record(at, end, open.last().copied().unwrap_or_default());
                     at = end;
                     continue;
                 }
@@ -49,7 +51,8 @@ impl<'a> Comments<'a> {
         found
     }
 
-    fn note(&mut self, start: usize, end: usize, block: usize) {
+    /// Records a comment, unless it is a doc comment.
+    fn record(&mut self, start: usize, end: usize, block: usize) {
         let text = &self.source[start..end];
         if text.starts_with("///") || text.starts_with("//!") {
             return;
@@ -59,13 +62,13 @@ impl<'a> Comments<'a> {
         self.comments.push(Comment { start, text: text.trim_end(), block, trailing, used: false });
     }
 
-    /// The innermost pair of braces around a position.
+    /// Returns the innermost pair of braces around a position, by its opening brace; 0 outside all braces.
     fn block_at(&self, position: usize) -> usize {
         let around = self.braces.iter().filter(|(open, close)| *open < position && position < *close);
         around.map(|(open, _)| *open).max().unwrap_or_default()
     }
 
-    /// Comments that stand in the same block before the position and have not been taken yet.
+    /// Takes the unused comments before a position in the same block.
     pub fn before(&mut self, position: usize) -> Vec<&'a str> {
         let block = self.block_at(position);
         if block == 0 {
@@ -74,12 +77,12 @@ impl<'a> Comments<'a> {
         self.take(|comment| comment.block == block && comment.start < position)
     }
 
-    /// Comments between the parts of a statement.
+    /// Takes the unused comments inside a statement.
     pub fn within(&mut self, start: usize, end: usize) -> Vec<&'a str> {
         self.take(|comment| (start..end).contains(&comment.start))
     }
 
-    /// Comments left over at the end of the block that the position is in.
+    /// Takes all unused comments of the block around a position.
     pub fn rest(&mut self, position: usize) -> Vec<&'a str> {
         let block = self.block_at(position);
         if block == 0 {
@@ -88,13 +91,14 @@ impl<'a> Comments<'a> {
         self.take(|comment| comment.block == block)
     }
 
-    /// The comment on the line where a statement ends, behind it.
-    pub fn behind(&mut self, end: usize) -> Option<&'a str> {
+    /// Takes the comment after the end of a statement, on the same line.
+    pub fn after(&mut self, end: usize) -> Option<&'a str> {
         let line_end = self.source.get(end..)?.find('\n').map_or(self.source.len(), |length| end + length);
-        let mut behind = self.take(|comment| comment.trailing && (end..line_end).contains(&comment.start));
-        behind.pop()
+        let mut comments = self.take(|comment| comment.trailing && (end..line_end).contains(&comment.start));
+        comments.pop()
     }
 
+    /// Takes the unused comments that match.
     fn take(&mut self, wanted: impl Fn(&Comment<'a>) -> bool) -> Vec<&'a str> {
         let mut texts = Vec::new();
         for comment in self.comments.iter_mut().filter(|comment| !comment.used) {
@@ -106,7 +110,7 @@ impl<'a> Comments<'a> {
         texts
     }
 
-    /// The `//` lines directly above a position, as above a function; doc comments end them.
+    /// Returns the `//` lines directly above a position, such as a function; a doc comment ends them.
     pub fn above(&self, position: usize) -> Vec<&'a str> {
         let Some(before) = self.source.get(..position) else { return Vec::new() };
         let line = before.rfind('\n').map_or(0, |at| at + 1);
@@ -117,22 +121,23 @@ impl<'a> Comments<'a> {
         found
     }
 
-    /// Whether the source leaves a line free above the position, or above the comments that stand directly above it.
+    /// Tests whether the source has a blank line above a position or above the comments directly above it.
     pub fn paragraph_before(&self, position: usize) -> bool {
         let Some(before) = self.source.get(..position) else { return false };
         let line = before.rfind('\n').map_or(0, |at| at + 1);
-        let mut free = false;
+        let mut blank = false;
         for text in before[..line].lines().rev().map(str::trim) {
             if text.is_empty() {
-                free = true;
-            } else if free || !text.starts_with("//") {
-                return free && !text.ends_with('{');
+                blank = true;
+            } else if blank || !text.starts_with("//") {
+                return blank && !text.ends_with('{');
             }
         }
         false
     }
 }
 
+/// Returns the end of a block comment; block comments nest in WGSL.
 fn skip_block(source: &str, start: usize) -> usize {
     let mut depth = 0usize;
     let mut at = start;

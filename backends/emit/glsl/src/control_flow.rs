@@ -1,14 +1,16 @@
-//! Control flow: `if`, `switch`, loops, jumps.
+//! Prints control flow: `if`, `switch`, loops, jumps.
 //!
-//! In: naga's loops, which have a body, a continuing block and a `break if`. Out: `for` and `while` where the loop begins
+//! Input: naga's loops, which have a body, a continuing block and a `break if`. Output: `for` and `while` if the loop begins
 //! with a test, as naga lowers them; else `while (true)`. The continuing block runs at the end of each iteration and before
-//! each `continue`: as the third part of a `for` if it is a single statement, written out at each of these places if not.
+//! each `continue`. A single statement prints as the third part of a `for`; a longer block prints at each of these
+//! positions.
 
 use naga::{Block, Expression, Handle, Span, Statement, SwitchCase, SwitchValue};
 
-use crate::function::{Continuing, FunctionPrinter};
+use crate::function::{FunctionPrinter, LoopContext};
 
 impl<'m> FunctionPrinter<'_, 'm> {
+    /// Prints an `if`, with its `else` branches.
     pub fn if_statement(
         &mut self,
         condition: Handle<Expression>,
@@ -17,7 +19,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         span: Span,
         tail: bool,
     ) {
-        self.lead(span);
+        self.print_comments_above(span);
         let (condition, accept, reject) = if accept.is_empty() && !reject.is_empty() {
             (self.negated(condition), reject, accept)
         } else {
@@ -29,11 +31,12 @@ impl<'m> FunctionPrinter<'_, 'm> {
     }
 
     fn branch(&mut self, block: &'m Block, tail: bool) {
-        self.open();
+        self.open_block();
         self.statements(block, tail);
-        self.close();
+        self.close_block();
     }
 
+    /// Prints the rest of an `if`, from its first `}`.
     fn else_branch(&mut self, reject: &'m Block, tail: bool) {
         // At the end of a function, naga adds a return to each branch.
         let implied = |statement: &Statement| tail && matches!(statement, Statement::Return { value: None });
@@ -53,26 +56,27 @@ impl<'m> FunctionPrinter<'_, 'm> {
         self.line("}");
     }
 
-    /// An `else` that holds nothing but another `if`.
+    /// Returns condition and branches of an `else` that contains only another `if`.
     fn else_if(&self, reject: &'m Block) -> Option<(Handle<Expression>, &'m Block, &'m Block)> {
         let mut rest = reject.iter().filter(|statement| !self.is_silent(statement));
         let Some(statement @ Statement::If { condition, accept, reject }) = rest.next() else { return None };
         let step = self.order.step_of(statement);
         let alone = rest.next().is_none();
-        let plain = !self.plan.circuit_steps.contains_key(&step)
+        let plain = !self.plan.short_circuit_steps.contains_key(&step)
             && !self.declarations.before.contains_key(&step)
             && !accept.is_empty();
         (alone && plain).then_some((*condition, accept, reject))
     }
 
+    /// Prints a `switch`.
     pub fn switch(&mut self, selector: Handle<Expression>, cases: &'m [SwitchCase], span: Span) {
-        self.lead(span);
+        self.print_comments_above(span);
         let selector = self.expression(selector);
         self.line(format!("switch ({selector}) {{"));
-        if let Some(continuing) = self.loops.last_mut() {
-            continuing.switches += 1;
+        if let Some(context) = self.loops.last_mut() {
+            context.switches += 1;
         }
-        self.open();
+        self.open_block();
         for case in cases {
             let label = match case.value {
                 SwitchValue::I32(value) => format!("case {value}:"),
@@ -84,48 +88,49 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 continue;
             }
             self.line(format!("{label} {{"));
-            self.open();
+            self.open_block();
             self.statements(&case.body, false);
             if !case.fall_through && !ends_in_jump(&case.body) {
                 self.line("break;");
             }
-            self.close();
+            self.close_block();
             self.line("}");
         }
-        self.close();
-        if let Some(continuing) = self.loops.last_mut() {
-            continuing.switches -= 1;
+        self.close_block();
+        if let Some(context) = self.loops.last_mut() {
+            context.switches -= 1;
         }
         self.line("}");
     }
 
+    /// Prints `break`, `continue` or `discard`.
     pub fn jump(&mut self, statement: &Statement, span: Span) {
-        self.lead(span);
+        self.print_comments_above(span);
         match statement {
             Statement::Continue => self.continue_statement(span),
             Statement::Kill => self.line("discard;"),
             _ => self.line("break;"),
         }
-        self.trail(span);
+        self.append_comment_after(span);
     }
 
+    /// Prints a `continue`, after what the loop does at the end of an iteration.
     fn continue_statement(&mut self, span: Span) {
-        let continuing = self.loops.last().copied();
-        if let Some(continuing) = continuing {
-            if continuing.break_if.is_some() && continuing.switches > 0 {
+        if let Some(context) = self.loops.last().copied() {
+            if context.break_if.is_some() && context.switches > 0 {
                 self.printer.error("`continue` inside a `switch`, in a loop with `break if`", span);
             }
-            self.continuing(continuing);
+            self.end_of_iteration(context);
         }
         self.line("continue;");
     }
 
-    /// Writes out what a loop does at the end of an iteration.
-    fn continuing(&mut self, continuing: Continuing<'m>) {
-        if let Some(block) = continuing.block {
+    /// Prints the continuing block and the `break if` of a loop.
+    fn end_of_iteration(&mut self, context: LoopContext<'m>) {
+        if let Some(block) = context.block {
             self.statements(block, false);
         }
-        if let Some(condition) = continuing.break_if {
+        if let Some(condition) = context.break_if {
             let condition = self.expression(condition);
             self.line(format!("if ({condition}) {{"));
             self.line("    break;");
@@ -144,33 +149,34 @@ impl<'m> FunctionPrinter<'_, 'm> {
     ) {
         let opened = initialiser.is_some();
         if !opened {
-            self.lead(span);
+            self.print_comments_above(span);
         }
         let (start, condition) = match self.leading_test(body) {
             Some((index, condition)) => (index + 1, Some(self.expression(condition))),
             None => (0, None),
         };
         let update = if break_if.is_none() { self.single_update(body, continuing) } else { None };
-        let rest = Continuing { block: Some(continuing), break_if, switches: 0 };
-        let needs_rest = update.is_none() && (!continuing.is_empty() || break_if.is_some());
-        let nothing = Continuing { block: None, break_if: None, switches: 0 };
+        let context = LoopContext { block: Some(continuing), break_if, switches: 0 };
+        let has_end = update.is_none() && (!continuing.is_empty() || break_if.is_some());
+        let without_end = LoopContext { block: None, break_if: None, switches: 0 };
 
         self.line(header(initialiser, condition, update));
-        self.loops.push(if needs_rest { rest } else { nothing });
-        self.open();
+        self.loops.push(if has_end { context } else { without_end });
+        self.open_block();
         self.loop_body(body, start);
-        if needs_rest && !ends_in_jump(body) {
-            self.continuing(rest);
+        if has_end && !ends_in_jump(body) {
+            self.end_of_iteration(context);
         }
-        self.close();
+        self.close_block();
         self.loops.pop();
         self.line("}");
         if opened {
-            self.leave();
+            self.leave_scope();
         }
     }
 
-    /// naga puts the braces of a `for` or `while` in a block of their own; they are the loop's braces.
+    /// Prints the body of a loop. naga lowers the body of a `for` or `while` to a separate block, whose braces are the
+    /// loop's braces.
     fn loop_body(&mut self, body: &'m Block, start: usize) {
         if let Some(Statement::Block(inner)) = body.get(start)
             && body.len() == start + 1
@@ -181,7 +187,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// `if c {} else { break; }` at the beginning of a loop, with nothing to print before it.
+    /// Returns index and condition of an `if c {} else { break; }` at the beginning of a loop, with no output before it.
     fn leading_test(&self, body: &Block) -> Option<(usize, Handle<Expression>)> {
         let (index, first) = body.iter().enumerate().find(|(_, statement)| !self.is_silent(statement))?;
         match first {
@@ -196,7 +202,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// The continuing block, if it is a single statement that uses nothing declared in the body.
+    /// Prints the continuing block, if it is a single statement that uses no variable declared in the body.
     fn single_update(&mut self, body: &Block, continuing: &'m Block) -> Option<String> {
         let mut visible = continuing.iter().filter(|statement| !self.is_silent(statement));
         let update = visible.next()?;
@@ -208,11 +214,11 @@ impl<'m> FunctionPrinter<'_, 'm> {
         self.simple(update)
     }
 
-    /// Whether the continuing block may see a variable of the body, which a `for` header cannot. In naga's lowering of a
-    /// `for` the body is a block of its own, whose names end with it.
+    /// Tests whether the continuing block can access a variable of the body, which a `for` header cannot. In naga's lowering
+    /// of a `for`, the variables of the body go out of scope before the continuing block.
     fn declares_for(&self, body: &Block) -> bool {
-        let own = body.iter().filter(|statement| !self.is_silent(statement));
-        own.into_iter().any(|statement| match statement {
+        let mut visible = body.iter().filter(|statement| !self.is_silent(statement));
+        visible.any(|statement| match statement {
             Statement::Emit(_) => true,
             Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => {
                 self.plan.baked.contains(result)
@@ -222,13 +228,14 @@ impl<'m> FunctionPrinter<'_, 'm> {
         })
     }
 
+    /// Prints a `return`; in an entry point, the assignments to the outputs.
     pub fn return_statement(&mut self, value: Option<Handle<Expression>>, span: Span, tail: bool) {
-        // naga adds the return at the end of a function; in GLSL it goes without saying.
+        // naga adds a return at the end of a function; GLSL needs none.
         let implied = value.is_none() && tail;
         if implied {
             return;
         }
-        self.lead_whole(span);
+        self.print_all_comments_of(span);
         match value {
             Some(value) if self.interface.is_some() => {
                 self.write_outputs(value);
@@ -242,10 +249,11 @@ impl<'m> FunctionPrinter<'_, 'm> {
             }
             None => self.line("return;"),
         }
-        self.trail(span);
+        self.append_comment_after(span);
     }
 }
 
+/// Prints the header of a loop.
 fn header(initialiser: Option<String>, condition: Option<String>, update: Option<String>) -> String {
     match (initialiser, condition, update) {
         (None, None, None) => "while (true) {".to_owned(),
@@ -257,7 +265,7 @@ fn header(initialiser: Option<String>, condition: Option<String>, update: Option
     }
 }
 
-/// Whether control never reaches the end of a block.
+/// Tests whether control never reaches the end of a block.
 fn ends_in_jump(block: &Block) -> bool {
     match block.last() {
         Some(Statement::Break | Statement::Continue | Statement::Return { .. } | Statement::Kill) => true,

@@ -1,16 +1,18 @@
-//! Conversions and reinterpretations.
+//! Prints conversions and reinterpretations.
 //!
-//! In: `As` expressions. Out: constructors and `floatBitsToUint` and kin. A float becomes an integer through a saturating
-//! helper, unless its range is known to fit: GLSL leaves the rest undefined. u64 is converted to and from u32 only.
+//! Input: `As` expressions. Output: constructors and functions such as `floatBitsToUint`. A saturating helper converts
+//! floats to integers, because GLSL leaves values out of range undefined; a constructor is enough if the range is known to
+//! fit. u64 converts to and from u32 only.
 
 use naga::{BinaryOperator, BuiltIn, Expression, Handle, Literal, MathFunction, Scalar, ScalarKind, TypeInner};
 
-use crate::expression::Text;
 use crate::function::FunctionPrinter;
 use crate::helpers::Helper;
+use crate::precedence::Text;
 use crate::types::unsupported_scalar;
 
 impl FunctionPrinter<'_, '_> {
+    /// Prints a conversion or reinterpretation.
     pub fn convert(
         &mut self,
         expression: Handle<Expression>,
@@ -35,7 +37,7 @@ impl FunctionPrinter<'_, '_> {
         }
         let wide = [from, to].contains(&Scalar::U64);
         if wide && !(from.kind == to.kind && width.is_some()) {
-            return Text::primary(self.error("a conversion between u64 and another type than u32", expression));
+            return Text::primary(self.error("a conversion between u64 and a type other than u32", expression));
         }
         match (width, from.kind, to.kind) {
             (None, ScalarKind::Float, ScalarKind::Uint) => self.call("floatBitsToUint", &[operand]),
@@ -43,12 +45,12 @@ impl FunctionPrinter<'_, '_> {
             (None, ScalarKind::Uint, ScalarKind::Float) => self.call("uintBitsToFloat", &[operand]),
             (None, ScalarKind::Sint, ScalarKind::Float) => self.call("intBitsToFloat", &[operand]),
             (Some(_), ScalarKind::Float, ScalarKind::Uint) if !self.fits(operand, -1.0, 4_294_967_296.0) => {
-                self.help(Helper::FloatToUint(lanes), &[operand])
+                self.call_helper(Helper::FloatToUint(lanes), &[operand])
             }
             (Some(_), ScalarKind::Float, ScalarKind::Sint)
                 if !self.fits(operand, -2_147_483_649.0, 2_147_483_648.0) =>
             {
-                self.help(Helper::FloatToInt(lanes), &[operand])
+                self.call_helper(Helper::FloatToInt(lanes), &[operand])
             }
             _ => {
                 let ty = self.type_name(expression);
@@ -57,21 +59,22 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Prints a call of a built-in function or constructor.
     pub fn call(&mut self, name: &str, operands: &[Handle<Expression>]) -> Text {
         let operands: Vec<String> = operands.iter().map(|operand| self.expression(*operand)).collect();
         Text::primary(format!("{name}({})", operands.join(", ")))
     }
 
-    /// Whether a float expression is known to stay strictly between two bounds.
+    /// Tests whether a float expression is known to be strictly between two bounds.
     fn fits(&self, expression: Handle<Expression>, low: f64, high: f64) -> bool {
         let (least, greatest) = self.range(expression);
         low < least && greatest < high
     }
 
-    /// Bounds of a float expression, as far as they can be told from its form.
+    /// Returns the bounds of a float expression that follow from its form.
     fn range(&self, expression: Handle<Expression>) -> (f64, f64) {
         const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
-        if let Some(Literal::F32(value)) = self.known(expression) {
+        if let Some(Literal::F32(value)) = self.known_literal(expression) {
             return (value.into(), value.into());
         }
         if self.is_pixel_position(expression) {
@@ -115,7 +118,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// `.x`, `.y` or `.xy` of the fragment's position: never negative, never beyond any target's size.
+    /// Tests for `.x`, `.y` or `.xy` of the fragment's position, which lie between 0 and the largest target size.
     fn is_pixel_position(&self, expression: Handle<Expression>) -> bool {
         match self.function.expressions[expression] {
             Expression::AccessIndex { base, index: 0 | 1 } => self.is_position(base),
@@ -126,6 +129,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Tests whether an expression is the fragment's position.
     fn is_position(&self, expression: Handle<Expression>) -> bool {
         let position =
             |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::BuiltIn(BuiltIn::Position { .. })));
@@ -152,6 +156,7 @@ impl FunctionPrinter<'_, '_> {
     }
 }
 
+/// Returns the bounds of a product.
 fn product(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     let corners = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
     if corners.iter().any(|corner| corner.is_nan()) {

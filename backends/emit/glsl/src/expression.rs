@@ -1,70 +1,28 @@
-//! Expressions: text with just the parentheses it needs.
+//! Prints expressions with only the necessary parentheses.
 //!
-//! In: an expression of the function being printed. Out: its text and how tightly that binds. Baked expressions print as
-//! their variable; everything else prints in place, because `schedule` has found that to be right.
+//! Input: an expression of the current function. Output: its text and precedence. Baked expressions print as their
+//! variable. All others print at their use, where `schedule` has found that to be correct.
 
 use naga::proc::TypeResolution;
 use naga::{Expression, Handle, Literal, TypeInner};
 
 use crate::function::FunctionPrinter;
 use crate::literal::literal;
+use crate::precedence::{Precedence, Text};
 use crate::types::{numeric, scalar_name};
 
-/// How tightly a text binds, from loose to tight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    Ternary,
-    LogicalOr,
-    LogicalAnd,
-    BitOr,
-    BitXor,
-    BitAnd,
-    Equality,
-    Relation,
-    Shift,
-    Sum,
-    Product,
-    Unary,
-    Primary,
-}
-
-#[derive(Clone, Debug)]
-pub struct Text {
-    pub text: String,
-    pub level: Level,
-}
-
-impl Text {
-    pub fn primary(text: impl Into<String>) -> Self {
-        Self { text: text.into(), level: Level::Primary }
-    }
-
-    pub fn new(text: impl Into<String>, level: Level) -> Self {
-        Self { text: text.into(), level }
-    }
-
-    /// The text where something that binds at least as tightly is needed.
-    pub fn at_least(self, level: Level) -> String {
-        if self.level < level { format!("({})", self.text) } else { self.text }
-    }
-
-    /// The text where something that binds more tightly is needed.
-    pub fn above(self, level: Level) -> String {
-        if self.level <= level { format!("({})", self.text) } else { self.text }
-    }
-}
-
 impl<'m> FunctionPrinter<'_, 'm> {
-    /// Text of an expression as a whole: an argument, an initialiser, a condition.
+    /// Prints an expression that needs no parentheses: an argument, an initialiser, a condition.
     pub fn expression(&mut self, expression: Handle<Expression>) -> String {
         self.text(expression).text
     }
 
-    /// Text of an expression before `.` or `[`.
+    /// Prints an expression before `.` or `[`.
     pub fn primary(&mut self, expression: Handle<Expression>) -> String {
-        self.text(expression).at_least(Level::Primary)
+        self.text(expression).at_least(Precedence::Primary)
     }
 
+    /// Prints an expression: as its variable if it is baked, else in full.
     pub fn text(&mut self, expression: Handle<Expression>) -> Text {
         if let Some(name) = self.values.get(&expression) {
             return Text::primary(name.clone());
@@ -72,9 +30,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
         self.in_place(expression)
     }
 
-    /// Text of an expression itself, even if it is about to become a variable.
+    /// Prints an expression in full, even if it gets a variable.
     pub fn in_place(&mut self, expression: Handle<Expression>) -> Text {
-        if let Some(circuit) = self.plan.circuits.get(&expression).copied() {
+        if let Some(circuit) = self.plan.short_circuits.get(&expression).copied() {
             return self.logical(circuit.operator, circuit.left, circuit.right);
         }
         let function = self.function;
@@ -125,21 +83,21 @@ impl<'m> FunctionPrinter<'_, 'm> {
             Expression::CallResult(_) | Expression::AtomicResult { .. } => self.result_in_place(expression),
             Expression::Override(_) => Text::primary(self.error("an override; set it before printing", expression)),
             ref other => {
-                let what = format!("{other:?}");
-                let name: String = what.chars().take_while(|c| c.is_alphanumeric()).collect();
+                let debug = format!("{other:?}");
+                let name: String = debug.chars().take_while(|c| c.is_alphanumeric()).collect();
                 Text::primary(self.error(format!("an expression of kind {name}"), expression))
             }
         }
     }
 
     fn literal(&mut self, value: Literal, expression: Handle<Expression>) -> Text {
-        self.printer.need_width(value.scalar());
-        let Some(text) = literal(value, self.written(expression)) else {
-            let what = crate::types::unsupported_scalar(value.scalar());
-            return Text::primary(self.error(what, expression));
+        self.printer.require_width(value.scalar());
+        let Some(text) = literal(value, self.source_of(expression)) else {
+            let message = crate::types::unsupported_scalar(value.scalar());
+            return Text::primary(self.error(message, expression));
         };
-        let level = if text.starts_with('-') { Level::Unary } else { Level::Primary };
-        Text::new(text, level)
+        let precedence = if text.starts_with('-') { Precedence::Unary } else { Precedence::Primary };
+        Text::new(text, precedence)
     }
 
     fn compose(
@@ -154,6 +112,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         Text::primary(format!("{name}({})", parts.join(", ")))
     }
 
+    /// Prints `select`: by component as `mix()`, else as `c ? a : b`.
     fn select(
         &mut self,
         condition: Handle<Expression>,
@@ -165,26 +124,26 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 (self.expression(condition), self.expression(accept), self.expression(reject));
             return Text::primary(format!("mix({reject}, {accept}, {condition})"));
         }
-        let condition = self.text(condition).above(Level::Ternary);
-        let accept = self.text(accept).above(Level::Ternary);
-        let reject = self.text(reject).above(Level::Ternary);
-        Text::new(format!("{condition} ? {accept} : {reject}"), Level::Ternary)
+        let condition = self.text(condition).above(Precedence::Ternary);
+        let accept = self.text(accept).above(Precedence::Ternary);
+        let reject = self.text(reject).above(Precedence::Ternary);
+        Text::new(format!("{condition} ? {accept} : {reject}"), Precedence::Ternary)
     }
 
-    /// The type of an expression, as it is named where a value is made.
+    /// Returns the type of an expression, named as a constructor.
     pub fn type_name(&mut self, expression: Handle<Expression>) -> String {
         let span = self.span(expression);
         let resolution: &TypeResolution = &self.order.info[expression].ty;
         self.printer.resolved_name(resolution, span)
     }
 
-    /// Lanes (1 for a scalar) and scalar of a numeric expression.
+    /// Returns lanes (1 for a scalar) and scalar of a numeric expression.
     pub fn shape(&self, expression: Handle<Expression>) -> Option<(u8, naga::Scalar)> {
         let (size, scalar) = numeric(self.order.inner(expression))?;
         Some((crate::helpers::lanes(size), scalar))
     }
 
-    /// Notes an error for scalars that have no GLSL name here.
+    /// Records an error for scalars without a GLSL name.
     pub fn check_scalar(&mut self, expression: Handle<Expression>) {
         if let Some((_, scalar)) = self.shape(expression)
             && scalar_name(scalar).is_none()
@@ -193,11 +152,11 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// The literal that an expression is, or that fills it.
-    pub fn known(&self, expression: Handle<Expression>) -> Option<Literal> {
+    /// Returns the literal value of an expression, or of each of its components.
+    pub fn known_literal(&self, expression: Handle<Expression>) -> Option<Literal> {
         match self.function.expressions[expression] {
             Expression::Literal(value) => Some(value),
-            Expression::Splat { value, .. } => self.known(value),
+            Expression::Splat { value, .. } => self.known_literal(value),
             Expression::Constant(constant) => {
                 let init = self.printer.module.constants[constant].init;
                 match self.printer.module.global_expressions[init] {

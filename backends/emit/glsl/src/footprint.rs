@@ -1,7 +1,7 @@
-//! What a step of a program reads and writes, as far as the order of steps depends on it.
+//! Computes the memory that a step reads and writes. It decides which steps may be reordered.
 //!
-//! In: expressions and statements. Out: for each its [`Footprint`]; two steps whose footprints do not conflict may trade
-//! places. Textures and uniforms never appear: nothing writes them while a shader reads them.
+//! Input: expressions and statements. Output: the [`Footprint`] of each. Two steps whose footprints do not conflict may be
+//! swapped. Footprints omit textures and uniforms, because nothing writes them while a shader reads them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,87 +10,94 @@ use naga::{
     TypeInner,
 };
 
-use crate::Marker;
+use crate::options::Marker;
 
-/// A piece of memory that is read or written as one.
+/// A memory object: the unit of reads and writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
+pub enum MemoryObject {
     Local(Handle<LocalVariable>),
-    /// What a pointer parameter points to.
+    /// The pointee of a pointer parameter.
     Parameter(u32),
-    /// A global of this invocation alone.
+    /// A global that only this invocation accesses.
     Private(Handle<GlobalVariable>),
-    /// A global that other invocations see.
+    /// A global that other invocations access.
     Global(Handle<GlobalVariable>),
-    /// All globals that other invocations see: what atomics and fences order.
+    /// All globals that other invocations access, which atomics and fences order.
     Memory,
 }
 
-impl Place {
+impl MemoryObject {
+    /// Tests whether two objects share memory.
     fn overlaps(self, other: Self) -> bool {
-        let global = |place| matches!(place, Self::Global(_) | Self::Memory);
+        let global = |object| matches!(object, Self::Global(_) | Self::Memory);
         self == other || (global(self) && global(other) && (self == Self::Memory || other == Self::Memory))
     }
 }
 
-/// What one step touches.
+/// The memory that one step reads and writes.
 #[derive(Clone, Debug, Default)]
 pub struct Footprint {
-    pub reads: Vec<Place>,
-    pub writes: Vec<Place>,
-    /// Depends on which invocations take part (derivatives, implicit mip levels): may not move into a branch.
+    pub reads: Vec<MemoryObject>,
+    pub writes: Vec<MemoryObject>,
+    /// True for derivatives and implicit mip levels: the result depends on the active invocations, so it may not move into
+    /// a branch.
     pub uniform: bool,
 }
 
 impl Footprint {
-    pub fn reading(place: Place) -> Self {
-        Self { reads: vec![place], ..Self::default() }
+    /// Returns the footprint of reading an object.
+    pub fn reading(object: MemoryObject) -> Self {
+        Self { reads: vec![object], ..Self::default() }
     }
 
-    pub fn writing(place: Place) -> Self {
-        Self { writes: vec![place], ..Self::default() }
+    /// Returns the footprint of writing an object.
+    pub fn writing(object: MemoryObject) -> Self {
+        Self { writes: vec![object], ..Self::default() }
     }
 
-    /// Whether the step does nothing but compute: it may be evaluated anywhere, or not at all.
+    /// Tests whether the step is pure: it may be evaluated anywhere, or not at all.
     pub fn is_pure(&self) -> bool {
         self.reads.is_empty() && self.writes.is_empty() && !self.uniform
     }
 
+    /// Tests whether the step writes memory.
     pub fn has_effect(&self) -> bool {
         !self.writes.is_empty()
     }
 
+    /// Adds another footprint to this one.
     pub fn join(&mut self, other: &Self) {
         self.reads.extend(&other.reads);
         self.writes.extend(&other.writes);
         self.uniform |= other.uniform;
     }
 
+    /// Tests whether the order of two steps matters.
     pub fn conflicts(&self, other: &Self) -> bool {
-        let meet = |a: &[Place], b: &[Place]| a.iter().any(|x| b.iter().any(|y| x.overlaps(*y)));
+        let meet = |a: &[MemoryObject], b: &[MemoryObject]| a.iter().any(|x| b.iter().any(|y| x.overlaps(*y)));
         meet(&self.writes, &other.reads) || meet(&self.writes, &other.writes) || meet(&self.reads, &other.writes)
     }
 }
 
-/// The variable that a pointer points into.
-pub fn root(module: &Module, function: &Function, mut pointer: Handle<Expression>) -> Option<Place> {
+/// Returns the variable that a pointer points into.
+pub fn root(module: &Module, function: &Function, mut pointer: Handle<Expression>) -> Option<MemoryObject> {
     loop {
         match function.expressions[pointer] {
             Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => pointer = base,
-            Expression::LocalVariable(local) => return Some(Place::Local(local)),
+            Expression::LocalVariable(local) => return Some(MemoryObject::Local(local)),
             Expression::GlobalVariable(global) => {
                 let private = module.global_variables[global].space == AddressSpace::Private;
-                return Some(if private { Place::Private(global) } else { Place::Global(global) });
+                return Some(if private { MemoryObject::Private(global) } else { MemoryObject::Global(global) });
             }
-            Expression::FunctionArgument(index) => return Some(Place::Parameter(index)),
+            Expression::FunctionArgument(index) => return Some(MemoryObject::Parameter(index)),
             _ => return None,
         }
     }
 }
 
-/// Whether what the pointer points to can change while the shader runs.
-fn is_mutable(module: &Module, place: Place) -> bool {
-    let Place::Global(global) = place else { return true };
+/// Tests whether an object can change while the shader runs.
+fn is_mutable(module: &Module, object: MemoryObject) -> bool {
+    let MemoryObject::Global(global) = object else { return true };
     match module.global_variables[global].space {
         AddressSpace::Uniform | AddressSpace::Handle | AddressSpace::Immediate => false,
         AddressSpace::Storage { access } => access.intersects(StorageAccess::STORE | StorageAccess::ATOMIC),
@@ -98,20 +105,20 @@ fn is_mutable(module: &Module, place: Place) -> bool {
     }
 }
 
-/// What evaluating an expression touches, its operands apart.
+/// Returns the footprint of evaluating an expression, without its operands.
 pub fn of_expression(module: &Module, function: &Function, expression: Handle<Expression>) -> Footprint {
     match function.expressions[expression] {
         Expression::Load { pointer } => match root(module, function, pointer) {
-            Some(place) if is_mutable(module, place) => Footprint::reading(place),
+            Some(object) if is_mutable(module, object) => Footprint::reading(object),
             Some(_) => Footprint::default(),
-            None => Footprint::reading(Place::Memory),
+            None => Footprint::reading(MemoryObject::Memory),
         },
         Expression::ImageSample { .. } | Expression::Derivative { .. } => {
             Footprint { uniform: true, ..Footprint::default() }
         }
-        // A storage texture may be written by this very shader.
+        // The same shader may write a storage texture.
         Expression::ImageLoad { image, .. } if is_storage_image(module, function, image) => {
-            Footprint::reading(Place::Memory)
+            Footprint::reading(MemoryObject::Memory)
         }
         _ => Footprint::default(),
     }
@@ -126,16 +133,16 @@ fn is_storage_image(module: &Module, function: &Function, image: Handle<Expressi
     matches!(module.types[ty].inner, TypeInner::Image { class: naga::ImageClass::Storage { .. }, .. })
 }
 
-/// What calling each function touches, its pointer arguments apart.
-pub type Calls = BTreeMap<Handle<Function>, Footprint>;
+/// The footprint of calling each function, with pointer arguments as parameters.
+pub type CallFootprints = BTreeMap<Handle<Function>, Footprint>;
 
-/// Footprints of all functions; naga keeps callees before callers.
-pub fn of_functions(module: &Module, marker: impl Fn(Handle<Function>) -> Option<Marker>) -> Calls {
-    let mut calls = Calls::new();
+/// Returns the footprints of all functions; naga stores callees before callers.
+pub fn of_functions(module: &Module, marker: impl Fn(Handle<Function>) -> Option<Marker>) -> CallFootprints {
+    let mut calls = CallFootprints::new();
     for (handle, function) in module.functions.iter() {
         let footprint = match marker(handle) {
             Some(Marker::HelperLane) => Footprint::default(),
-            Some(_) => Footprint::writing(Place::Memory),
+            Some(_) => Footprint::writing(MemoryObject::Memory),
             None => of_body(module, function, &calls),
         };
         calls.insert(handle, footprint);
@@ -143,7 +150,8 @@ pub fn of_functions(module: &Module, marker: impl Fn(Handle<Function>) -> Option
     calls
 }
 
-fn of_body(module: &Module, function: &Function, calls: &Calls) -> Footprint {
+/// Returns the footprint of a function, as its callers see it.
+fn of_body(module: &Module, function: &Function, calls: &CallFootprints) -> Footprint {
     let mut whole = Footprint::default();
     visit(&function.body, &mut |statement| {
         if let Statement::Emit(range) = statement {
@@ -152,12 +160,13 @@ fn of_body(module: &Module, function: &Function, calls: &Calls) -> Footprint {
             whole.join(&of_statement(module, function, statement, calls));
         }
     });
-    // The caller cannot see locals, and knows better what parameters point to.
-    let outward = |places: &[Place]| {
-        let seen: BTreeSet<Place> = places.iter().copied().filter(|place| !matches!(place, Place::Local(_))).collect();
-        seen.into_iter().collect()
+    // Callers cannot access the locals. They replace each parameter by the object that they pass.
+    let visible = |objects: &[MemoryObject]| {
+        let unique: BTreeSet<MemoryObject> =
+            objects.iter().copied().filter(|object| !matches!(object, MemoryObject::Local(_))).collect();
+        unique.into_iter().collect()
     };
-    Footprint { reads: outward(&whole.reads), writes: outward(&whole.writes), uniform: whole.uniform }
+    Footprint { reads: visible(&whole.reads), writes: visible(&whole.writes), uniform: whole.uniform }
 }
 
 /// Visits every statement, outer ones first.
@@ -170,7 +179,7 @@ pub fn visit<'m>(block: &'m Block, act: &mut impl FnMut(&'m Statement)) {
     }
 }
 
-/// The blocks directly inside a statement, in order.
+/// Returns the blocks directly inside a statement, in order.
 pub fn inner_blocks(statement: &Statement) -> Vec<&Block> {
     match statement {
         Statement::Block(block) => vec![block],
@@ -181,58 +190,58 @@ pub fn inner_blocks(statement: &Statement) -> Vec<&Block> {
     }
 }
 
-/// What executing a statement touches: the statement itself, without its operands and inner blocks.
-pub fn of_statement(module: &Module, function: &Function, statement: &Statement, calls: &Calls) -> Footprint {
+/// Returns the footprint of a statement, without its operands and inner blocks.
+pub fn of_statement(module: &Module, function: &Function, statement: &Statement, calls: &CallFootprints) -> Footprint {
     match *statement {
         Statement::Store { pointer, .. } => {
-            let place = root(module, function, pointer).unwrap_or(Place::Memory);
+            let object = root(module, function, pointer).unwrap_or(MemoryObject::Memory);
             let inner = &function.expressions[pointer];
-            // Storing to an atomic is ordered like every other atomic operation, below.
+            // A store to an atomic is ordered like the atomic operations below.
             let atomic = !matches!(inner, Expression::LocalVariable(_)) && is_atomic(module, function, pointer);
-            Footprint::writing(if atomic { Place::Memory } else { place })
+            Footprint::writing(if atomic { MemoryObject::Memory } else { object })
         }
         Statement::Call { function: callee, ref arguments, .. } => {
-            let Some(summary) = calls.get(&callee) else { return Footprint::writing(Place::Memory) };
-            let bind = |places: &[Place]| {
-                let bound = |place: &Place| match *place {
-                    Place::Parameter(index) => arguments
+            let Some(summary) = calls.get(&callee) else { return Footprint::writing(MemoryObject::Memory) };
+            let bind = |objects: &[MemoryObject]| {
+                let bound = |object: &MemoryObject| match *object {
+                    MemoryObject::Parameter(index) => arguments
                         .get(index as usize)
                         .and_then(|pointer| root(module, function, *pointer))
-                        .unwrap_or(Place::Memory),
+                        .unwrap_or(MemoryObject::Memory),
                     other => other,
                 };
-                places.iter().map(bound).collect::<Vec<_>>()
+                objects.iter().map(bound).collect::<Vec<_>>()
             };
             Footprint { reads: bind(&summary.reads), writes: bind(&summary.writes), uniform: summary.uniform }
         }
-        // Atomics and barriers order what other invocations see, so nothing that touches memory may pass them.
+        // Atomics and barriers order what other invocations observe, so no memory access may pass them.
         Statement::Atomic { .. }
         | Statement::ImageStore { .. }
         | Statement::ImageAtomic { .. }
         | Statement::ControlBarrier(_)
         | Statement::MemoryBarrier(_)
-        | Statement::WorkGroupUniformLoad { .. } => Footprint::writing(Place::Memory),
-        // Ending the invocation is an effect of the function that does it.
-        Statement::Kill => Footprint::writing(Place::Memory),
-        // Leaving: an effect must not move from before to after it.
-        Statement::Return { .. } | Statement::Break | Statement::Continue => Footprint::reading(Place::Memory),
+        | Statement::WorkGroupUniformLoad { .. } => Footprint::writing(MemoryObject::Memory),
+        // Ending the invocation is an effect of the function.
+        Statement::Kill => Footprint::writing(MemoryObject::Memory),
+        // An effect before a jump must not move behind it.
+        Statement::Return { .. } | Statement::Break | Statement::Continue => Footprint::reading(MemoryObject::Memory),
         Statement::Emit(_)
         | Statement::Block(_)
         | Statement::If { .. }
         | Statement::Switch { .. }
         | Statement::Loop { .. } => Footprint::default(),
-        _ => Footprint::writing(Place::Memory),
+        _ => Footprint::writing(MemoryObject::Memory),
     }
 }
 
-/// Whether a pointer points to an atomic.
+/// Tests whether a pointer points to an atomic.
 pub fn is_atomic(module: &Module, function: &Function, pointer: Handle<Expression>) -> bool {
     pointee(module, function, pointer).is_some_and(|ty| matches!(module.types[ty].inner, TypeInner::Atomic(_)))
 }
 
-/// The type a pointer points to, where the module has a handle for it.
+/// Returns the type that a pointer points to, if the module has a handle for it.
 fn pointee(module: &Module, function: &Function, pointer: Handle<Expression>) -> Option<Handle<naga::Type>> {
-    let behind = |ty: Handle<naga::Type>| match module.types[ty].inner {
+    let target = |ty: Handle<naga::Type>| match module.types[ty].inner {
         TypeInner::Pointer { base, .. } => base,
         _ => ty,
     };
@@ -240,7 +249,7 @@ fn pointee(module: &Module, function: &Function, pointer: Handle<Expression>) ->
         Expression::GlobalVariable(global) => Some(module.global_variables[global].ty),
         Expression::LocalVariable(local) => Some(function.local_variables[local].ty),
         Expression::FunctionArgument(index) => {
-            function.arguments.get(index as usize).map(|argument| behind(argument.ty))
+            function.arguments.get(index as usize).map(|argument| target(argument.ty))
         }
         Expression::Access { base, .. } => match module.types[pointee(module, function, base)?].inner {
             TypeInner::Array { base, .. } => Some(base),

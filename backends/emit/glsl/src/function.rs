@@ -1,55 +1,59 @@
-//! The state of printing one function: its plan, its names in scope, its lines so far.
+//! The state of printing one function: its plan, the names in scope and the printed lines.
 //!
-//! In: a function and the plan made for it. Out: the lines of its body. What each expression and statement becomes is in
-//! `expression` and `statement`; here are only scopes, lines and comments.
+//! Input: a function and its plan. Output: the lines of its body. This file handles scopes, lines and comments;
+//! `expression` and `statement` print expressions and statements.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{Block, Expression, Function, Handle, LocalVariable, Span};
 
 use crate::analysis::Order;
-use crate::footprint::Calls;
+use crate::footprint::CallFootprints;
 use crate::interface::Interface;
 use crate::locals::{Declarations, declarations};
-use crate::names::{free, legal};
+use crate::names::{legal_name, unique_name};
 use crate::printer::Printer;
 use crate::reserved::is_reserved;
 use crate::schedule::{Plan, plan};
 
-/// What a `continue` of the innermost loop must do first.
+/// A loop that is being printed, with what a `continue` must do first.
 #[derive(Clone, Copy)]
-pub struct Continuing<'m> {
+pub struct LoopContext<'m> {
     pub block: Option<&'m Block>,
     pub break_if: Option<Handle<Expression>>,
-    /// How many `switch` statements the current place is inside of, within the loop.
+    /// The number of `switch` statements around the current statement, within the loop.
     pub switches: usize,
 }
 
+/// The state of printing one function.
 pub struct FunctionPrinter<'p, 'm> {
     pub printer: &'p mut Printer<'m>,
     pub function: &'m Function,
     pub order: Order<'m>,
     pub plan: Plan,
     pub declarations: Declarations,
-    /// How arguments and results print, in an entry point.
+    /// The inputs and outputs of an entry point; none for other functions.
     pub interface: Option<Interface>,
+    /// Printed names of the arguments.
     pub arguments: Vec<String>,
+    /// Variables of baked expressions.
     pub values: BTreeMap<Handle<Expression>, String>,
     pub locals: BTreeMap<Handle<LocalVariable>, String>,
-    pub loops: Vec<Continuing<'m>>,
+    pub loops: Vec<LoopContext<'m>>,
     pub lines: Vec<String>,
     depth: usize,
     scopes: Vec<BTreeSet<String>>,
-    /// The line that opened the current block, after which no blank line is wanted.
+    /// The line that opened the current block. No blank line follows it.
     opened: usize,
 }
 
 impl<'p, 'm> FunctionPrinter<'p, 'm> {
+    /// Analyses and plans a function; prints nothing yet.
     pub fn new(
         printer: &'p mut Printer<'m>,
         function: &'m Function,
         info: &'m naga::valid::FunctionInfo,
-        calls: &Calls,
+        calls: &CallFootprints,
     ) -> Self {
         let order = Order::new(printer.module, function, info, printer.source, calls);
         let plan = plan(&order);
@@ -72,51 +76,54 @@ impl<'p, 'm> FunctionPrinter<'p, 'm> {
         }
     }
 
-    /// Takes a name for a variable declared here, unlike every name that can be seen from here.
+    /// Reserves a name for a new variable that hides no visible name.
     pub fn declare(&mut self, wanted: &str) -> String {
         let taken =
             |name: &str| self.printer.names.is_taken(name) || self.scopes.iter().any(|scope| scope.contains(name));
-        let name = free(&legal(wanted, is_reserved), taken);
+        let name = unique_name(&legal_name(wanted, is_reserved), taken);
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.clone());
         }
         name
     }
 
+    /// Prints an indented line.
     pub fn line(&mut self, text: impl AsRef<str>) {
         self.lines.push(format!("{}{}", "    ".repeat(self.depth), text.as_ref()));
     }
 
-    /// Adds to the end of the last line.
-    pub fn amend(&mut self, text: &str) {
+    /// Appends text to the last line.
+    pub fn append_to_last_line(&mut self, text: &str) {
         if let Some(last) = self.lines.last_mut() {
             last.push_str(text);
         }
     }
 
-    /// Opens a scope without printing anything, as for the header of a `for`.
-    pub fn enter(&mut self) {
+    /// Opens a scope without indenting, as for the header of a `for`.
+    pub fn enter_scope(&mut self) {
         self.scopes.push(BTreeSet::new());
     }
 
-    pub fn leave(&mut self) {
+    /// Closes the innermost scope.
+    pub fn leave_scope(&mut self) {
         self.scopes.pop();
     }
 
-    /// Opens a block: what follows is indented and has a scope of its own.
-    pub fn open(&mut self) {
-        self.enter();
+    /// Opens a block: indents the following lines and opens a scope.
+    pub fn open_block(&mut self) {
+        self.enter_scope();
         self.depth += 1;
         self.opened = self.lines.len();
     }
 
-    pub fn close(&mut self) {
+    /// Closes the innermost block.
+    pub fn close_block(&mut self) {
         self.depth -= 1;
-        self.leave();
+        self.leave_scope();
     }
 
-    /// Prints what stands above a statement in the source: a free line, comments.
-    pub fn lead(&mut self, span: Span) {
+    /// Prints the blank line and the comments that the source has above a statement.
+    pub fn print_comments_above(&mut self, span: Span) {
         let Some(range) = span.to_range().filter(|range| range.end <= self.printer.source.len()) else { return };
         if self.printer.comments.paragraph_before(range.start) && self.lines.len() > self.opened {
             self.lines.push(String::new());
@@ -126,43 +133,45 @@ impl<'p, 'm> FunctionPrinter<'p, 'm> {
         }
     }
 
-    /// As [`Self::lead`], for a statement of one line: comments between its parts go above it too.
-    pub fn lead_whole(&mut self, span: Span) {
-        self.lead(span);
+    /// As [`Self::print_comments_above`], for a statement of one line: comments inside it go above it too.
+    pub fn print_all_comments_of(&mut self, span: Span) {
+        self.print_comments_above(span);
         let Some(range) = span.to_range().filter(|range| range.end <= self.printer.source.len()) else { return };
         for comment in self.printer.comments.within(range.start, range.end) {
             self.line(comment);
         }
     }
 
-    /// Adds the comment that follows a statement on its line.
-    pub fn trail(&mut self, span: Span) {
+    /// Appends the comment that follows a statement on its line.
+    pub fn append_comment_after(&mut self, span: Span) {
         let Some(range) = span.to_range().filter(|range| range.end <= self.printer.source.len()) else { return };
-        if let Some(comment) = self.printer.comments.behind(range.end) {
-            self.amend(&format!(" {comment}"));
+        if let Some(comment) = self.printer.comments.after(range.end) {
+            self.append_to_last_line(&format!(" {comment}"));
         }
     }
 
-    /// Prints the comments at the end of a block.
-    pub fn leftover(&mut self, span: Span) {
+    /// Prints the remaining comments of the block around a statement.
+    pub fn print_comments_to_block_end(&mut self, span: Span) {
         let Some(range) = span.to_range().filter(|range| range.end <= self.printer.source.len()) else { return };
         for comment in self.printer.comments.rest(range.start) {
             self.line(comment);
         }
     }
 
+    /// Returns the span of an expression.
     pub fn span(&self, expression: Handle<Expression>) -> Span {
         self.function.expressions.get_span(expression)
     }
 
-    /// What the source has in the place of an expression.
-    pub fn written(&self, expression: Handle<Expression>) -> &'m str {
+    /// Returns the WGSL source of an expression.
+    pub fn source_of(&self, expression: Handle<Expression>) -> &'m str {
         let range = self.span(expression).to_range();
         range.and_then(|range| self.printer.source.get(range)).unwrap_or_default()
     }
 
-    pub fn error(&mut self, what: impl Into<String>, expression: Handle<Expression>) -> String {
+    /// Records an error at an expression and returns a substitute for its text.
+    pub fn error(&mut self, message: impl Into<String>, expression: Handle<Expression>) -> String {
         let span = self.span(expression);
-        self.printer.error(what, span)
+        self.printer.error(message, span)
     }
 }

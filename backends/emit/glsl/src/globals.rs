@@ -1,46 +1,47 @@
-//! Declarations at module scope: structures, constants, buffers, textures, variables.
+//! Prints declarations at module scope: structures, constants, buffers, textures, variables.
 //!
-//! In: what the bodies turned out to need. Out: the text of each declaration. A buffer of words is declared without an
-//! instance name, so that its uses read `heads[i]`.
+//! Input: the items that the printed bodies use. Output: the lines of each declaration. A buffer of words is declared
+//! without an instance name, so that its uses read `heads[i]`.
 
 use naga::{
     AddressSpace, ArraySize, Constant, Expression, GlobalVariable, Handle, ImageClass, ImageDimension,
     MemoryDecorations, Span, StorageAccess, Type, TypeInner,
 };
 
-use crate::expression::{Level, Text};
-use crate::layout::{Rules, disagreement};
+use crate::layout::{LayoutRules, layout_difference};
 use crate::literal::literal;
-use crate::names::{field, upper_camel};
+use crate::names::{field_name, upper_camel};
+use crate::precedence::{Precedence, Text};
 use crate::printer::Printer;
 use crate::texture::{format_name, opaque_type};
 
-/// Arrays up to this length get their zeros in a constructor; longer ones in a loop.
-const ZEROS_IN_A_ROW: u32 = 8;
+/// The largest length of an array that a constructor sets to zero; a loop sets longer ones.
+const MAX_ZEROS_IN_CONSTRUCTOR: u32 = 8;
 
 impl Printer<'_> {
-    /// A constant's name, or its value if it has none that GLSL could declare.
+    /// Prints a constant's name, or its value if GLSL cannot declare it.
     pub fn constant(&mut self, constant: Handle<Constant>) -> Text {
         let ty = self.module.constants[constant].ty;
         let concrete = !self.module.types[ty].inner.scalar().is_some_and(naga::Scalar::is_abstract);
         if let (Some(name), true) = (self.names.constants.get(&constant), concrete) {
-            self.needs.constants.insert(constant);
+            self.requirements.constants.insert(constant);
             return Text::primary(name.clone());
         }
         self.constant_expression(self.module.constants[constant].init)
     }
 
+    /// Prints a constant expression.
     fn constant_expression(&mut self, expression: Handle<Expression>) -> Text {
         let module = self.module;
         let span = module.global_expressions.get_span(expression);
         match module.global_expressions[expression] {
             Expression::Literal(value) => {
                 let written = span.to_range().and_then(|range| self.source.get(range)).unwrap_or_default();
-                self.need_width(value.scalar());
+                self.require_width(value.scalar());
                 match literal(value, written) {
                     Some(text) => {
-                        let level = if text.starts_with('-') { Level::Unary } else { Level::Primary };
-                        Text::new(text, level)
+                        let precedence = if text.starts_with('-') { Precedence::Unary } else { Precedence::Primary };
+                        Text::new(text, precedence)
                     }
                     None => Text::primary(self.error(crate::types::unsupported_scalar(value.scalar()), span)),
                 }
@@ -62,7 +63,7 @@ impl Printer<'_> {
         }
     }
 
-    /// `const uint LIMIT = 4096u;`
+    /// Prints a declaration such as `const uint LIMIT = 4096u;`.
     pub fn constant_declaration(&mut self, handle: Handle<Constant>) -> Vec<String> {
         let span = self.module.constants.get_span(handle);
         let constant = &self.module.constants[handle];
@@ -74,7 +75,7 @@ impl Printer<'_> {
         lines
     }
 
-    /// A structure's definition.
+    /// Prints a structure's definition.
     pub fn structure(&mut self, handle: Handle<Type>) -> Vec<String> {
         let name = self.names.types.get(&handle).cloned().unwrap_or_default();
         let mut lines = self.documentation(|documentation| documentation.types.get(&handle));
@@ -84,6 +85,7 @@ impl Printer<'_> {
         lines
     }
 
+    /// Prints the members of a structure, with their doc comments.
     fn members(&mut self, handle: Handle<Type>) -> Vec<String> {
         let module = self.module;
         let TypeInner::Struct { ref members, .. } = module.types[handle].inner else { return Vec::new() };
@@ -91,19 +93,19 @@ impl Printer<'_> {
         for (index, member) in members.iter().enumerate() {
             let documentation = self.documentation(|documentation| documentation.struct_members.get(&(handle, index)));
             lines.extend(documentation.iter().map(|line| format!("    {line}")));
-            let declaration = self.declaration(member.ty, &field(members, index), Span::UNDEFINED);
+            let declaration = self.declaration(member.ty, &field_name(members, index), Span::UNDEFINED);
             lines.push(format!("    {declaration};"));
         }
         lines
     }
 
-    /// Doc comments of an item, as lines.
+    /// Returns the doc comments of an item, as lines.
     pub fn documentation<'s>(&'s self, find: impl Fn(&'s naga::DocComments) -> Option<&'s Vec<String>>) -> Vec<String> {
         let lines = self.module.doc_comments.as_deref().and_then(find).into_iter().flatten();
         lines.flat_map(|comment| comment.lines()).map(documentation_line).collect()
     }
 
-    /// A structure that ends in an array without a length: GLSL has that as a block's members only.
+    /// Tests for a structure that ends in a runtime-sized array. GLSL allows it only as the members of a block.
     pub fn is_unwrapped(&self, global: Handle<GlobalVariable>) -> bool {
         let TypeInner::Struct { ref members, .. } = self.module.types[self.module.global_variables[global].ty].inner
         else {
@@ -114,31 +116,31 @@ impl Printer<'_> {
         })
     }
 
-    /// A private array that is too long for its zeros to be written out, in a text that has a `main` to set them.
+    /// Tests for a private array that `main` sets to zero in a loop.
     pub fn is_long_private_array(&self, global: Handle<GlobalVariable>) -> bool {
         let variable = &self.module.global_variables[global];
         let private = variable.space == AddressSpace::Private && variable.init.is_none() && self.has_main;
         private && !self.is_written_first(global) && self.is_long_array(variable.ty)
     }
 
-    /// Whether no read sees the variable's initial value, by the options.
+    /// Tests whether the options declare that a variable is written before it is read.
     fn is_written_first(&self, global: Handle<GlobalVariable>) -> bool {
         let name = self.module.global_variables[global].name.as_deref().unwrap_or_default();
         self.options.written_first.contains(&name)
     }
 
-    /// Longer than reads well as a row of zeros.
+    /// Tests for an array that is too long for a constructor of zeros.
     pub fn is_long_array(&self, ty: Handle<Type>) -> bool {
-        matches!(self.module.types[ty].inner, TypeInner::Array { size: ArraySize::Constant(size), .. } if size.get() > ZEROS_IN_A_ROW)
+        matches!(self.module.types[ty].inner, TypeInner::Array { size: ArraySize::Constant(size), .. } if size.get() > MAX_ZEROS_IN_CONSTRUCTOR)
     }
 
-    /// Whether the options allow plain reads of this atomic.
-    pub fn is_plain(&self, global: Handle<GlobalVariable>) -> bool {
+    /// Tests whether the options allow plain reads of an atomic.
+    pub fn allows_plain_loads(&self, global: Handle<GlobalVariable>) -> bool {
         let name = self.module.global_variables[global].name.as_deref().unwrap_or_default();
         !self.vulkan() && self.options.plain_loads.contains(&name)
     }
 
-    /// A global variable's declaration.
+    /// Prints a global variable's declaration.
     pub fn global_declaration(&mut self, handle: Handle<GlobalVariable>) -> Vec<String> {
         let variable = &self.module.global_variables[handle];
         let span = self.module.global_variables.get_span(handle);
@@ -147,14 +149,14 @@ impl Printer<'_> {
         match variable.space {
             AddressSpace::Storage { access } => {
                 let qualifiers = self.buffer_qualifiers(handle, access);
-                lines.extend(self.block(handle, &name, Rules::Std430, &format!("{qualifiers}buffer"), "Buffer"));
+                lines.extend(self.block(handle, &name, LayoutRules::Std430, &format!("{qualifiers}buffer"), "Buffer"));
             }
-            AddressSpace::Uniform => lines.extend(self.block(handle, &name, Rules::Std140, "uniform", "Block")),
+            AddressSpace::Uniform => lines.extend(self.block(handle, &name, LayoutRules::Std140, "uniform", "Block")),
             AddressSpace::Private => {
                 let declaration = self.declaration(variable.ty, &name, span);
                 let value = match variable.init {
                     Some(init) => format!(" = {}", self.constant_expression(init).text),
-                    // `main` begins by setting it to zero, in a loop.
+                    // `main` sets it to zero in a loop, or the shader writes it first.
                     None if self.is_long_private_array(handle) || self.is_written_first(handle) => String::new(),
                     None => format!(" = {}", self.zero(variable.ty, span)),
                 };
@@ -173,6 +175,7 @@ impl Printer<'_> {
         lines
     }
 
+    /// Prints the layout qualifiers for the binding of a resource.
     fn slot(&mut self, handle: Handle<GlobalVariable>) -> String {
         let Some(binding) = self.module.global_variables[handle].binding else {
             return self.error("a resource without a binding", self.module.global_variables.get_span(handle));
@@ -185,44 +188,46 @@ impl Printer<'_> {
         }
     }
 
-    /// `coherent` makes what other invocations have written visible to this one's plain reads; words that are written by
-    /// atomics are shared by nature, so they always have it. `volatile` moreover forbids to reuse a value read before,
-    /// which is what makes a plain read in place of an atomic load look at memory each time.
+    /// Returns the memory qualifiers of a buffer. `coherent` makes other invocations' writes visible to plain reads; buffers
+    /// with atomics are shared, so they always have it. `volatile` also forbids the reuse of an earlier value, so that a
+    /// plain read that replaces an atomic load accesses memory each time.
     fn buffer_qualifiers(&self, handle: Handle<GlobalVariable>, access: StorageAccess) -> String {
         let variable = &self.module.global_variables[handle];
-        let plain = self.is_plain(handle);
+        let plain = self.allows_plain_loads(handle);
         let coherent = plain
             || variable.memory_decorations.contains(MemoryDecorations::COHERENT)
-            || self.holds_atomics(variable.ty);
+            || self.contains_atomics(variable.ty);
         let volatile = plain || variable.memory_decorations.contains(MemoryDecorations::VOLATILE);
         let readonly = !access.intersects(StorageAccess::STORE | StorageAccess::ATOMIC);
         let qualifiers = [(readonly, "readonly "), (coherent, "coherent "), (volatile, "volatile ")];
         qualifiers.iter().filter(|(present, _)| *present).map(|(_, text)| *text).collect()
     }
 
-    fn holds_atomics(&self, ty: Handle<Type>) -> bool {
+    /// Tests whether a type contains atomics.
+    fn contains_atomics(&self, ty: Handle<Type>) -> bool {
         match self.module.types[ty].inner {
             TypeInner::Atomic(_) => true,
-            TypeInner::Array { base, .. } => self.holds_atomics(base),
-            TypeInner::Struct { ref members, .. } => members.iter().any(|member| self.holds_atomics(member.ty)),
+            TypeInner::Array { base, .. } => self.contains_atomics(base),
+            TypeInner::Struct { ref members, .. } => members.iter().any(|member| self.contains_atomics(member.ty)),
             _ => false,
         }
     }
 
+    /// Prints a buffer or uniform block.
     fn block(
         &mut self,
         handle: Handle<GlobalVariable>,
         name: &str,
-        rules: Rules,
+        rules: LayoutRules,
         keywords: &str,
         suffix: &str,
     ) -> Vec<String> {
         let ty = self.module.global_variables[handle].ty;
         let span = self.module.global_variables.get_span(handle);
-        if let Some(difference) = disagreement(self.module, ty, rules) {
+        if let Some(difference) = layout_difference(self.module, ty, rules) {
             self.error(format!("the layout of `{name}`: {difference}"), span);
         }
-        let standard = if rules == Rules::Std430 { "std430" } else { "std140" };
+        let standard = if rules == LayoutRules::Std430 { "std430" } else { "std140" };
         let slot = self.slot(handle);
         let block = self.names.declare(&(upper_camel(name) + suffix));
         let mut lines = vec![format!("layout({standard}, {slot}) {keywords} {block} {{")];
@@ -237,6 +242,7 @@ impl Printer<'_> {
         lines
     }
 
+    /// Prints the declaration of a texture or sampler.
     fn opaque(&mut self, handle: Handle<GlobalVariable>, name: &str) -> Vec<String> {
         let span = self.module.global_variables.get_span(handle);
         let ty = match self.module.types[self.module.global_variables[handle].ty].inner {
@@ -257,27 +263,27 @@ impl Printer<'_> {
             TypeInner::Image { dim, arrayed, .. }
                 if self.es() && (dim == ImageDimension::D1 || (dim == ImageDimension::Cube && arrayed)) =>
             {
-                return vec![self.error("a texture of one dimension, or of several cubes", span)];
+                return vec![self.error("a one-dimensional texture or a cube array texture", span)];
             }
             TypeInner::Image { class: ImageClass::External, .. } => {
                 return vec![self.error("an external texture", span)];
             }
             TypeInner::Image { dim, arrayed, class } if self.vulkan() => opaque_type("texture", dim, arrayed, class),
             TypeInner::Image { dim, arrayed, class } => {
-                let compares = self.needs.combined.get(&handle).is_some_and(|(_, comparison)| *comparison);
+                let compares = self.requirements.combined.get(&handle).is_some_and(|(_, comparison)| *comparison);
                 opaque_type("sampler", dim, arrayed, class) + if compares { "Shadow" } else { "" }
             }
             TypeInner::Sampler { comparison } => if comparison { "samplerShadow" } else { "sampler" }.to_owned(),
             _ => return vec![self.error("a resource of this type", span)],
         };
         let slot = self.slot(handle);
-        // Most kinds of samplers have no precision of their own in ES.
+        // Most sampler types have no default precision in ES.
         let precision = if self.es() { "highp " } else { "" };
         vec![format!("layout({slot}) uniform {precision}{ty} {name};")]
     }
 }
 
-/// Doc comments as `///` lines, whichever marks they came with.
+/// Converts a line of any doc comment to a `///` line.
 fn documentation_line(line: &str) -> String {
     let text = line.trim().trim_start_matches("/**").trim_end_matches("*/");
     let text = text.trim_start_matches(['/', '*', '!']).trim_end();

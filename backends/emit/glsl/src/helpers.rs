@@ -1,11 +1,11 @@
-//! Functions that mean in GLSL what a WGSL operator means, where GLSL's own operator is undefined or differs.
+//! Helper functions with the meaning of a WGSL operator, where GLSL's operator is undefined or differs.
 //!
-//! In: which are needed. Out: their text, each with the reason in a comment. Their names begin with `wgsl_`, which no
-//! printed name may.
+//! Input: a helper. Output: its definition, with the reason in a comment. Names begin with `wgsl_`, a prefix that printed
+//! names never have.
 
 use naga::VectorSize;
 
-/// A helper function; overloads for all its shapes share a name.
+/// A helper function; the overloads for different types share a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Helper {
     DivideUint(u8),
@@ -21,16 +21,18 @@ pub enum Helper {
     FloatToInt(u8),
 }
 
-/// 1 for a scalar.
+/// Returns the number of lanes; 1 for a scalar.
 pub fn lanes(size: Option<VectorSize>) -> u8 {
     size.map_or(1, |size| size as u8)
 }
 
+/// Returns the name of a type with the given lanes.
 fn typed(stem: &str, scalar: &str, lanes: u8) -> String {
     if lanes == 1 { scalar.to_owned() } else { format!("{stem}{lanes}") }
 }
 
 impl Helper {
+    /// Returns the name of the function.
     pub fn name(self) -> &'static str {
         match self {
             Self::DivideUint(_) | Self::DivideInt(_) => "wgsl_divide",
@@ -46,7 +48,7 @@ impl Helper {
         }
     }
 
-    /// The definition, once per shader: two libraries included in one shader may need the same function.
+    /// Returns the definition with an include guard, because two libraries in one shader may use the same function.
     pub fn guarded(self) -> String {
         let words: String = format!("{self:?}")
             .chars()
@@ -56,7 +58,7 @@ impl Helper {
         format!("#ifndef {guard}\n#define {guard}\n{}#endif\n", self.text())
     }
 
-    /// The definition.
+    /// Returns the definition.
     pub fn text(self) -> String {
         match self {
             Self::DivideUint(lanes) => divide("uvec", "uint", lanes, false),
@@ -115,7 +117,7 @@ fn divide(stem: &str, scalar: &str, lanes: u8, signed: bool) -> String {
     format!("{reason}\n{ty} wgsl_divide({ty} a, {ty} b) {{\n    return a / {divisor};\n}}\n")
 }
 
-/// b, or 1 where WGSL's division gives a itself.
+/// Prints the divisor: b, or 1 where the quotient is a in WGSL.
 fn divisor(ty: &str, lanes: u8, signed: bool) -> String {
     match (lanes, signed) {
         (1, false) => "(b == 0u ? 1u : b)".to_owned(),

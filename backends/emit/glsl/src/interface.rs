@@ -1,25 +1,24 @@
-//! The borders of an entry point: what comes in from and goes out to the rest of the pipeline.
+//! The shader interface of an entry point: its inputs and outputs.
 //!
-//! In: the bindings on an entry point's arguments and result. Out: `in` and `out` declarations with explicit locations, and
-//! for each argument the text it prints as. Both sides of a stage border are matched by location, so names are free: `in_`
-//! or `out_` before the WGSL name.
+//! Input: the bindings of an entry point's arguments and result. Output: `in` and `out` declarations with explicit
+//! locations, and the printed text of each argument. Stages are matched by location, so names are arbitrary: `in_` or
+//! `out_` before the WGSL name.
 
 use naga::{
     Binding, BuiltIn, EntryPoint, Expression, Function, Handle, Interpolation, Sampling, ShaderStage, Span, Type,
     TypeInner,
 };
 
-use crate::expression::Text;
-use crate::function::FunctionPrinter;
+use crate::precedence::Text;
 use crate::printer::Printer;
 
-/// How an argument of an entry point prints.
+/// The printed form of an entry-point argument.
 #[derive(Clone)]
 pub enum Argument {
     Value(Text),
-    /// A structure of which only members are used: each is a global of its own.
+    /// A structure of which only members are used: each is a separate global.
     Members(Vec<Text>),
-    /// A structure that is used as a whole: `main` puts it together under this name.
+    /// A structure that is used as a whole: `main` assembles it under this name.
     Whole {
         name: String,
         ty: Handle<Type>,
@@ -27,15 +26,16 @@ pub enum Argument {
     },
 }
 
-/// A part of the result: the global it is assigned to.
+/// A part of the result, with the global that it is assigned to.
 #[derive(Clone)]
 pub struct Output {
-    target: String,
-    /// The mask of samples is signed in GLSL.
-    as_int: bool,
-    is_position: bool,
+    pub target: String,
+    /// True for the sample mask, which is signed in GLSL.
+    pub as_int: bool,
+    pub is_position: bool,
 }
 
+/// The inputs and outputs of an entry point.
 #[derive(Default)]
 pub struct Interface {
     pub arguments: Vec<Argument>,
@@ -45,6 +45,7 @@ pub struct Interface {
 }
 
 impl Printer<'_> {
+    /// Returns the interface of an entry point.
     pub fn interface(&mut self, entry: &EntryPoint) -> Interface {
         let mut interface = Interface::default();
         for (index, argument) in entry.function.arguments.iter().enumerate() {
@@ -70,6 +71,7 @@ impl Printer<'_> {
         interface
     }
 
+    /// Declares the members of a structure of inputs.
     fn input_structure(
         &mut self,
         entry: &EntryPoint,
@@ -83,20 +85,21 @@ impl Printer<'_> {
             self.error("an entry point's argument without a binding", Span::UNDEFINED);
             return Argument::Members(Vec::new());
         };
-        let texts = members.iter().map(|member| {
+        let inputs = members.iter().map(|member| {
             let member_name = member.name.as_deref().unwrap_or("member");
             match &member.binding {
                 Some(binding) => self.input(entry.stage, member_name, member.ty, binding, declarations),
                 None => Text::primary(self.error("an input without a binding", Span::UNDEFINED)),
             }
         });
-        let texts = texts.collect();
+        let inputs = inputs.collect();
         if is_used_whole(&entry.function, index) {
-            return Argument::Whole { name: name.to_owned(), ty, members: texts };
+            return Argument::Whole { name: name.to_owned(), ty, members: inputs };
         }
-        Argument::Members(texts)
+        Argument::Members(inputs)
     }
 
+    /// Declares the members of a structure of outputs.
     fn output_structure(&mut self, entry: &EntryPoint, ty: Handle<Type>, interface: &mut Interface) {
         let module = self.module;
         let TypeInner::Struct { ref members, .. } = module.types[ty].inner else {
@@ -114,6 +117,7 @@ impl Printer<'_> {
         }
     }
 
+    /// Declares an input and returns its text.
     fn input(
         &mut self,
         stage: ShaderStage,
@@ -138,6 +142,7 @@ impl Printer<'_> {
         }
     }
 
+    /// Declares an output.
     fn output(
         &mut self,
         stage: ShaderStage,
@@ -157,7 +162,7 @@ impl Printer<'_> {
             Binding::BuiltIn(BuiltIn::FragDepth) => plain("gl_FragDepth"),
             Binding::BuiltIn(BuiltIn::PointSize) => plain("gl_PointSize"),
             Binding::BuiltIn(BuiltIn::SampleMask) => {
-                self.need_es_extension("GL_OES_sample_variables");
+                self.require_es_extension("GL_OES_sample_variables");
                 Output { as_int: true, ..plain("gl_SampleMask[0]") }
             }
             Binding::BuiltIn(builtin) => {
@@ -178,6 +183,7 @@ impl Printer<'_> {
         }
     }
 
+    /// Returns the interpolation qualifiers.
     fn interpolation(&mut self, interpolation: Option<Interpolation>, sampling: Option<Sampling>) -> String {
         let interpolation = match interpolation {
             Some(Interpolation::Flat) => return "flat ".to_owned(),
@@ -195,7 +201,7 @@ impl Printer<'_> {
         let sampling = match sampling {
             Some(Sampling::Centroid) => "centroid ",
             Some(Sampling::Sample) => {
-                self.need_es_extension("GL_OES_shader_multisample_interpolation");
+                self.require_es_extension("GL_OES_shader_multisample_interpolation");
                 "sample "
             }
             _ => "",
@@ -203,36 +209,37 @@ impl Printer<'_> {
         format!("{interpolation}{sampling}")
     }
 
-    /// What OpenGL has of itself, ES by an extension.
-    fn need_es_extension(&mut self, extension: &'static str) {
+    /// Requires an extension in ES, where OpenGL has the feature in core.
+    fn require_es_extension(&mut self, extension: &'static str) {
         if self.es() {
-            self.needs.extensions.insert(extension);
+            self.requirements.extensions.insert(extension);
         }
     }
 
+    /// Returns the text of a built-in input, converted to its WGSL type.
     fn builtin_input(&mut self, builtin: BuiltIn, ty: Handle<Type>) -> Text {
         let vulkan = self.vulkan();
-        // GLSL has these as int.
+        // These are `int` in GLSL.
         let integer = match builtin {
             BuiltIn::VertexIndex => Some(if vulkan { "gl_VertexIndex" } else { "gl_VertexID" }),
             BuiltIn::InstanceIndex if vulkan => Some("gl_InstanceIndex"),
-            // ES 3.1 knows no first instance: it is 0.
+            // ES 3.1 has no first instance: it is 0.
             BuiltIn::InstanceIndex if self.es() => Some("gl_InstanceID"),
             BuiltIn::InstanceIndex => {
                 // WGSL counts from the first instance of the draw, OpenGL from zero.
-                self.needs.extensions.insert("GL_ARB_shader_draw_parameters");
+                self.requirements.extensions.insert("GL_ARB_shader_draw_parameters");
                 Some("gl_BaseInstanceARB + gl_InstanceID")
             }
             BuiltIn::SampleIndex => {
-                self.need_es_extension("GL_OES_sample_variables");
+                self.require_es_extension("GL_OES_sample_variables");
                 Some("gl_SampleID")
             }
             BuiltIn::SampleMask => {
-                self.need_es_extension("GL_OES_sample_variables");
+                self.require_es_extension("GL_OES_sample_variables");
                 Some("gl_SampleMaskIn[0]")
             }
             BuiltIn::PrimitiveIndex => {
-                self.need_es_extension("GL_EXT_geometry_shader");
+                self.require_es_extension("GL_EXT_geometry_shader");
                 Some("gl_PrimitiveID")
             }
             _ => None,
@@ -242,7 +249,7 @@ impl Printer<'_> {
             return Text::primary(format!("{ty}({integer})"));
         }
         Text::primary(match builtin {
-            // Here as there, w is the reciprocal of the clip-space w.
+            // In both languages, w is the reciprocal of the clip-space w.
             BuiltIn::Position { .. } => "gl_FragCoord",
             BuiltIn::FrontFacing => "gl_FrontFacing",
             BuiltIn::GlobalInvocationId => "gl_GlobalInvocationID",
@@ -255,7 +262,7 @@ impl Printer<'_> {
     }
 }
 
-/// Whether an argument is used otherwise than by its members.
+/// Tests whether an argument is used other than by its members.
 fn is_used_whole(function: &Function, index: usize) -> bool {
     let arguments: Vec<Handle<Expression>> = function
         .expressions
@@ -279,78 +286,4 @@ fn is_used_whole(function: &Function, index: usize) -> bool {
         };
     });
     in_expressions || in_statements
-}
-
-impl FunctionPrinter<'_, '_> {
-    /// Puts together the inputs that are used as a whole, and names those that need a conversion.
-    pub fn assemble_inputs(&mut self) {
-        let arguments = self.interface.as_ref().map(|interface| interface.arguments.clone()).unwrap_or_default();
-        for (index, argument) in arguments.into_iter().enumerate() {
-            let (name, ty, value) = match argument {
-                Argument::Whole { name, ty, members } => {
-                    let structure = self.printer.type_name(ty, Span::UNDEFINED);
-                    let members: Vec<String> = members.into_iter().map(|member| member.text).collect();
-                    (name, ty, format!("{structure}({})", members.join(", ")))
-                }
-                // A conversion reads better under the argument's own name.
-                Argument::Value(text) if text.text.contains('(') && self.uses_argument(index) => {
-                    let argument = &self.function.arguments[index];
-                    (argument.name.clone().unwrap_or_default(), argument.ty, text.text)
-                }
-                _ => continue,
-            };
-            let name = self.declare(&name);
-            let declaration = self.printer.declaration(ty, &name, Span::UNDEFINED);
-            self.line(format!("{declaration} = {value};"));
-            if let Some(slot) = self.interface.as_mut().and_then(|interface| interface.arguments.get_mut(index)) {
-                *slot = Argument::Value(Text::primary(name));
-            }
-        }
-    }
-
-    fn uses_argument(&self, index: usize) -> bool {
-        let is_argument = |expression: &Expression| matches!(expression, Expression::FunctionArgument(argument) if *argument as usize == index);
-        self.function
-            .expressions
-            .iter()
-            .any(|(handle, expression)| is_argument(expression) && self.plan.live.contains(&handle))
-    }
-
-    /// Assigns the result to the outputs.
-    pub fn write_outputs(&mut self, value: Handle<Expression>) {
-        let outputs = self.interface.as_ref().map(|interface| interface.outputs.clone()).unwrap_or_default();
-        let parts = self.parts(value, outputs.len());
-        for (output, part) in outputs.iter().zip(parts) {
-            let part = if output.as_int { format!("int({part})") } else { part };
-            self.line(format!("{} = {part};", output.target));
-            if output.is_position && !self.printer.vulkan() {
-                self.line("// OpenGL clips depth to -w..w, WGSL to 0..w.");
-                self.line("gl_Position.z = 2.0 * gl_Position.z - gl_Position.w;");
-            }
-        }
-    }
-
-    /// The members of a result, or the result itself.
-    fn parts(&mut self, value: Handle<Expression>, count: usize) -> Vec<String> {
-        let function = self.function;
-        let TypeInner::Struct { ref members, .. } = *self.order.inner(value) else {
-            return vec![self.expression(value)];
-        };
-        let members = members.clone();
-        if let (Expression::Compose { components, .. }, false) =
-            (&function.expressions[value], self.values.contains_key(&value))
-        {
-            return components.iter().map(|component| self.expression(*component)).collect();
-        }
-        let mut text = self.expression(value);
-        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        if !is_name {
-            let name = self.declare("result");
-            let span = self.span(value);
-            let declaration = self.printer.resolved_declaration(&self.order.info[value].ty, &name, span);
-            self.line(format!("{declaration} = {text};"));
-            text = name;
-        }
-        (0..count).map(|index| format!("{text}.{}", crate::names::field(&members, index))).collect()
-    }
 }

@@ -1,14 +1,14 @@
-//! Literals: a value in, the shortest GLSL text that reads back as the same bits out.
+//! Prints a literal as the shortest GLSL text that parses to the same bits.
 //!
-//! 64-bit signed, 16-bit and abstract values have no text here.
+//! 64-bit signed, 16-bit and abstract values are unsupported.
 
 use naga::Literal;
 
-/// GLSL text of a literal; `written` is what the WGSL text has in its place, whose hexadecimal spelling is kept.
-pub fn literal(value: Literal, written: &str) -> Option<String> {
+/// Prints a literal. `wgsl` is its WGSL source; a hexadecimal spelling is kept.
+pub fn literal(value: Literal, wgsl: &str) -> Option<String> {
     match value {
         Literal::Bool(value) => Some(value.to_string()),
-        Literal::U32(value) => Some(unsigned(value, written)),
+        Literal::U32(value) => Some(unsigned(value, wgsl)),
         Literal::I32(value) => Some(signed(value)),
         Literal::U64(value) => Some(format!("{value}ul")),
         Literal::F32(value) => Some(float(value)),
@@ -16,26 +16,26 @@ pub fn literal(value: Literal, written: &str) -> Option<String> {
     }
 }
 
-/// An unsigned literal, such as `12u` or `0xFFFFFFFFu`.
-pub fn unsigned(value: u32, written: &str) -> String {
-    let digits = written.trim_end_matches('u');
+/// Prints an unsigned literal, such as `12u` or `0xFFFFFFFFu`.
+pub fn unsigned(value: u32, wgsl: &str) -> String {
+    let digits = wgsl.trim_end_matches('u');
     let hexadecimal = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X"));
     if hexadecimal.is_some_and(|digits| u32::from_str_radix(digits, 16) == Ok(value)) {
         return format!("{digits}u");
     }
-    // Masks and high single bits read as bits, not as numbers.
+    // Masks and high single bits are more readable in hexadecimal.
     let is_mask = value & value.wrapping_add(1) == 0 || value.is_power_of_two();
     if value > 0xFFFF && is_mask { format!("0x{value:X}u") } else { format!("{value}u") }
 }
 
 fn signed(value: i32) -> String {
-    // The least value has no literal: its digits would overflow before the minus sign applies.
+    // The least value has no literal: its digits overflow before the minus sign applies.
     if value == i32::MIN { "(-2147483647 - 1)".to_owned() } else { value.to_string() }
 }
 
-/// A float literal, such as `1.0` or `1e-5`.
+/// Prints a float literal, such as `1.0` or `1e-5`.
 pub fn float(value: f32) -> String {
-    // The shortest digits of a large whole number are not its own: 2^32 would read 4294967300.
+    // The shortest digits of a large whole number are inexact: 2^32 would print as 4294967300.
     let whole = value.abs() > 16_777_216.0 && value.abs() < 1e10;
     match value.is_finite() {
         true if whole => format!("{value:.1}"),

@@ -1,26 +1,28 @@
-//! Where each `var` is declared.
+//! Decides where each `var` is declared.
 //!
-//! naga hoists every `var` to the top of its function and leaves a store where its value is computed. In: the order of a
-//! function. Out: for each variable the store that becomes its declaration again, or the statement that it is declared
-//! before. A variable that is set anew on each iteration must be declared by its store; one that is set once must not be
-//! declared inside a loop.
+//! naga hoists every `var` to the top of its function and leaves a store at its initialiser. Input: the order of a function.
+//! Output: for each variable the store that becomes its declaration, or the statement that the declaration precedes. A
+//! variable that each iteration initialises must be declared by its store. One that is initialised once must not be declared
+//! inside a loop.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{Block, Expression, Handle, LocalVariable, Statement};
 
 use crate::analysis::Order;
-use crate::footprint::{self, Place};
+use crate::footprint::{self, MemoryObject};
 use crate::schedule::Plan;
 
+/// The declarations of a function.
 #[derive(Default)]
 pub struct Declarations {
     /// Steps of stores that declare the variable they store to.
     pub by_store: BTreeMap<usize, Handle<LocalVariable>>,
-    /// Variables to declare, with their constant value, before a statement (named by its step).
+    /// Variables to declare, with their constant value, before a statement; by its step.
     pub before: BTreeMap<usize, Vec<Handle<LocalVariable>>>,
 }
 
+/// Decides the declarations of a function.
 pub fn declarations(order: &Order, plan: &Plan) -> Declarations {
     let mut result = Declarations::default();
     let mut mentions: BTreeMap<Handle<LocalVariable>, Vec<usize>> = BTreeMap::new();
@@ -30,7 +32,7 @@ pub fn declarations(order: &Order, plan: &Plan) -> Declarations {
         }
     }
     for (local, steps) in mentions {
-        if plan.is_circuit_variable(local) {
+        if plan.is_short_circuit_variable(local) {
             continue;
         }
         match declaring_store(order, local, &steps) {
@@ -41,26 +43,27 @@ pub fn declarations(order: &Order, plan: &Plan) -> Declarations {
     result
 }
 
-/// Variables whose name the text of a step contains.
+/// Returns the variables that the printed step mentions.
 fn mentioned(order: &Order, step: usize) -> BTreeSet<Handle<LocalVariable>> {
     let entry = &order.steps[step];
-    let touched = entry.footprint.reads.iter().chain(&entry.footprint.writes);
-    let mut locals: BTreeSet<_> =
-        touched.filter_map(|place| if let Place::Local(local) = place { Some(*local) } else { None }).collect();
+    let accessed = entry.footprint.reads.iter().chain(&entry.footprint.writes);
+    let mut locals: BTreeSet<_> = accessed
+        .filter_map(|object| if let MemoryObject::Local(local) = object { Some(*local) } else { None })
+        .collect();
     let pointers: Vec<Handle<Expression>> = match entry.statement {
         Some(Statement::Store { pointer, .. } | Statement::Atomic { pointer, .. }) => vec![*pointer],
         Some(Statement::Call { arguments, .. }) => arguments.clone(),
         _ => Vec::new(),
     };
     for pointer in pointers.into_iter().filter(|pointer| order.is_pointer(*pointer)) {
-        if let Some(Place::Local(local)) = footprint::root(order.module, order.function, pointer) {
+        if let Some(MemoryObject::Local(local)) = footprint::root(order.module, order.function, pointer) {
             locals.insert(local);
         }
     }
     locals
 }
 
-/// The store that was the variable's initialiser, if everything else that mentions the variable comes after it, inside.
+/// Returns the store that was the variable's initialiser, if all other mentions follow it inside its block.
 fn declaring_store(order: &Order, local: Handle<LocalVariable>, mentions: &[usize]) -> Option<usize> {
     let first = *mentions.first()?;
     let entry = &order.steps[first];
@@ -71,17 +74,17 @@ fn declaring_store(order: &Order, local: Handle<LocalVariable>, mentions: &[usiz
     (whole && inside && !initialised).then_some(first)
 }
 
-/// A block and all that contain it, innermost first.
+/// Returns a block and all blocks around it, innermost first.
 fn ancestors(order: &Order, block: usize) -> Vec<usize> {
     std::iter::successors(Some(block), |block| order.blocks[*block].parent).collect()
 }
 
-/// The innermost statement position outside every loop from which all mentions can be seen.
+/// Returns the innermost statement outside every loop that a declaration can precede to be visible at all mentions.
 fn statement_before(order: &Order, local: Handle<LocalVariable>, mentions: &[usize]) -> usize {
     let first = mentions.first().copied().unwrap_or_default();
     let common = ancestors(order, order.steps[first].block).into_iter().find(|candidate| {
-        let holds = mentions.iter().all(|step| ancestors(order, order.steps[*step].block).contains(candidate));
-        holds && !ancestors(order, *candidate).iter().any(|block| order.blocks[*block].is_loop)
+        let contains_all = mentions.iter().all(|step| ancestors(order, order.steps[*step].block).contains(candidate));
+        contains_all && !ancestors(order, *candidate).iter().any(|block| order.blocks[*block].is_loop)
     });
     let common = common.unwrap_or_default();
     // Climb from the first mention to the statement of the common block that contains it.
@@ -90,12 +93,13 @@ fn statement_before(order: &Order, local: Handle<LocalVariable>, mentions: &[usi
         step = order.blocks[order.steps[step].block].owner;
     }
     let block = block_of(order, common);
-    let first_statement = block.and_then(|block| statement_holding(order, block, step)).unwrap_or(step);
+    let first_statement = block.and_then(|block| statement_containing(order, block, step)).unwrap_or(step);
     block
-        .and_then(|block| written_position(order, block, local))
-        .map_or(first_statement, |written| written.min(first_statement))
+        .and_then(|block| source_position(order, block, local))
+        .map_or(first_statement, |position| position.min(first_statement))
 }
 
+/// Returns the block with an index.
 fn block_of<'m>(order: &Order<'m>, id: usize) -> Option<&'m Block> {
     if id == 0 {
         return Some(&order.function.body);
@@ -110,13 +114,13 @@ fn block_of<'m>(order: &Order<'m>, id: usize) -> Option<&'m Block> {
     footprint::inner_blocks(owner).get(position).copied()
 }
 
-/// The step of the statement of a block (an `Emit` counts) that contains a step.
-fn statement_holding(order: &Order, block: &Block, step: usize) -> Option<usize> {
+/// Returns the step of the statement of a block that contains a step; an `Emit` is a statement.
+fn statement_containing(order: &Order, block: &Block, step: usize) -> Option<usize> {
     block.iter().map(|statement| order.step_of(statement)).filter(|start| *start <= step).max()
 }
 
-/// The first statement of the block that the source has after the variable's own declaration.
-fn written_position(order: &Order, block: &Block, local: Handle<LocalVariable>) -> Option<usize> {
+/// Returns the first statement of the block that follows the variable's declaration in the source.
+fn source_position(order: &Order, block: &Block, local: Handle<LocalVariable>) -> Option<usize> {
     let declared = order.function.local_variables.get_span(local).to_range()?;
     let after = |span: &naga::Span| {
         span.to_range().is_some_and(|range| range.start >= declared.start || range.end >= declared.end)

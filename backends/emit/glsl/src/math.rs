@@ -1,17 +1,17 @@
-//! Built-in functions: WGSL's in, GLSL's of the same meaning out.
+//! Prints WGSL's built-in functions as GLSL with the same meaning.
 //!
-//! Most differ in name alone. The others are written out here, or through a function of `helpers`.
+//! Most differ only in name. The others print as expressions, or as calls of a function of `helpers`.
 
 use naga::{
     DerivativeAxis, DerivativeControl, Expression, Handle, Literal, MathFunction, RelationalFunction, Scalar,
     ScalarKind,
 };
 
-use crate::expression::{Level, Text};
 use crate::function::FunctionPrinter;
 use crate::helpers::Helper;
+use crate::precedence::{Precedence, Text};
 
-/// Functions that GLSL has with the same meaning.
+/// Returns the GLSL function with the same meaning.
 fn plain_name(fun: MathFunction) -> Option<&'static str> {
     use MathFunction as M;
     Some(match fun {
@@ -77,9 +77,10 @@ fn plain_name(fun: MathFunction) -> Option<&'static str> {
 }
 
 impl FunctionPrinter<'_, '_> {
+    /// Prints a call of a built-in function.
     pub fn math(&mut self, expression: Handle<Expression>) -> Text {
         let Expression::Math { fun, arg, arg1, arg2, arg3 } = self.function.expressions[expression] else {
-            return Text::primary(self.error("not a built-in function", expression));
+            return Text::primary(self.error("an expression that is not a built-in function", expression));
         };
         let operands: Vec<_> = [Some(arg), arg1, arg2, arg3].into_iter().flatten().collect();
         operands.iter().for_each(|operand| self.check_scalar(*operand));
@@ -90,7 +91,7 @@ impl FunctionPrinter<'_, '_> {
             return Text::primary(self.error(format!("the built-in function {fun:?} of u64 values"), expression));
         }
         match fun {
-            // ES 3.1 has no fma; WGSL lets it be rounded twice.
+            // ES 3.1 has no fma; WGSL allows two roundings.
             MathFunction::Fma if self.printer.es() => self.multiply_add(&operands),
             MathFunction::Abs if kind == Some(ScalarKind::Uint) => self.text(arg),
             MathFunction::Clamp => self.clamp(&operands),
@@ -102,18 +103,20 @@ impl FunctionPrinter<'_, '_> {
             MathFunction::Dot if kind != Some(ScalarKind::Float) => self.integer_dot(&operands),
             MathFunction::Dot => self.call("dot", &operands),
             MathFunction::QuantizeToF16 => self.quantize(expression, arg),
-            MathFunction::CountOneBits => self.bits("bitCount", arg),
-            MathFunction::FirstTrailingBit => self.bits("findLSB", arg),
-            MathFunction::FirstLeadingBit => self.bits("findMSB", arg),
+            MathFunction::CountOneBits => self.bit_function("bitCount", arg),
+            MathFunction::FirstTrailingBit => self.bit_function("findLSB", arg),
+            MathFunction::FirstLeadingBit => self.bit_function("findMSB", arg),
             MathFunction::CountLeadingZeros => self.count_leading_zeros(arg),
             MathFunction::CountTrailingZeros => self.count_trailing_zeros(arg),
             MathFunction::ExtractBits | MathFunction::InsertBits => self.bit_field(fun, &operands),
-            MathFunction::Pack4xU8 => self.help(Helper::PackBytes { signed: false, clamp: false }, &operands),
-            MathFunction::Pack4xI8 => self.help(Helper::PackBytes { signed: true, clamp: false }, &operands),
-            MathFunction::Pack4xU8Clamp => self.help(Helper::PackBytes { signed: false, clamp: true }, &operands),
-            MathFunction::Pack4xI8Clamp => self.help(Helper::PackBytes { signed: true, clamp: true }, &operands),
-            MathFunction::Unpack4xU8 => self.help(Helper::UnpackBytes { signed: false }, &operands),
-            MathFunction::Unpack4xI8 => self.help(Helper::UnpackBytes { signed: true }, &operands),
+            MathFunction::Pack4xU8 => self.call_helper(Helper::PackBytes { signed: false, clamp: false }, &operands),
+            MathFunction::Pack4xI8 => self.call_helper(Helper::PackBytes { signed: true, clamp: false }, &operands),
+            MathFunction::Pack4xU8Clamp => {
+                self.call_helper(Helper::PackBytes { signed: false, clamp: true }, &operands)
+            }
+            MathFunction::Pack4xI8Clamp => self.call_helper(Helper::PackBytes { signed: true, clamp: true }, &operands),
+            MathFunction::Unpack4xU8 => self.call_helper(Helper::UnpackBytes { signed: false }, &operands),
+            MathFunction::Unpack4xI8 => self.call_helper(Helper::UnpackBytes { signed: true }, &operands),
             fun => match plain_name(fun) {
                 Some(name) => self.call(name, &operands),
                 None => Text::primary(self.error(format!("the built-in function {fun:?}"), expression)),
@@ -121,10 +124,10 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
-    /// GLSL leaves clamp() undefined if the bounds are the wrong way round; WGSL takes the lower of the two maxima.
+    /// Prints clamp(). GLSL leaves it undefined if low exceeds high; WGSL defines it as `min(max(value, low), high)`.
     fn clamp(&mut self, operands: &[Handle<Expression>]) -> Text {
         let [value, low, high] = operands else { return self.call("clamp", operands) };
-        let ordered = match (self.known(*low), self.known(*high)) {
+        let ordered = match (self.known_literal(*low), self.known_literal(*high)) {
             (Some(Literal::U32(low)), Some(Literal::U32(high))) => low <= high,
             (Some(Literal::I32(low)), Some(Literal::I32(high))) => low <= high,
             (Some(Literal::F32(low)), Some(Literal::F32(high))) => low <= high,
@@ -137,15 +140,17 @@ impl FunctionPrinter<'_, '_> {
         Text::primary(format!("min(max({value}, {low}), {high})"))
     }
 
+    /// Prints a dot product of integers, which GLSL lacks, by component.
     fn integer_dot(&mut self, operands: &[Handle<Expression>]) -> Text {
         let [left, right] = operands else { return self.call("dot", operands) };
         let lanes = self.shape(*left).map_or(0, |(lanes, _)| usize::from(lanes));
         let (left, right) = (self.primary(*left), self.primary(*right));
         let terms: Vec<String> =
             ["x", "y", "z", "w"].iter().take(lanes).map(|c| format!("{left}.{c} * {right}.{c}")).collect();
-        Text::new(terms.join(" + "), Level::Sum)
+        Text::new(terms.join(" + "), Precedence::Sum)
     }
 
+    /// Prints quantizeToF16(), which GLSL lacks.
     fn quantize(&mut self, expression: Handle<Expression>, value: Handle<Expression>) -> Text {
         if self.shape(value).is_some_and(|(lanes, _)| lanes > 1) {
             return Text::primary(self.error("quantizeToF16 of a vector", expression));
@@ -154,40 +159,41 @@ impl FunctionPrinter<'_, '_> {
         Text::primary(format!("unpackHalf2x16(packHalf2x16(vec2({value}, 0.0))).x"))
     }
 
-    /// GLSL's bit functions return `int`; -1, for no bit, is all ones in both.
-    fn bits(&mut self, name: &str, value: Handle<Expression>) -> Text {
+    /// Prints a bit function. GLSL's return `int`; -1, for no bit, is all ones in both types.
+    fn bit_function(&mut self, name: &str, value: Handle<Expression>) -> Text {
         let text = self.call(name, &[value]);
         if self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Uint) {
-            let ty = self.like(value, Scalar::U32);
+            let ty = self.type_with_scalar(value, Scalar::U32);
             return Text::primary(format!("{ty}({})", text.text));
         }
         text
     }
 
     fn count_leading_zeros(&mut self, value: Handle<Expression>) -> Text {
-        let words = self.like(value, Scalar::U32);
+        let unsigned = self.type_with_scalar(value, Scalar::U32);
         let signed = self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
         let text = self.expression(value);
         if signed {
-            // The sign bit counts as a bit here, but not for findMSB() of an int.
-            return Text::new(format!("31 - findMSB({words}({text}))"), Level::Sum);
+            // WGSL counts the sign bit; findMSB() of an int does not.
+            return Text::new(format!("31 - findMSB({unsigned}({text}))"), Precedence::Sum);
         }
-        Text::primary(format!("{words}(31 - findMSB({text}))"))
+        Text::primary(format!("{unsigned}(31 - findMSB({text}))"))
     }
 
     fn count_trailing_zeros(&mut self, value: Handle<Expression>) -> Text {
-        let words = self.like(value, Scalar::U32);
+        let unsigned = self.type_with_scalar(value, Scalar::U32);
         let signed = self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
         let text = self.expression(value);
-        // Without any bit findLSB() gives -1, all ones, so the minimum is 32.
-        let count = format!("min({words}(findLSB({text})), 32u)");
+        // For 0, findLSB() returns -1, all ones, so the minimum is 32.
+        let count = format!("min({unsigned}(findLSB({text})), 32u)");
         if signed {
-            let integers = self.like(value, Scalar::I32);
+            let integers = self.type_with_scalar(value, Scalar::I32);
             return Text::primary(format!("{integers}({count})"));
         }
         Text::primary(count)
     }
 
+    /// Prints extractBits() or insertBits(); a helper clamps a range that is not constant.
     fn bit_field(&mut self, fun: MathFunction, operands: &[Handle<Expression>]) -> Text {
         let extract = fun == MathFunction::ExtractBits;
         let Some((size, scalar)) = operands.first().and_then(|value| self.shape(*value)) else {
@@ -196,7 +202,7 @@ impl FunctionPrinter<'_, '_> {
         let (values, range) = operands.split_at(if extract { 1 } else { 2 });
         let known: Vec<_> = range
             .iter()
-            .filter_map(|part| if let Some(Literal::U32(part)) = self.known(*part) { Some(part) } else { None })
+            .filter_map(|part| if let Some(Literal::U32(part)) = self.known_literal(*part) { Some(part) } else { None })
             .collect();
         if let [offset, count] = known[..]
             && offset.saturating_add(count) <= 32
@@ -207,9 +213,10 @@ impl FunctionPrinter<'_, '_> {
         }
         let signed = scalar.kind == ScalarKind::Sint;
         let helper = if extract { Helper::ExtractBits { signed, size } } else { Helper::InsertBits { signed, size } };
-        self.help(helper, operands)
+        self.call_helper(helper, operands)
     }
 
+    /// Prints fma() as a product and a sum.
     fn multiply_add(&mut self, operands: &[Handle<Expression>]) -> Text {
         let factors: Vec<String> = operands.iter().map(|operand| format!("({})", self.expression(*operand))).collect();
         match factors.as_slice() {
@@ -218,6 +225,7 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Prints a derivative.
     pub fn derivative(&mut self, axis: DerivativeAxis, control: DerivativeControl, value: Handle<Expression>) -> Text {
         let axis = match axis {
             DerivativeAxis::X => "dFdx",
@@ -237,10 +245,11 @@ impl FunctionPrinter<'_, '_> {
         self.call(&format!("{axis}{control}"), &[value])
     }
 
+    /// Prints all(), any(), isnan() or isinf().
     pub fn relational(&mut self, fun: RelationalFunction, argument: Handle<Expression>) -> Text {
         let scalar = self.shape(argument).is_some_and(|(lanes, _)| lanes == 1);
         match fun {
-            // Of a single truth value, all and any are the value.
+            // For a scalar, all() and any() return the argument.
             RelationalFunction::All | RelationalFunction::Any if scalar => self.text(argument),
             RelationalFunction::All => self.call("all", &[argument]),
             RelationalFunction::Any => self.call("any", &[argument]),

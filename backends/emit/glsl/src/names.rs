@@ -1,19 +1,19 @@
-//! Names: WGSL names in, legal and collision-free GLSL names out.
+//! Maps WGSL names to legal and collision-free GLSL names.
 //!
-//! A name stays as it is unless GLSL reserves it; then it gets a `_` at the end. Nothing here depends on the order of
-//! anything but the module's own arenas, so the same module has the same names on every run.
+//! A name that GLSL reserves gets a `_` at the end; others are unchanged. The result depends only on the order of the
+//! module's arenas, so the same module has the same names on every run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::reserved::{is_keyword, is_reserved};
 use naga::{Constant, Function, GlobalVariable, Handle, Module, Type, TypeInner};
 
-/// A name that may be written, before asking whether it is taken.
-pub fn legal(name: &str, reserved: impl Fn(&str) -> bool) -> String {
+/// Returns a legal name; it may be taken.
+pub fn legal_name(name: &str, reserved: impl Fn(&str) -> bool) -> String {
     let mut text = String::with_capacity(name.len());
     for c in name.chars() {
         match c {
-            // GLSL has only ASCII names.
+            // GLSL names are ASCII.
             c if !c.is_ascii_alphanumeric() && c != '_' => text.push_str(&format!("u{:x}_", u32::from(c))),
             // GLSL reserves every name with two underscores in a row.
             '_' if text.ends_with('_') => text.push_str("u_"),
@@ -32,15 +32,15 @@ pub fn legal(name: &str, reserved: impl Fn(&str) -> bool) -> String {
     text
 }
 
-/// Whether a name may be written as it is.
+/// Tests whether a name is legal unchanged.
 fn is_legal(name: &str) -> bool {
     let plain = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
         && !name.starts_with(|c: char| c.is_ascii_digit());
     plain && !name.is_empty() && !name.contains("__") && !name.starts_with("wgsl_") && !is_reserved(name)
 }
 
-/// The first of `name`, `name_2`, `name_3`, … that is not taken.
-pub fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+/// Returns the first of `name`, `name_2`, `name_3`, … that is not taken.
+pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();
     }
@@ -48,7 +48,7 @@ pub fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
     (2u32..).map(|n| format!("{stem}_{n}")).find(|candidate| !taken(candidate)).unwrap_or_default()
 }
 
-/// `pixel_heads` as `PixelHeads`.
+/// Converts snake case to camel case: `pixel_heads` to `PixelHeads`.
 pub fn upper_camel(name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
@@ -57,7 +57,7 @@ pub fn upper_camel(name: &str) -> String {
     name.split('_').map(capital).collect()
 }
 
-/// Names of everything at module scope, and of what is generated there.
+/// The names at module scope, generated ones included.
 #[derive(Default)]
 pub struct GlobalNames {
     pub functions: BTreeMap<Handle<Function>, String>,
@@ -68,32 +68,33 @@ pub struct GlobalNames {
 }
 
 impl GlobalNames {
-    /// Takes a new name at module scope.
+    /// Reserves a new name at module scope.
     pub fn declare(&mut self, name: &str) -> String {
-        let legal = if is_legal(name) { name.to_owned() } else { legal(name, is_reserved) };
-        let name = free(&legal, |candidate| self.taken.contains(candidate));
+        let legal = if is_legal(name) { name.to_owned() } else { legal_name(name, is_reserved) };
+        let name = unique_name(&legal, |candidate| self.taken.contains(candidate));
         self.taken.insert(name.clone());
         name
     }
 
+    /// Tests whether a name is taken at module scope.
     pub fn is_taken(&self, name: &str) -> bool {
         self.taken.contains(name)
     }
 }
 
-/// A field's name: fields live in their structure, so only keywords are in the way.
-pub fn field(members: &[naga::StructMember], index: usize) -> String {
-    let own = |index: usize| {
+/// Returns a field's name. Fields are scoped to their structure, so only keywords are reserved.
+pub fn field_name(members: &[naga::StructMember], index: usize) -> String {
+    let legal = |index: usize| {
         let name = members.get(index).and_then(|member| member.name.as_deref()).unwrap_or("member");
-        // `.length` would be taken for the beginning of the method of arrays.
-        legal(name, |name| is_keyword(name) || name == "length")
+        // GLSL parses `.length` as the method of arrays.
+        legal_name(name, |name| is_keyword(name) || name == "length")
     };
-    let name = own(index);
-    let before: Vec<String> = (0..index).map(own).collect();
-    free(&name, |candidate| before.iter().any(|earlier| earlier == candidate))
+    let name = legal(index);
+    let before: Vec<String> = (0..index).map(legal).collect();
+    unique_name(&name, |candidate| before.iter().any(|earlier| earlier == candidate))
 }
 
-/// Names all module-scope items; those that may keep their names go first, so that a mangled name never displaces one.
+/// Names all module-scope items. Legal names come first, so that a mangled name never takes one of them.
 pub fn global_names(module: &Module) -> GlobalNames {
     let mut names = GlobalNames::default();
     for keep in [true, false] {
@@ -154,27 +155,27 @@ mod tests {
             "main",
         ] {
             assert!(is_reserved(name), "{name}");
-            assert_eq!(legal(name, is_reserved), format!("{name}_"));
+            assert_eq!(legal_name(name, is_reserved), format!("{name}_"));
         }
         for name in ["heads", "textures", "texture_size", "matter", "image_width", "color", "fragment", "count", "u"] {
             assert!(!is_reserved(name), "{name}");
         }
     }
 
-    /// The words of the GLSL 4.60 specification (keywords, reserved words, built-in functions), as naga lists them too.
+    /// The keywords, reserved keywords and built-in functions of the GLSL 4.60 specification, as naga lists them.
     #[test]
-    fn all_words_of_the_language_are_reserved() {
-        let words = include_str!("../tests/glsl_reserved.txt").split_whitespace();
-        let missing: Vec<&str> = words.filter(|word| !is_reserved(word)).collect();
+    fn all_keywords_and_functions_are_reserved() {
+        let names = include_str!("../tests/glsl_reserved.txt").split_whitespace();
+        let missing: Vec<&str> = names.filter(|name| !is_reserved(name)).collect();
         assert!(missing.is_empty(), "{missing:?}");
     }
 
     #[test]
     fn names_are_legal() {
-        assert_eq!(legal("a__b", is_reserved), "a_u_b");
-        assert_eq!(legal("gl_x", is_reserved), "user_gl_x");
-        assert_eq!(legal("größe", is_reserved), "gruf6_udf_e");
-        assert_eq!(free("x", |name| name == "x" || name == "x_2"), "x_3");
+        assert_eq!(legal_name("a__b", is_reserved), "a_u_b");
+        assert_eq!(legal_name("gl_x", is_reserved), "user_gl_x");
+        assert_eq!(legal_name("größe", is_reserved), "gruf6_udf_e");
+        assert_eq!(unique_name("x", |name| name == "x" || name == "x_2"), "x_3");
         assert_eq!(upper_camel("pixel_heads"), "PixelHeads");
     }
 }

@@ -1,6 +1,6 @@
-//! What a unit reaches: an entry point in, the functions it calls, directly or not, out.
+//! Finds the functions that an entry point calls, directly or indirectly.
 //!
-//! Types, constants and globals are found otherwise: they are noted as needed while the bodies that name them print.
+//! Types, constants and globals are recorded separately, while the bodies that use them print.
 
 use std::collections::BTreeSet;
 
@@ -8,22 +8,23 @@ use naga::{Function, Handle, Module, Statement};
 
 use crate::footprint::visit;
 
-/// Functions reached from a body, without markers and what only they call.
+/// Returns the functions reached from a body, without markers and the functions that only markers call.
 pub fn reached(
     module: &Module,
     body: &naga::Block,
     is_marker: &impl Fn(Handle<Function>) -> bool,
 ) -> BTreeSet<Handle<Function>> {
     let mut found = BTreeSet::new();
-    let mut open = callees(body);
-    while let Some(function) = open.pop() {
+    let mut pending = callees(body);
+    while let Some(function) = pending.pop() {
         if !is_marker(function) && found.insert(function) {
-            open.extend(callees(&module.functions[function].body));
+            pending.extend(callees(&module.functions[function].body));
         }
     }
     found
 }
 
+/// Returns the functions that a body calls directly.
 fn callees(body: &naga::Block) -> Vec<Handle<Function>> {
     let mut callees = Vec::new();
     visit(body, &mut |statement| {

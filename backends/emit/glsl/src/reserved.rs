@@ -1,11 +1,11 @@
-//! Names that GLSL keeps for itself.
+//! The names that GLSL reserves.
 //!
-//! In: a name. Out: whether a field, or anything else, may be called so. Nothing here knows what to call it instead.
+//! Tests whether a name is reserved for fields, or for functions, variables and types. `names` chooses replacements.
 
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
-/// Words that no variable, function, type or field may be called: keywords, those reserved for the future, and types.
+/// Keywords, keywords reserved for future use, and types: reserved for variables, functions, types and fields.
 const KEYWORDS: &str = "\
     active asm atomic_uint attribute bool break buffer bvec2 bvec3 bvec4 case cast centroid class coherent common \
     const continue default discard do double else enum extern external false filter fixed flat float for fvec2 \
@@ -18,7 +18,7 @@ const KEYWORDS: &str = "\
     subpassInputMS isubpassInputMS usubpassInputMS nonuniformEXT demote accelerationStructureEXT rayQueryEXT \
     defined std140 std430";
 
-/// Functions of the language: a function or variable of the same name would hide them.
+/// Built-in functions: a function or variable of the same name would hide them.
 const FUNCTIONS: &str = "\
     EmitStreamVertex EmitVertex EndPrimitive EndStreamPrimitive abs acos acosh all allInvocations \
     allInvocationsEqual any anyInvocation asin asinh atan atanh atomicAdd atomicAnd atomicCompSwap atomicCounter \
@@ -34,7 +34,7 @@ const FUNCTIONS: &str = "\
     dFdx dFdxCoarse dFdxFine dFdy dFdyCoarse dFdyFine unpackDouble2x32 unpackHalf2x16 unpackSnorm2x16 \
     unpackSnorm4x8 unpackUnorm2x16 unpackUnorm4x8 usubBorrow";
 
-/// Whole families, by how their names begin: functions (`textureLod`), types (`sampler2D`, `mat4x3`) and what is generated.
+/// Prefixes of families of names: built-in functions (`textureLod`), built-in variables and generated names.
 const FAMILIES: &[&str] = &[
     "gl_",
     "wgsl_",
@@ -49,41 +49,43 @@ const FAMILIES: &[&str] = &[
     "subgroup",
 ];
 
-/// Prefixes of type names; what follows them in a type name is a digit or a shape.
+/// The parts of opaque type names: prefix, stem and shape.
 const TYPE_PREFIXES: &[&str] = &["", "i", "u"];
 const TYPE_STEMS: &[&str] = &["sampler", "texture", "image"];
 const SHAPES: &[&str] = &["1D", "2D", "3D", "Cube", "Buffer"];
 
-/// The two lists above, to look names up in.
-struct Words {
+/// The two lists above, as sets.
+struct ReservedNames {
     keywords: HashSet<&'static str>,
     functions: HashSet<&'static str>,
 }
 
-static WORDS: LazyLock<Words> =
-    LazyLock::new(|| Words { keywords: KEYWORDS.split(' ').collect(), functions: FUNCTIONS.split(' ').collect() });
+static RESERVED: LazyLock<ReservedNames> = LazyLock::new(|| ReservedNames {
+    keywords: KEYWORDS.split(' ').collect(),
+    functions: FUNCTIONS.split(' ').collect(),
+});
 
-/// May not be used as any name at all, not even of a field.
+/// Tests whether a name is reserved even for fields.
 pub fn is_keyword(name: &str) -> bool {
-    WORDS.keywords.contains(name)
+    RESERVED.keywords.contains(name)
         || name.starts_with("gl_")
         || name.contains("__")
         || is_matrix(name)
         || is_opaque(name)
 }
 
-/// May not be used as the name of a function, variable or type.
+/// Tests whether a name is reserved for functions, variables and types.
 pub fn is_reserved(name: &str) -> bool {
-    is_keyword(name) || WORDS.functions.contains(name) || FAMILIES.iter().any(|family| is_of_family(name, family))
+    is_keyword(name) || RESERVED.functions.contains(name) || FAMILIES.iter().any(|family| is_of_family(name, family))
 }
 
-/// `texture` and `textureLod` are of the family `texture`; `textured` and `texture_size` are not.
+/// Tests whether a name is of a family: `texture` and `textureLod` are of `texture`; `textured` and `texture_size` are not.
 fn is_of_family(name: &str, family: &str) -> bool {
     let Some(rest) = name.strip_prefix(family) else { return false };
     family.ends_with('_') || !rest.starts_with(|c: char| c == '_' || c.is_lowercase())
 }
 
-/// `mat4`, `mat3x2`, `dmat4`, `dvec3`.
+/// Tests for matrix and vector types: `mat4`, `mat3x2`, `dmat4`, `dvec3`.
 fn is_matrix(name: &str) -> bool {
     let shape = ["mat", "dmat", "dvec", "f16mat", "f16vec", "u64vec", "i64vec", "u16vec", "i16vec", "u8vec", "i8vec"]
         .iter()
@@ -91,7 +93,7 @@ fn is_matrix(name: &str) -> bool {
     shape.is_some_and(|shape| shape.len() <= 3 && shape.starts_with(['2', '3', '4']))
 }
 
-/// `sampler2DMSArray`, `uimageBuffer` and their kin.
+/// Tests for opaque types, such as `sampler2DMSArray` and `uimageBuffer`.
 fn is_opaque(name: &str) -> bool {
     TYPE_PREFIXES.iter().any(|prefix| {
         let Some(rest) = name.strip_prefix(prefix) else { return false };

@@ -1,85 +1,108 @@
-//! Which expressions need a variable of their own, and which may be written where they are used.
+//! Decides which expressions get a variable and which print at their use.
 //!
-//! In: the order of a function. Out: a [`Plan`]. The rule that keeps the printed program the same program: an expression
-//! (or the result of a call or atomic) that is evaluated at step p may be written at its use at step q only if no step
-//! between p and q conflicts with it: writes what it reads, or touches what it writes. An expression with effects may
-//! moreover pass no statement at all, nor enter a place that evaluation can skip. Otherwise it is *baked*: it gets a
-//! variable at p. A `let` of the source is always baked, under its name. Nothing is ever evaluated twice unless it is as
-//! cheap to repeat as its variable would be to read.
+//! Input: the order of a function. Output: a [`Plan`]. One rule preserves the meaning. Let an expression, or the result of a
+//! call or atomic, be evaluated at step p. It may print at its use at step q only if no step between p and q conflicts with
+//! it, that is, writes what it reads or accesses what it writes. An expression with effects may also pass no statement and
+//! enter no operand that evaluation can skip. Otherwise it is *baked*, in naga's term: it gets a variable at p. A `let` of
+//! the source is always baked, under its name. An expression prints twice only if repeating it costs no more than reading
+//! a variable.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{AddressSpace, Expression, Handle, LocalVariable, Statement};
 
 use crate::analysis::{Order, Use};
-use crate::candidates::{Circuit, Circuits, Compound, find_circuits, find_compound};
-use crate::footprint::{self, Footprint, Place};
+use crate::candidates::{
+    CompoundAssignments, ShortCircuit, ShortCircuits, find_compound_assignments, find_short_circuits,
+};
+use crate::footprint::{self, Footprint, MemoryObject};
 
+/// The decisions for one function.
 #[derive(Default)]
 pub struct Plan {
     /// Expressions that get a variable where they are evaluated.
     pub baked: BTreeSet<Handle<Expression>>,
-    /// Expressions that are used at all.
+    /// Expressions that are used.
     pub live: BTreeSet<Handle<Expression>>,
-    /// Short circuits, by the expression that stands for their value.
-    pub circuits: BTreeMap<Handle<Expression>, Circuit>,
+    /// Short circuits, by the expression that loads their value.
+    pub short_circuits: BTreeMap<Handle<Expression>, ShortCircuit>,
     /// Short circuits, by the step of the `if` that they were lowered to.
-    pub circuit_steps: BTreeMap<usize, Handle<Expression>>,
+    pub short_circuit_steps: BTreeMap<usize, Handle<Expression>>,
     /// Steps of stores that print as `x op= y`.
     pub compound: BTreeSet<usize>,
 }
 
 impl Plan {
-    pub fn is_circuit_variable(&self, local: Handle<LocalVariable>) -> bool {
-        self.circuits.values().any(|circuit| circuit.variable == local)
+    /// Tests whether a variable exists only for a short circuit.
+    pub fn is_short_circuit_variable(&self, local: Handle<LocalVariable>) -> bool {
+        self.short_circuits.values().any(|circuit| circuit.variable == local)
     }
 }
 
-/// Decides; candidates that turn out not to fit are dropped and the rest is decided anew.
+/// Plans a function. Drops the candidates that do not fit and decides again until all fit.
 pub fn plan(order: &Order) -> Plan {
-    let mut circuits = find_circuits(order);
-    let mut compound = find_compound(order);
+    let mut short_circuits = find_short_circuits(order);
+    let mut compound = find_compound_assignments(order);
     loop {
-        let decided = Decision::new(order, &circuits, &compound).decide();
-        let bad_circuits: Vec<_> =
-            circuits.values().filter(|circuit| !decided.fits(circuit)).map(|circuit| circuit.value).collect();
-        let bad_stores: Vec<_> =
-            compound.iter().filter(|(step, parts)| !decided.absorbs(**step, **parts)).map(|(step, _)| *step).collect();
+        let decision = Decision::new(order, &short_circuits, &compound).decide();
+        let bad_circuits: Vec<_> = short_circuits
+            .values()
+            .filter(|circuit| !decision.fits_short_circuit(circuit))
+            .map(|circuit| circuit.value)
+            .collect();
+        let bad_stores: Vec<_> = compound
+            .iter()
+            .filter(|(step, parts)| !decision.fits_compound_assignment(**step, **parts))
+            .map(|(step, _)| *step)
+            .collect();
         if bad_circuits.is_empty() && bad_stores.is_empty() {
-            return decided.into_plan();
+            return decision.into_plan();
         }
-        circuits.retain(|value, _| !bad_circuits.contains(value));
+        short_circuits.retain(|value, _| !bad_circuits.contains(value));
         compound.retain(|step, _| !bad_stores.contains(step));
     }
 }
 
+/// A step that uses an expression; a lazy use may be skipped.
 #[derive(Clone, Copy)]
-struct Spot {
+struct UseSite {
     step: usize,
     lazy: bool,
 }
 
+/// The steps that evaluate an expression, and the memory that they access.
+struct Evaluation {
+    first: usize,
+    /// The first step after the evaluation.
+    end: usize,
+    footprint: Footprint,
+}
+
+/// One attempt at a plan, with the given candidates.
 struct Decision<'a, 'm> {
     order: &'a Order<'m>,
-    circuits: &'a Circuits,
-    compound: &'a Compound,
-    spots: BTreeMap<Handle<Expression>, Vec<Spot>>,
+    short_circuits: &'a ShortCircuits,
+    compound: &'a CompoundAssignments,
+    /// The steps at which an expression prints, through all users that are not baked.
+    sites: BTreeMap<Handle<Expression>, Vec<UseSite>>,
+    /// How often an expression prints.
     times: BTreeMap<Handle<Expression>, usize>,
     baked: BTreeSet<Handle<Expression>>,
 }
 
 impl<'a, 'm> Decision<'a, 'm> {
-    fn new(order: &'a Order<'m>, circuits: &'a Circuits, compound: &'a Compound) -> Self {
-        Self { order, circuits, compound, spots: BTreeMap::new(), times: BTreeMap::new(), baked: BTreeSet::new() }
+    fn new(order: &'a Order<'m>, short_circuits: &'a ShortCircuits, compound: &'a CompoundAssignments) -> Self {
+        Self { order, short_circuits, compound, sites: BTreeMap::new(), times: BTreeMap::new(), baked: BTreeSet::new() }
     }
 
-    /// Users come after what they use, so going backwards every use is known when its operand is decided.
+    /// Decides all expressions, from last to first: users follow their operands, so every use of an operand is decided
+    /// before it.
     fn decide(mut self) -> Self {
         let handles: Vec<_> = self.order.function.expressions.iter().map(|(handle, _)| handle).collect();
         for &expression in handles.iter().rev() {
-            let (times, spots) = self.collect(expression);
+            let (times, sites) = self.collect(expression);
             self.times.insert(expression, times);
-            self.spots.insert(expression, spots);
+            self.sites.insert(expression, sites);
             if self.must_bake(expression) {
                 self.baked.insert(expression);
             }
@@ -87,34 +110,36 @@ impl<'a, 'm> Decision<'a, 'm> {
         self
     }
 
-    fn collect(&self, expression: Handle<Expression>) -> (usize, Vec<Spot>) {
+    /// Returns how often an expression prints, and at which steps.
+    fn collect(&self, expression: Handle<Expression>) -> (usize, Vec<UseSite>) {
         let mut total = 0;
-        let mut spots = Vec::new();
+        let mut sites = Vec::new();
         for used in self.order.uses.get(&expression).into_iter().flatten() {
             match *used {
                 Use::Step { step, times } => {
                     total += times;
-                    spots.push(Spot { step, lazy: false });
+                    sites.push(UseSite { step, lazy: false });
                 }
-                // `x op= y` writes the pointer once, so the load within it uses nothing.
+                // `x op= y` prints the pointer once, so the load within it is no use.
                 Use::Expression { user, .. } if self.compound.values().any(|(_, load)| *load == user) => {}
-                Use::Expression { user, .. } if self.circuits.contains_key(&user) => {}
+                Use::Expression { user, .. } if self.short_circuits.contains_key(&user) => {}
                 Use::Expression { user, times, lazy } => {
                     let user_times = self.times.get(&user).copied().unwrap_or_default();
                     if self.baked.contains(&user) {
                         total += times;
-                        spots.extend(self.order.evaluated.get(&user).map(|step| Spot { step: *step, lazy }));
+                        sites.extend(self.order.evaluated.get(&user).map(|step| UseSite { step: *step, lazy }));
                     } else if user_times > 0 {
                         total += times * user_times;
-                        let passed_on = self.spots.get(&user).into_iter().flatten();
-                        spots.extend(passed_on.map(|spot| Spot { step: spot.step, lazy: spot.lazy || lazy }));
+                        let passed_on = self.sites.get(&user).into_iter().flatten();
+                        sites.extend(passed_on.map(|site| UseSite { step: site.step, lazy: site.lazy || lazy }));
                     }
                 }
             }
         }
-        (total, spots)
+        (total, sites)
     }
 
+    /// Tests whether an expression needs a variable.
     fn must_bake(&self, expression: Handle<Expression>) -> bool {
         if !self.order.evaluated.contains_key(&expression)
             || self.order.is_pointer(expression)
@@ -137,16 +162,19 @@ impl<'a, 'm> Decision<'a, 'm> {
         matches!(self.order.inner(expression), naga::TypeInner::Image { .. } | naga::TypeInner::Sampler { .. })
     }
 
-    /// Writing it again costs no more than reading a variable would.
+    /// Tests whether repeating an expression costs no more than reading a variable.
     fn is_cheap(&self, expression: Handle<Expression>) -> bool {
         match self.order.function.expressions[expression] {
-            // Their base, if it is not cheap, is used twice itself, and so baked.
+            // A base that is not cheap is also used twice, so it is baked.
             Expression::AccessIndex { .. } | Expression::Swizzle { .. } => true,
-            Expression::Load { pointer } => !self.circuits.contains_key(&expression) && self.is_cheap_pointer(pointer),
+            Expression::Load { pointer } => {
+                !self.short_circuits.contains_key(&expression) && self.is_cheap_pointer(pointer)
+            }
             _ => false,
         }
     }
 
+    /// Tests whether a load from a pointer costs no more than reading a variable.
     fn is_cheap_pointer(&self, pointer: Handle<Expression>) -> bool {
         match self.order.function.expressions[pointer] {
             Expression::AccessIndex { base, .. } => self.is_cheap_pointer(base),
@@ -161,50 +189,57 @@ impl<'a, 'm> Decision<'a, 'm> {
         }
     }
 
-    /// Where the expression is evaluated, the first step after that, and what it touches.
-    fn origin(&self, expression: Handle<Expression>) -> Option<(usize, usize, Footprint)> {
-        if let Some(circuit) = self.circuits.get(&expression) {
-            return Some((circuit.first, circuit.end, self.circuit_footprint(circuit)));
+    /// Returns the evaluation of an expression; none for constants, arguments and variables.
+    fn evaluation(&self, expression: Handle<Expression>) -> Option<Evaluation> {
+        if let Some(circuit) = self.short_circuits.get(&expression) {
+            let footprint = self.short_circuit_footprint(circuit);
+            return Some(Evaluation { first: circuit.first, end: circuit.end, footprint });
         }
         let step = *self.order.evaluated.get(&expression)?;
         let mut footprint = self.order.steps[step].footprint.clone();
-        // A call or atomic takes its operands along.
+        // The operands of a call or atomic move with it.
         if let Some(statement) = self.order.steps[step].statement {
             for operand in statement_operands(statement) {
                 self.join_operands(operand, &mut footprint);
             }
         }
-        Some((step, step + 1, footprint))
+        Some(Evaluation { first: step, end: step + 1, footprint })
     }
 
-    fn circuit_footprint(&self, circuit: &Circuit) -> Footprint {
+    /// Returns the footprint of a short circuit, without the variables that it does not print.
+    fn short_circuit_footprint(&self, circuit: &ShortCircuit) -> Footprint {
         let mut footprint = Footprint::default();
         for step in &self.order.steps[circuit.first..circuit.end] {
             footprint.join(&step.footprint);
         }
         self.join_operands(circuit.left, &mut footprint);
-        let own = |place: &Place| *place == Place::Local(circuit.variable);
-        footprint.reads.retain(|place| !own(place));
-        footprint.writes.retain(|place| !own(place) && !self.is_inner_variable(circuit, *place));
-        footprint.reads.retain(|place| !self.is_inner_variable(circuit, *place));
+        let is_internal = |object: &MemoryObject| {
+            *object == MemoryObject::Local(circuit.variable) || self.is_inner_variable(circuit, *object)
+        };
+        footprint.reads.retain(|object| !is_internal(object));
+        footprint.writes.retain(|object| !is_internal(object));
         footprint
     }
 
-    fn is_inner_variable(&self, circuit: &Circuit, place: Place) -> bool {
-        let inner = |other: &Circuit| {
-            place == Place::Local(other.variable) && circuit.first < other.first && other.end <= circuit.end
+    /// Tests whether an object is the variable of a short circuit inside this one.
+    fn is_inner_variable(&self, circuit: &ShortCircuit, object: MemoryObject) -> bool {
+        let inner = |other: &ShortCircuit| {
+            object == MemoryObject::Local(other.variable) && circuit.first < other.first && other.end <= circuit.end
         };
-        self.circuits.values().any(inner)
+        self.short_circuits.values().any(inner)
     }
 
+    /// Adds the footprint of an operand that prints within its user.
     fn join_operands(&self, expression: Handle<Expression>, footprint: &mut Footprint) {
         if name_of(self.order, expression).is_some() {
             return;
         }
         let is_result =
             self.order.evaluated.get(&expression).is_some_and(|step| self.order.steps[*step].statement.is_some());
-        if is_result || self.circuits.contains_key(&expression) {
-            footprint.join(&self.origin(expression).map(|(_, _, own)| own).unwrap_or_default());
+        if is_result || self.short_circuits.contains_key(&expression) {
+            if let Some(evaluation) = self.evaluation(expression) {
+                footprint.join(&evaluation.footprint);
+            }
             return;
         }
         footprint.join(&footprint::of_expression(self.order.module, self.order.function, expression));
@@ -213,38 +248,35 @@ impl<'a, 'm> Decision<'a, 'm> {
         }
     }
 
+    /// Tests whether an expression may print at all its uses.
     fn may_move(&self, expression: Handle<Expression>) -> bool {
-        let Some((step, after, footprint)) = self.origin(expression) else { return true };
-        let spots = self.spots.get(&expression).map(Vec::as_slice).unwrap_or_default();
-        spots.iter().all(|spot| self.may_move_to(expression, (step, after), &footprint, *spot))
+        let Some(evaluation) = self.evaluation(expression) else { return true };
+        let sites = self.sites.get(&expression).map(Vec::as_slice).unwrap_or_default();
+        sites.iter().all(|site| self.may_move_to(expression, &evaluation, *site))
     }
 
-    fn may_move_to(
-        &self,
-        expression: Handle<Expression>,
-        (step, after): (usize, usize),
-        footprint: &Footprint,
-        to: Spot,
-    ) -> bool {
+    /// Tests whether an expression may print at one use, by the rule above.
+    fn may_move_to(&self, expression: Handle<Expression>, evaluation: &Evaluation, to: UseSite) -> bool {
+        let Evaluation { first, end, ref footprint } = *evaluation;
         let Some(target) = self.order.steps.get(to.step) else { return false };
-        let home = self.order.steps[step].block;
-        let Some(enters_loop) = self.path(home, target.block) else { return false };
+        let source = self.order.steps[first].block;
+        let Some(enters_loop) = self.enters_loop(source, target.block) else { return false };
         if footprint.is_pure() {
             return !enters_loop || self.is_cheap(expression);
         }
-        let passed = &self.order.steps[after.min(to.step)..to.step];
+        let passed = &self.order.steps[end.min(to.step)..to.step];
         if enters_loop || passed.iter().any(|between| between.footprint.conflicts(footprint)) {
             return false;
         }
-        let stays = home == target.block && !to.lazy;
+        let stays = source == target.block && !to.lazy;
         if footprint.has_effect() {
             return stays && passed.iter().all(|between| between.statement.is_none());
         }
         stays || !footprint.uniform
     }
 
-    /// Whether the way from a block into one of its descendants enters a loop; nothing if it is no descendant.
-    fn path(&self, from: usize, to: usize) -> Option<bool> {
+    /// Tests whether the path from a block to a descendant enters a loop. Returns none for blocks that are no descendants.
+    fn enters_loop(&self, from: usize, to: usize) -> Option<bool> {
         let mut block = to;
         let mut enters_loop = false;
         while block != from {
@@ -254,8 +286,8 @@ impl<'a, 'm> Decision<'a, 'm> {
         Some(enters_loop)
     }
 
-    /// Whether everything the short circuit's right side needs can be written within it.
-    fn fits(&self, circuit: &Circuit) -> bool {
+    /// Tests whether everything that the right side of a short circuit needs can print within it.
+    fn fits_short_circuit(&self, circuit: &ShortCircuit) -> bool {
         let steps = circuit.first + 1..circuit.end;
         let baked = self
             .order
@@ -264,9 +296,9 @@ impl<'a, 'm> Decision<'a, 'm> {
             .any(|(expression, step)| steps.contains(step) && self.baked.contains(expression));
         let statements = steps.clone().all(|step| match self.order.steps[step].statement {
             None => true,
-            Some(Statement::Store { .. }) => self.is_circuit_store(step),
+            Some(Statement::Store { .. }) => self.is_short_circuit_store(step),
             Some(Statement::If { .. }) => {
-                self.circuits.values().any(|other| other.first == step && !self.baked.contains(&other.value))
+                self.short_circuits.values().any(|other| other.first == step && !self.baked.contains(&other.value))
             }
             Some(Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. }) => {
                 self.times.get(result) == Some(&1)
@@ -278,30 +310,32 @@ impl<'a, 'm> Decision<'a, 'm> {
         !baked && statements && used
     }
 
-    fn is_circuit_store(&self, step: usize) -> bool {
+    /// Tests whether a store sets the variable of a short circuit.
+    fn is_short_circuit_store(&self, step: usize) -> bool {
         let block = self.order.steps[step].block;
-        self.circuits.values().any(|circuit| circuit.first == self.order.blocks[block].owner)
+        self.short_circuits.values().any(|circuit| circuit.first == self.order.blocks[block].owner)
     }
 
-    /// Whether the store can print as `x op= y`.
-    fn absorbs(&self, step: usize, (value, load): (Handle<Expression>, Handle<Expression>)) -> bool {
-        let Some((evaluated, after, footprint)) = self.origin(load) else { return false };
-        let spot = Spot { step, lazy: false };
-        !self.baked.contains(&value) && self.may_move_to(load, (evaluated, after), &footprint, spot)
+    /// Tests whether a store can print as `x op= y`.
+    fn fits_compound_assignment(&self, step: usize, (value, load): (Handle<Expression>, Handle<Expression>)) -> bool {
+        let Some(evaluation) = self.evaluation(load) else { return false };
+        let site = UseSite { step, lazy: false };
+        !self.baked.contains(&value) && self.may_move_to(load, &evaluation, site)
     }
 
     fn into_plan(self) -> Plan {
         let live = self.times.iter().filter(|(_, times)| **times > 0).map(|(expression, _)| *expression).collect();
         Plan {
             live,
-            circuit_steps: self.circuits.values().map(|circuit| (circuit.first, circuit.value)).collect(),
-            circuits: self.circuits.clone(),
+            short_circuit_steps: self.short_circuits.values().map(|circuit| (circuit.first, circuit.value)).collect(),
+            short_circuits: self.short_circuits.clone(),
             compound: self.compound.keys().copied().collect(),
             baked: self.baked,
         }
     }
 }
 
+/// Returns the operands of a call or atomic.
 fn statement_operands(statement: &Statement) -> Vec<Handle<Expression>> {
     match *statement {
         Statement::Call { ref arguments, .. } => arguments.clone(),
@@ -316,7 +350,7 @@ fn statement_operands(statement: &Statement) -> Vec<Handle<Expression>> {
     }
 }
 
-/// The `let` name of an expression; `_ = x` is no name.
+/// Returns the `let` name of an expression; `_ = x` is no name.
 pub fn name_of<'m>(order: &Order<'m>, expression: Handle<Expression>) -> Option<&'m str> {
     order.function.named_expressions.get(&expression).map(String::as_str).filter(|name| *name != "phony")
 }

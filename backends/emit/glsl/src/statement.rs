@@ -1,16 +1,16 @@
-//! Statements that are no control flow, and the order of lines in a block.
+//! Prints blocks, and the statements that are no control flow.
 //!
-//! In: a block. Out: its lines, with declarations where `locals` wants them, variables for baked expressions where they
-//! are evaluated, and the comments of the source above and behind the statements they belong to.
+//! Input: a block. Output: its lines. `locals` determines where declarations print; baked expressions get their variable
+//! where they are evaluated. Comments of the source print above or after their statement.
 
 use naga::{Barrier, Block, Expression, Handle, Literal, Span, Statement};
 
-use crate::Marker;
-use crate::expression::Text;
 use crate::function::FunctionPrinter;
+use crate::options::Marker;
+use crate::precedence::Text;
 
 impl<'m> FunctionPrinter<'_, 'm> {
-    /// Prints the statements of a block. `tail` says that nothing follows it in the function.
+    /// Prints the statements of a block. `tail` is true if nothing follows the block in the function.
     pub fn statements(&mut self, block: &'m Block, tail: bool) {
         self.statements_from(block, 0, tail);
     }
@@ -39,11 +39,11 @@ impl<'m> FunctionPrinter<'_, 'm> {
             .rev()
             .find(|(statement, span)| span.is_defined() && !matches!(statement, Statement::Block(_)));
         if let Some((_, span)) = last {
-            self.leftover(*span);
+            self.print_comments_to_block_end(*span);
         }
     }
 
-    /// The first part of a `for` header, if the statement is that: written inside the header of the loop that follows.
+    /// Returns the first part of a `for` header, if the source of the statement lies inside the following loop.
     fn initialiser_before(
         &mut self,
         statement: &'m Statement,
@@ -54,7 +54,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         let simple =
             matches!(statement, Statement::Store { .. } | Statement::Call { .. }) && !self.is_silent(statement);
         let for_loop = matches!(header, Statement::Loop { .. }) && contains(*loop_span, span);
-        // A variable that the header declared would end with the loop.
+        // The scope of a variable that the header declares ends with the loop.
         let declared = self
             .declarations
             .by_store
@@ -64,39 +64,42 @@ impl<'m> FunctionPrinter<'_, 'm> {
         if !simple || !for_loop || outlives || self.is_long_zero(statement) {
             return None;
         }
-        // The header swallows this statement, so what is declared before it comes first.
+        // This statement moves into the header, so the declarations before it come first.
         self.declarations_before(statement, span);
-        self.lead(*loop_span);
-        self.enter();
+        self.print_comments_above(*loop_span);
+        self.enter_scope();
         self.simple(statement)
     }
 
+    /// Tests whether a statement sets a long array to zero.
     fn is_long_zero(&self, statement: &Statement) -> bool {
         let Statement::Store { value, .. } = statement else { return false };
         let Expression::ZeroValue(ty) = self.function.expressions[*value] else { return false };
         self.printer.is_long_array(ty)
     }
 
-    /// Whether a statement prints nothing where it stands.
+    /// Tests whether a statement prints nothing at its position.
     pub fn is_silent(&self, statement: &Statement) -> bool {
         let step = self.order.step_of(statement);
         let inlined =
             |result: &Handle<Expression>| self.plan.live.contains(result) && !self.plan.baked.contains(result);
-        let own = match statement {
+        let silent = match statement {
             Statement::Emit(range) => !range.clone().any(|expression| self.is_baked_here(expression)),
-            Statement::If { .. } => self.plan.circuit_steps.get(&step).is_some_and(inlined),
+            Statement::If { .. } => self.plan.short_circuit_steps.get(&step).is_some_and(inlined),
             Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => {
                 inlined(result)
             }
             _ => false,
         };
-        own && !self.declarations.before.contains_key(&step)
+        silent && !self.declarations.before.contains_key(&step)
     }
 
+    /// Tests whether an `Emit` prints a variable for an expression.
     fn is_baked_here(&self, expression: Handle<Expression>) -> bool {
-        self.plan.baked.contains(&expression) && !self.plan.circuits.contains_key(&expression)
+        self.plan.baked.contains(&expression) && !self.plan.short_circuits.contains_key(&expression)
     }
 
+    /// Prints a statement other than a loop.
     fn statement(&mut self, statement: &'m Statement, span: Span, tail: bool) {
         if self.is_silent(statement) {
             return;
@@ -108,8 +111,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
                     self.bake(expression, self.span(expression));
                 }
             }),
-            Statement::If { .. } if self.plan.circuit_steps.contains_key(&step) => {
-                if let Some(value) = self.plan.circuit_steps.get(&step).copied() {
+            Statement::If { .. } if self.plan.short_circuit_steps.contains_key(&step) => {
+                if let Some(value) = self.plan.short_circuit_steps.get(&step).copied() {
                     self.bake(value, span);
                 }
             }
@@ -119,11 +122,11 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 self.bake(*result, span);
             }
             Statement::Block(block) => {
-                self.lead(span);
+                self.print_comments_above(span);
                 self.line("{");
-                self.open();
+                self.open_block();
                 self.statements(block, tail);
-                self.close();
+                self.close_block();
                 self.line("}");
             }
             Statement::If { condition, accept, reject } => self.if_statement(*condition, accept, reject, span, tail),
@@ -132,22 +135,22 @@ impl<'m> FunctionPrinter<'_, 'm> {
             Statement::Break | Statement::Continue | Statement::Kill => self.jump(statement, span),
             Statement::Store { pointer, .. } if self.is_long_zero(statement) => self.store_zeros(step, *pointer, span),
             _ => {
-                self.lead_whole(span);
+                self.print_all_comments_of(span);
                 match self.simple(statement) {
                     Some(text) => text.split("; ").for_each(|part| self.line(format!("{part};"))),
                     None => drop(self.printer.error(kind_name(statement), span)),
                 }
-                self.trail(span);
+                self.append_comment_after(span);
             }
         }
     }
 
-    /// Gives an expression a variable.
+    /// Prints the variable of a baked expression.
     fn bake(&mut self, expression: Handle<Expression>, span: Span) {
-        self.lead_whole(span);
+        self.print_all_comments_of(span);
         let value = self.in_place(expression).text;
-        let wanted = self.wanted_name(expression);
-        let name = self.declare(&wanted);
+        let preferred = self.preferred_name(expression);
+        let name = self.declare(&preferred);
         let declaration = match self.function.expressions[expression] {
             Expression::AtomicResult { comparison: true, .. } => format!("{} {name}", self.compared_type(expression)),
             _ => {
@@ -158,10 +161,10 @@ impl<'m> FunctionPrinter<'_, 'm> {
         };
         self.values.insert(expression, name);
         self.line(format!("{declaration} = {value};"));
-        self.trail(span);
+        self.append_comment_after(span);
     }
 
-    /// The type of the value that a compare-exchange compares.
+    /// Returns the type of the value that a compare-exchange compares.
     fn compared_type(&mut self, result: Handle<Expression>) -> String {
         match self.order.compared.get(&result).copied() {
             Some(compared) => self.type_name(compared),
@@ -169,8 +172,8 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// A baked expression's name: the `let`'s, or one that tells where the value is from.
-    fn wanted_name(&self, expression: Handle<Expression>) -> String {
+    /// Returns the preferred name of a baked expression: that of its `let`, or one that names the origin of the value.
+    fn preferred_name(&self, expression: Handle<Expression>) -> String {
         if let Some(name) = crate::schedule::name_of(&self.order, expression) {
             return name.to_owned();
         }
@@ -181,13 +184,15 @@ impl<'m> FunctionPrinter<'_, 'm> {
             }
             Expression::AtomicResult { .. } => "old_value".to_owned(),
             Expression::Load { pointer } => match crate::footprint::root(self.printer.module, self.function, pointer) {
-                Some(crate::footprint::Place::Global(global) | crate::footprint::Place::Private(global)) => {
+                Some(
+                    crate::footprint::MemoryObject::Global(global) | crate::footprint::MemoryObject::Private(global),
+                ) => {
                     format!(
                         "{}_value",
                         self.printer.module.global_variables[global].name.as_deref().unwrap_or("loaded")
                     )
                 }
-                Some(crate::footprint::Place::Local(local)) => {
+                Some(crate::footprint::MemoryObject::Local(local)) => {
                     format!("{}_value", self.function.local_variables[local].name.as_deref().unwrap_or("loaded"))
                 }
                 _ => "loaded".to_owned(),
@@ -198,7 +203,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// A statement that fits in one line, without its semicolon.
+    /// Prints a statement that fits in one line, without its semicolon.
     pub fn simple(&mut self, statement: &Statement) -> Option<String> {
         Some(match *statement {
             Statement::Store { pointer, value } => self.store(statement, pointer, value),
@@ -216,6 +221,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         })
     }
 
+    /// Records an error for a compare-exchange whose result is used as a whole.
     fn check_compare_exchange(&mut self, result: Option<Handle<Expression>>) {
         let Some(result) = result.filter(|result| self.order.compared.contains_key(result)) else { return };
         let members_only = self.order.uses.get(&result).into_iter().flatten().all(|used| match used {
@@ -229,6 +235,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
+    /// Prints a store, which may declare its variable.
     fn store(&mut self, statement: &Statement, pointer: Handle<Expression>, value: Handle<Expression>) -> String {
         let step = self.order.step_of(statement);
         if let Some(local) = self.declarations.by_store.get(&step).copied() {
@@ -238,20 +245,21 @@ impl<'m> FunctionPrinter<'_, 'm> {
         if crate::footprint::is_atomic(self.printer.module, self.function, pointer) {
             return self.atomic_store(pointer, value);
         }
-        let place = self.expression(pointer);
+        let target = self.expression(pointer);
         if self.plan.compound.contains(&step)
             && let Expression::Binary { op, right, .. } = self.function.expressions[value]
         {
-            return self.compound(&place, op, right);
+            return self.compound(&target, op, right);
         }
-        format!("{place} = {}", self.expression(value))
+        format!("{target} = {}", self.expression(value))
     }
 
-    fn compound(&mut self, place: &str, op: naga::BinaryOperator, right: Handle<Expression>) -> String {
+    /// Prints `x op= y`, `x++` or `x--`.
+    fn compound(&mut self, target: &str, op: naga::BinaryOperator, right: Handle<Expression>) -> String {
         let one = matches!(self.function.expressions[right], Expression::Literal(Literal::U32(1) | Literal::I32(1)));
         let symbol = match op {
-            naga::BinaryOperator::Add if one => return format!("{place}++"),
-            naga::BinaryOperator::Subtract if one => return format!("{place}--"),
+            naga::BinaryOperator::Add if one => return format!("{target}++"),
+            naga::BinaryOperator::Subtract if one => return format!("{target}--"),
             naga::BinaryOperator::Add => "+",
             naga::BinaryOperator::Subtract => "-",
             naga::BinaryOperator::Multiply => "*",
@@ -259,11 +267,12 @@ impl<'m> FunctionPrinter<'_, 'm> {
             naga::BinaryOperator::ExclusiveOr => "^",
             _ => "|",
         };
-        format!("{place} {symbol}= {}", self.expression(right))
+        format!("{target} {symbol}= {}", self.expression(right))
     }
 
+    /// Prints a store that sets a long array to zero.
     fn store_zeros(&mut self, step: usize, pointer: Handle<Expression>, span: Span) {
-        self.lead(span);
+        self.print_comments_above(span);
         if let Expression::LocalVariable(local) = self.function.expressions[pointer] {
             if self.declarations.by_store.contains_key(&step) {
                 let text = self.declare_local(local, None);
@@ -275,7 +284,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
     }
 
-    /// A call, or what a marker stands for.
+    /// Prints a call, or the replacement of a marker.
     fn call_text(&mut self, statement: &Statement) -> String {
         let Statement::Call { function, ref arguments, .. } = *statement else { return String::new() };
         match self.printer.marker(function) {
@@ -289,29 +298,31 @@ impl<'m> FunctionPrinter<'_, 'm> {
         format!("{name}({})", arguments.join(", "))
     }
 
-    /// GLSL allows the interlock at the top level of `main` only.
+    /// Prints the start or end of a critical section. GLSL allows the interlock only at the top level of `main`.
     fn critical(&mut self, statement: &Statement, marker: Marker) -> String {
         let block = self.order.steps[self.order.step_of(statement)].block;
         if self.interface.is_none() || block != 0 {
-            self.printer
-                .error("the border of a critical section outside the top level of the entry point", Span::UNDEFINED);
+            self.printer.error(
+                "the start or end of a critical section outside the top level of the entry point",
+                Span::UNDEFINED,
+            );
         }
         if self.printer.es() {
             return self.printer.error("an interlock", Span::UNDEFINED);
         }
-        self.printer.needs.extensions.insert("GL_ARB_fragment_shader_interlock");
+        self.printer.requirements.extensions.insert("GL_ARB_fragment_shader_interlock");
         let layout = match marker {
             Marker::CriticalEnd => return "endInvocationInterlockARB()".to_owned(),
             Marker::OrderedCriticalBegin => "pixel_interlock_ordered",
             _ => "pixel_interlock_unordered",
         };
-        if self.printer.needs.interlock.replace(layout).is_some_and(|other| other != layout) {
+        if self.printer.requirements.interlock.replace(layout).is_some_and(|other| other != layout) {
             self.printer.error("ordered and unordered critical sections in one entry point", Span::UNDEFINED);
         }
         "beginInvocationInterlockARB()".to_owned()
     }
 
-    /// The call or atomic that a result comes from, in the place of the result.
+    /// Prints the call or atomic that produces a result, at the use of the result.
     pub fn result_in_place(&mut self, expression: Handle<Expression>) -> Text {
         let step = self.order.evaluated.get(&expression).copied();
         let statement = step.and_then(|step| self.order.steps[step].statement);
@@ -320,8 +331,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
     }
 }
 
-/// Whether a span lies inside another.
-/// Whether a place of the source lies inside another.
+/// Tests whether a span contains another.
 pub fn contains(outer: Span, inner: Span) -> bool {
     match (outer.to_range(), inner.to_range()) {
         (Some(outer), Some(inner)) => outer.start <= inner.start && inner.end <= outer.end,
@@ -329,6 +339,7 @@ pub fn contains(outer: Span, inner: Span) -> bool {
     }
 }
 
+/// Prints a barrier.
 fn barrier_text(barrier: Barrier, control: bool) -> String {
     let fences = [
         (Barrier::STORAGE, "memoryBarrierBuffer()"),
@@ -339,6 +350,7 @@ fn barrier_text(barrier: Barrier, control: bool) -> String {
     fences.chain(control.then_some("barrier()")).collect::<Vec<_>>().join("; ")
 }
 
+/// Returns the name that messages use for a kind of statement.
 fn kind_name(statement: &Statement) -> String {
     let text = format!("{statement:?}");
     let name: String = text.chars().take_while(|c| c.is_alphanumeric()).collect();

@@ -1,17 +1,18 @@
-//! Textures: samples, loads, stores and queries.
+//! Prints texture samples, loads, stores and queries.
 //!
-//! Vulkan's dialect keeps textures and samplers apart, as WGSL does. OpenGL has combined samplers only: a texture takes
-//! along the one sampler it is used with, and one that is used with several cannot be printed.
+//! The Vulkan dialect has separate textures and samplers, as WGSL does. OpenGL has combined samplers only: a texture is
+//! combined with the one sampler that it is used with. A texture with several samplers cannot be printed.
 
 use naga::{
     Expression, GlobalVariable, Handle, ImageClass, ImageDimension, ImageQuery, SampleLevel, ScalarKind, TypeInner,
 };
 
-use crate::expression::Text;
 use crate::function::FunctionPrinter;
+use crate::precedence::Text;
 
 const SAMPLERLESS: &str = "GL_EXT_samplerless_texture_functions";
 
+/// A texture variable and its type.
 struct Image {
     global: Handle<GlobalVariable>,
     dimension: ImageDimension,
@@ -30,6 +31,7 @@ struct Sample {
 }
 
 impl FunctionPrinter<'_, '_> {
+    /// Returns the texture variable of an expression.
     fn image(&mut self, image: Handle<Expression>) -> Option<Image> {
         let Expression::GlobalVariable(global) = self.function.expressions[image] else {
             self.error("a texture passed as an argument", image);
@@ -40,10 +42,11 @@ impl FunctionPrinter<'_, '_> {
             self.error("a texture of this type", image);
             return None;
         };
-        self.printer.needs.globals.insert(global);
+        self.printer.requirements.globals.insert(global);
         Some(Image { global, dimension: dim, arrayed, class })
     }
 
+    /// Prints a sample, load or query.
     pub fn texture(&mut self, expression: Handle<Expression>) -> Text {
         let text = match self.function.expressions[expression] {
             Expression::ImageSample {
@@ -71,11 +74,12 @@ impl FunctionPrinter<'_, '_> {
         Text::primary(text.unwrap_or_default())
     }
 
+    /// Returns the printed name of a variable.
     fn name(&self, global: Handle<GlobalVariable>) -> String {
         self.printer.names.globals.get(&global).cloned().unwrap_or_default()
     }
 
-    /// The texture and its sampler, as one value that GLSL samples from.
+    /// Prints the texture and its sampler as one value that GLSL can sample.
     fn combined(&mut self, image: &Image, sampler: Handle<Expression>) -> Option<String> {
         let Expression::GlobalVariable(sampler_global) = self.function.expressions[sampler] else {
             self.error("a sampler passed as an argument", sampler);
@@ -85,18 +89,19 @@ impl FunctionPrinter<'_, '_> {
         let comparison = matches!(self.printer.module.types[ty].inner, TypeInner::Sampler { comparison: true });
         let texture = self.name(image.global);
         if self.printer.vulkan() {
-            self.printer.needs.globals.insert(sampler_global);
-            let stem =
-                format!("{}sampler{}{}", prefix(image.class), shape(image), if comparison { "Shadow" } else { "" });
-            return Some(format!("{stem}({texture}, {})", self.name(sampler_global)));
+            self.printer.requirements.globals.insert(sampler_global);
+            let ty = opaque_type("sampler", image.dimension, image.arrayed, image.class);
+            let shadow = if comparison { "Shadow" } else { "" };
+            return Some(format!("{ty}{shadow}({texture}, {})", self.name(sampler_global)));
         }
-        let before = self.printer.needs.combined.insert(image.global, (sampler_global, comparison));
+        let before = self.printer.requirements.combined.insert(image.global, (sampler_global, comparison));
         if before.is_some_and(|(other, _)| other != sampler_global) {
             self.error("one texture with several samplers, in OpenGL", sampler);
         }
         Some(texture)
     }
 
+    /// Prints a sample.
     fn sample(&mut self, image: Handle<Expression>, sampler: Handle<Expression>, sample: &Sample) -> Option<String> {
         let image = self.image(image)?;
         let texture = self.combined(&image, sampler)?;
@@ -131,18 +136,18 @@ impl FunctionPrinter<'_, '_> {
         }
         let name = if sample.offset.is_some() { format!("{stem}Offset") } else { stem.to_owned() };
         let text = format!("{name}({})", arguments.join(", "));
-        // GLSL reads a depth texture without comparison as a vector.
+        // GLSL samples a depth texture without comparison as a vector.
         Some(if depth && sample.depth_ref.is_none() { format!("{text}.x") } else { text })
     }
 
-    /// WGSL allows an integer level for depth textures.
+    /// Prints a level as a float. WGSL allows an integer level for depth textures.
     fn level(&mut self, level: Handle<Expression>) -> String {
         let text = self.expression(level);
         let float = self.shape(level).is_none_or(|(_, scalar)| scalar.kind == ScalarKind::Float);
         if float { text } else { format!("float({text})") }
     }
 
-    /// Position, layer and, where GLSL packs it in, the reference depth.
+    /// Prints position, layer and, if GLSL packs it into the same vector, the reference depth.
     fn coordinate(&mut self, image: &Image, sample: &Sample) -> String {
         let coordinate = self.expression(sample.coordinate);
         let layer = sample.array_index.map(|layer| format!("float({})", self.expression(layer)));
@@ -160,7 +165,7 @@ impl FunctionPrinter<'_, '_> {
         format!("vec{}({coordinate}, {})", lanes + extra.len(), extra.join(", "))
     }
 
-    /// Integer position, with the layer.
+    /// Prints an integer position with the layer.
     fn texel(&mut self, image: &Image, coordinate: Handle<Expression>, layer: Option<Handle<Expression>>) -> String {
         let lanes = self.shape(coordinate).map_or(1, |(lanes, _)| lanes);
         let signed = self.shape(coordinate).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
@@ -173,12 +178,14 @@ impl FunctionPrinter<'_, '_> {
         format!("ivec{}({text}, {layer})", lanes + 1)
     }
 
+    /// Prints an integer as `int`.
     fn int(&mut self, value: Handle<Expression>) -> String {
         let signed = self.shape(value).is_some_and(|(_, scalar)| scalar.kind == ScalarKind::Sint);
         let text = self.expression(value);
         if signed || text.parse::<u32>().is_ok() { text } else { format!("int({text})") }
     }
 
+    /// Prints a load from a texture or storage texture.
     fn image_load(
         &mut self,
         image: Handle<Expression>,
@@ -190,14 +197,11 @@ impl FunctionPrinter<'_, '_> {
         let image = self.image(image)?;
         let texture = self.name(image.global);
         let texel = self.texel(&image, coordinate, array_index);
-        if let ImageClass::Storage { format, .. } = image.class {
-            let lanes = scalar_of(format).1;
-            let text = format!("imageLoad({texture}, {texel})");
-            let _ = lanes;
-            return Some(text);
+        if let ImageClass::Storage { .. } = image.class {
+            return Some(format!("imageLoad({texture}, {texel})"));
         }
         if self.printer.vulkan() {
-            self.printer.needs.extensions.insert(SAMPLERLESS);
+            self.printer.requirements.extensions.insert(SAMPLERLESS);
         }
         let last = match sample.or(level) {
             Some(last) => self.int(last),
@@ -207,6 +211,7 @@ impl FunctionPrinter<'_, '_> {
         Some(if matches!(image.class, ImageClass::Depth { .. }) { format!("{text}.x") } else { text })
     }
 
+    /// Prints a store to a storage texture.
     pub fn image_store(
         &mut self,
         image: Handle<Expression>,
@@ -221,6 +226,7 @@ impl FunctionPrinter<'_, '_> {
         format!("imageStore({texture}, {texel}, {value})")
     }
 
+    /// Prints a query of size, levels, layers or samples.
     fn image_query(
         &mut self,
         expression: Handle<Expression>,
@@ -233,7 +239,7 @@ impl FunctionPrinter<'_, '_> {
         let multisampled =
             matches!(image.class, ImageClass::Sampled { multi: true, .. } | ImageClass::Depth { multi: true });
         if self.printer.vulkan() && !storage {
-            self.printer.needs.extensions.insert(SAMPLERLESS);
+            self.printer.requirements.extensions.insert(SAMPLERLESS);
         }
         let size = if storage {
             format!("imageSize({texture})")
@@ -262,11 +268,11 @@ impl FunctionPrinter<'_, '_> {
     }
 }
 
-/// `u`, `i` or nothing before `sampler2D`, `texture2D` and `image2D`.
+/// Returns the prefix of a texture type: `u`, `i` or nothing.
 fn prefix(class: ImageClass) -> &'static str {
     let kind = match class {
         ImageClass::Sampled { kind, .. } => kind,
-        ImageClass::Storage { format, .. } => scalar_of(format).0,
+        ImageClass::Storage { format, .. } => naga::Scalar::from(format).kind,
         _ => ScalarKind::Float,
     };
     match kind {
@@ -276,12 +282,8 @@ fn prefix(class: ImageClass) -> &'static str {
     }
 }
 
-/// `2DMSArray` and kin.
-fn shape(image: &Image) -> String {
-    shape_of(image.dimension, image.arrayed, image.class)
-}
-
-fn shape_of(dimension: ImageDimension, arrayed: bool, class: ImageClass) -> String {
+/// Returns the suffix of a texture type, such as `2DMSArray`.
+fn type_suffix(dimension: ImageDimension, arrayed: bool, class: ImageClass) -> String {
     let dimension = match dimension {
         ImageDimension::D1 => "1D",
         ImageDimension::D2 => "2D",
@@ -292,12 +294,12 @@ fn shape_of(dimension: ImageDimension, arrayed: bool, class: ImageClass) -> Stri
     format!("{dimension}{}{}", if multisampled { "MS" } else { "" }, if arrayed { "Array" } else { "" })
 }
 
-/// The GLSL type of a texture variable; `stem` is `sampler`, `texture` or `image`.
+/// Returns the GLSL type of a texture variable; `stem` is `sampler`, `texture` or `image`.
 pub fn opaque_type(stem: &str, dimension: ImageDimension, arrayed: bool, class: ImageClass) -> String {
-    format!("{}{stem}{}", prefix(class), shape_of(dimension, arrayed, class))
+    format!("{}{stem}{}", prefix(class), type_suffix(dimension, arrayed, class))
 }
 
-/// Format qualifier of a storage texture.
+/// Returns the format qualifier of a storage texture.
 pub fn format_name(format: naga::StorageFormat) -> Option<&'static str> {
     use naga::StorageFormat as F;
     Some(match format {
@@ -342,10 +344,4 @@ pub fn format_name(format: naga::StorageFormat) -> Option<&'static str> {
         F::Rgba16Snorm => "rgba16_snorm",
         F::Bgra8Unorm | F::R64Uint => return None,
     })
-}
-
-/// Kind and width of a texel, from the name of its format.
-fn scalar_of(format: naga::StorageFormat) -> (ScalarKind, u8) {
-    let scalar = naga::Scalar::from(format);
-    (scalar.kind, scalar.width)
 }

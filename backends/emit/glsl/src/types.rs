@@ -1,13 +1,13 @@
-//! Types: naga types in, GLSL type names and declarations out.
+//! Prints naga types as GLSL type names and declarations.
 //!
-//! A structure that is named here is thereby noted as needed; it is printed later, by `globals`.
+//! Naming a structure here also requires its declaration, which `globals` prints later.
 
 use naga::proc::TypeResolution;
 use naga::{ArraySize, Handle, Scalar, ScalarKind, Span, Type, TypeInner, VectorSize};
 
 use crate::printer::Printer;
 
-/// `uint`, `int`, `float`, `bool` or `uint64_t`; nothing for other widths.
+/// Returns `uint`, `int`, `float`, `bool` or `uint64_t`; nothing for other widths.
 pub fn scalar_name(scalar: Scalar) -> Option<&'static str> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Uint, 4) => Some("uint"),
@@ -19,7 +19,7 @@ pub fn scalar_name(scalar: Scalar) -> Option<&'static str> {
     }
 }
 
-/// What a scalar that has no GLSL name is called in a message.
+/// Returns the name that messages use for a scalar without a GLSL name.
 pub fn unsupported_scalar(scalar: Scalar) -> String {
     let letter = match scalar.kind {
         ScalarKind::Uint => 'u',
@@ -32,7 +32,7 @@ pub fn unsupported_scalar(scalar: Scalar) -> String {
     format!("{letter}{} values", u32::from(scalar.width) * 8)
 }
 
-/// `vec`, `ivec`, `uvec` or `bvec`.
+/// Returns `vec`, `ivec`, `uvec` or `bvec`.
 pub fn vector_stem(scalar: Scalar) -> &'static str {
     match scalar.kind {
         ScalarKind::Uint => "uvec",
@@ -42,7 +42,7 @@ pub fn vector_stem(scalar: Scalar) -> &'static str {
     }
 }
 
-/// `sized("vec", Some(Quad))` is `vec4`; with no size, the scalar's name. Vectors of 64-bit components have no name here.
+/// Returns the name of a vector, such as `vec4`; without a size, the scalar's name. Vectors of 64-bit components have none.
 pub fn numeric_name(size: Option<VectorSize>, scalar: Scalar) -> Option<String> {
     let name = scalar_name(scalar)?;
     Some(match size {
@@ -52,7 +52,7 @@ pub fn numeric_name(size: Option<VectorSize>, scalar: Scalar) -> Option<String> 
     })
 }
 
-/// Size and scalar of a numeric type, and of what an atomic or pointer to one holds.
+/// Returns size and scalar of a numeric or atomic type.
 pub fn numeric(inner: &TypeInner) -> Option<(Option<VectorSize>, Scalar)> {
     match *inner {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Some((None, scalar)),
@@ -62,13 +62,13 @@ pub fn numeric(inner: &TypeInner) -> Option<(Option<VectorSize>, Scalar)> {
 }
 
 impl Printer<'_> {
-    /// The name of a type where a value is made: `uint`, `vec4`, `Packed`, `float[8]`.
+    /// Returns the name of a type as a constructor: `uint`, `vec4`, `Packed`, `float[8]`.
     pub fn type_name(&mut self, ty: Handle<Type>, span: Span) -> String {
         let (base, dimensions) = self.split_type(ty, span);
         base + &dimensions
     }
 
-    /// The type of an expression.
+    /// As [`Self::type_name`], for the type of an expression.
     pub fn resolved_name(&mut self, resolution: &TypeResolution, span: Span) -> String {
         match resolution {
             TypeResolution::Handle(handle) => self.type_name(*handle, span),
@@ -76,7 +76,7 @@ impl Printer<'_> {
         }
     }
 
-    /// A declaration without qualifiers or value: `uint keys[8]`.
+    /// Returns a declaration without qualifiers or value: `uint keys[8]`.
     pub fn declaration(&mut self, ty: Handle<Type>, name: &str, span: Span) -> String {
         let (base, dimensions) = self.split_type(ty, span);
         format!("{base} {name}{dimensions}")
@@ -90,7 +90,7 @@ impl Printer<'_> {
         }
     }
 
-    /// Element type and array dimensions, outermost first.
+    /// Returns the element type and the array dimensions, outermost first.
     fn split_type(&mut self, ty: Handle<Type>, span: Span) -> (String, String) {
         let inner = self.module.types[ty].inner.clone();
         match inner {
@@ -104,7 +104,7 @@ impl Printer<'_> {
                 (name, format!("[{size}]{dimensions}"))
             }
             TypeInner::Struct { .. } => {
-                self.needs.types.insert(ty);
+                self.requirements.types.insert(ty);
                 let name = self.names.types.get(&ty).cloned();
                 (name.unwrap_or_else(|| self.error("a structure without a name", span)), String::new())
             }
@@ -112,9 +112,10 @@ impl Printer<'_> {
         }
     }
 
-    pub fn inner_name(&mut self, inner: &TypeInner, span: Span) -> String {
+    /// Returns the name of a type that is no array and no structure.
+    fn inner_name(&mut self, inner: &TypeInner, span: Span) -> String {
         if let Some((size, scalar)) = numeric(inner) {
-            self.need_width(scalar);
+            self.require_width(scalar);
             let name = numeric_name(size, scalar);
             return name.unwrap_or_else(|| self.error(unsupported_scalar(scalar), span));
         }
@@ -136,17 +137,17 @@ impl Printer<'_> {
         }
     }
 
-    /// Notes the extension that a scalar's type needs.
-    pub fn need_width(&mut self, scalar: Scalar) {
+    /// Requires the extension of a scalar type, if it has one.
+    pub fn require_width(&mut self, scalar: Scalar) {
         if scalar == Scalar::U64 && self.es() {
             self.error("64-bit integers", Span::UNDEFINED);
         } else if scalar == Scalar::U64 {
             let vulkan = "GL_EXT_shader_explicit_arithmetic_types_int64";
-            self.needs.extensions.insert(if self.vulkan() { vulkan } else { "GL_ARB_gpu_shader_int64" });
+            self.requirements.extensions.insert(if self.vulkan() { vulkan } else { "GL_ARB_gpu_shader_int64" });
         }
     }
 
-    /// The zero value of a type.
+    /// Returns the zero value of a type.
     pub fn zero(&mut self, ty: Handle<Type>, span: Span) -> String {
         let inner = self.module.types[ty].inner.clone();
         match inner {
@@ -168,7 +169,7 @@ impl Printer<'_> {
     }
 }
 
-pub fn zero_scalar(scalar: Scalar) -> &'static str {
+fn zero_scalar(scalar: Scalar) -> &'static str {
     match scalar.kind {
         ScalarKind::Uint if scalar.width == 8 => "0ul",
         ScalarKind::Uint => "0u",

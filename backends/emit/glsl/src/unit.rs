@@ -1,19 +1,20 @@
-//! The text as a whole: bodies first, since they tell what must be declared; then everything in the order GLSL wants.
+//! Prints a whole unit: first the bodies, which determine the required declarations; then all parts in GLSL's order.
 //!
-//! In: a printer and what to print. Out: the finished text, which is worthless if the printer has noted errors.
+//! Input: a printer and the unit. Output: the GLSL source, which is invalid if the printer has recorded errors.
 
 use std::collections::BTreeSet;
 
 use naga::{EarlyDepthTest, EntryPoint, Function, GlobalVariable, Handle, ShaderStage, Span, TypeInner};
 
-use crate::Unit;
-use crate::footprint::{Calls, of_functions};
+use crate::footprint::{CallFootprints, of_functions};
 use crate::function::FunctionPrinter;
 use crate::interface::Interface;
-use crate::names::free;
+use crate::names::unique_name;
+use crate::options::Unit;
 use crate::printer::Printer;
 use crate::reach::reached;
 
+/// Prints a unit.
 pub fn print(printer: &mut Printer, unit: Unit) -> String {
     let module = printer.module;
     let calls = of_functions(module, |function| printer.marker(function));
@@ -44,11 +45,16 @@ pub fn print(printer: &mut Printer, unit: Unit) -> String {
     }
 }
 
-fn print_functions(printer: &mut Printer, functions: &BTreeSet<Handle<Function>>, calls: &Calls) -> Vec<Vec<String>> {
+fn print_functions(
+    printer: &mut Printer,
+    functions: &BTreeSet<Handle<Function>>,
+    calls: &CallFootprints,
+) -> Vec<Vec<String>> {
     functions.iter().map(|function| print_function(printer, *function, calls)).collect()
 }
 
-fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls) -> Vec<String> {
+/// Prints a function, with its comments.
+fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &CallFootprints) -> Vec<String> {
     let module = printer.module;
     let info = printer.info;
     let function = &module.functions[handle];
@@ -73,7 +79,7 @@ fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls
             | TypeInner::ValuePointer { .. }
             | TypeInner::Image { .. }
             | TypeInner::Sampler { .. } => {
-                inner.printer.error(format!("the argument `{name}`, of a type that GLSL cannot pass"), Span::UNDEFINED);
+                inner.printer.error(format!("the argument `{name}`, whose type GLSL cannot pass"), Span::UNDEFINED);
                 continue;
             }
             _ => ("", argument.ty),
@@ -81,15 +87,16 @@ fn print_function(printer: &mut Printer, handle: Handle<Function>, calls: &Calls
         parameters.push(format!("{qualifier}{}", inner.printer.declaration(ty, &name, Span::UNDEFINED)));
     }
     lines.push(format!("{result} {name}({}) {{", parameters.join(", ")));
-    inner.open();
+    inner.open_block();
     inner.statements(&function.body, true);
-    inner.close();
+    inner.close_block();
     lines.append(&mut inner.lines);
     lines.push("}".to_owned());
     lines
 }
 
-fn print_main(printer: &mut Printer, index: usize, calls: &Calls) -> (Vec<String>, Interface) {
+/// Prints an entry point as `main`. Returns its interface too.
+fn print_main(printer: &mut Printer, index: usize, calls: &CallFootprints) -> (Vec<String>, Interface) {
     let module = printer.module;
     let info = printer.info;
     let entry = &module.entry_points[index];
@@ -98,24 +105,24 @@ fn print_main(printer: &mut Printer, index: usize, calls: &Calls) -> (Vec<String
     let mut inner = FunctionPrinter::new(printer, &entry.function, info.get_entry_point(index), calls);
     inner.interface = Some(interface);
     lines.push("void main() {".to_owned());
-    inner.open();
+    inner.open_block();
     inner.assemble_inputs();
     inner.statements(&entry.function.body, true);
-    inner.close();
+    inner.close_block();
     let interface = inner.interface.take().unwrap_or_default();
     let mut body = std::mem::take(&mut inner.lines);
-    lines.append(&mut zeros(printer));
+    lines.append(&mut zero_initialisation(printer));
     lines.append(&mut body);
     lines.push("}".to_owned());
     (lines, interface)
 }
 
-/// What makes those variables zero at first, as WGSL has them, that GLSL gives no initial value.
-fn zeros(printer: &mut Printer) -> Vec<String> {
+/// Prints the initialisation to zero that WGSL requires and the GLSL declarations lack.
+fn zero_initialisation(printer: &mut Printer) -> Vec<String> {
     let module = printer.module;
     let shared =
         |handle: &Handle<GlobalVariable>| module.global_variables[*handle].space == naga::AddressSpace::WorkGroup;
-    let (shared, private): (Vec<_>, Vec<_>) = printer.needs.globals.iter().copied().partition(shared);
+    let (shared, private): (Vec<_>, Vec<_>) = printer.requirements.globals.iter().copied().partition(shared);
     let mut lines = Vec::new();
     for handle in private.into_iter().filter(|handle| printer.is_long_private_array(*handle)).collect::<Vec<_>>() {
         set_to_zero(printer, handle, "    ", &mut lines);
@@ -134,6 +141,7 @@ fn zeros(printer: &mut Printer) -> Vec<String> {
     lines
 }
 
+/// Prints the initialisation of a variable to zero; a loop for an array.
 fn set_to_zero(printer: &mut Printer, handle: Handle<GlobalVariable>, indent: &str, lines: &mut Vec<String>) {
     let name = printer.names.globals.get(&handle).cloned().unwrap_or_default();
     let ty = printer.module.global_variables[handle].ty;
@@ -142,14 +150,14 @@ fn set_to_zero(printer: &mut Printer, handle: Handle<GlobalVariable>, indent: &s
         lines.push(format!("{indent}{name} = {zero};"));
         return;
     };
-    let index = free("index", |name| printer.names.is_taken(name));
+    let index = unique_name("index", |name| printer.names.is_taken(name));
     let zero = printer.zero(base, Span::UNDEFINED);
     lines.push(format!("{indent}for (uint {index} = 0u; {index} < {size}u; {index}++) {{"));
     lines.push(format!("{indent}    {name}[{index}] = {zero};"));
     lines.push(format!("{indent}}}"));
 }
 
-/// Layout qualifiers that belong to the stage as a whole.
+/// Returns the layout qualifiers of the stage.
 fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
     let mut lines = Vec::new();
     match entry.stage {
@@ -165,22 +173,22 @@ fn stage_lines(printer: &mut Printer, entry: &EntryPoint) -> Vec<String> {
     }
     match entry.early_depth_test {
         Some(EarlyDepthTest::Force) => lines.push("layout(early_fragment_tests) in;".to_owned()),
-        // A promise to the driver, which ES has no words for: without it the depth is tested late, as is always right.
+        // The qualifier is a promise to the driver. ES lacks it; without it the depth test is late, which is always correct.
         Some(EarlyDepthTest::Allow { .. }) if printer.es() => {}
         Some(EarlyDepthTest::Allow { conservative }) => {
-            let word = match conservative {
+            let condition = match conservative {
                 naga::ConservativeDepth::GreaterEqual => "greater",
                 naga::ConservativeDepth::LessEqual => "less",
                 naga::ConservativeDepth::Unchanged => "unchanged",
             };
-            lines.push(format!("layout(depth_{word}) out float gl_FragDepth;"));
+            lines.push(format!("layout(depth_{condition}) out float gl_FragDepth;"));
         }
         None => {}
     }
     lines
 }
 
-/// Puts all parts together, each top-level item after a free line; one-line declarations of a kind stay together.
+/// Joins all parts. A blank line precedes each top-level item; one-line declarations of a kind stay together.
 fn assemble(
     printer: &mut Printer,
     mut stage: Vec<String>,
@@ -188,20 +196,25 @@ fn assemble(
     bodies: Vec<Vec<String>>,
     versioned: bool,
 ) -> String {
-    stage.extend(printer.needs.interlock.map(|interlock| format!("layout({interlock}) in;")));
+    stage.extend(printer.requirements.interlock.map(|interlock| format!("layout({interlock}) in;")));
     let (structures, constants, globals) = declarations(printer);
-    let helpers: Vec<_> =
-        printer.needs.helpers.iter().map(|helper| if versioned { helper.text() } else { helper.guarded() }).collect();
+    let helpers: Vec<_> = printer
+        .requirements
+        .helpers
+        .iter()
+        .map(|helper| if versioned { helper.text() } else { helper.guarded() })
+        .collect();
 
     let mut sections: Vec<Vec<String>> = Vec::new();
-    let mut head = Vec::new();
+    let mut preamble = Vec::new();
     if versioned {
-        head.push(if printer.es() { "#version 310 es" } else { "#version 450" }.to_owned());
+        preamble.push(if printer.es() { "#version 310 es" } else { "#version 450" }.to_owned());
     }
-    head.extend(printer.needs.extensions.iter().map(|extension| format!("#extension {extension} : require")));
-    sections.push(head);
+    preamble
+        .extend(printer.requirements.extensions.iter().map(|extension| format!("#extension {extension} : require")));
+    sections.push(preamble);
     if versioned && printer.es() {
-        // Fragment shaders of ES have no precision of their own for floats, and a low one for integers.
+        // Fragment shaders of ES have no default precision for floats, and a low one for integers.
         sections.push(["precision highp float;", "precision highp int;"].map(str::to_owned).to_vec());
     }
     sections.push(printer.options.header.lines().map(|line| format!("// {line}").trim_end().to_owned()).collect());
@@ -217,23 +230,31 @@ fn assemble(
     texts.join("\n\n") + "\n"
 }
 
+/// Top-level items, each as its lines.
 type Items = Vec<Vec<String>>;
 
-/// Structures, constants and globals. Declarations may need further ones, so this goes on until nothing is new.
+/// Prints structures, constants and globals. Declarations may require further ones, so this repeats until none is new.
 fn declarations(printer: &mut Printer) -> (Items, Items, Items) {
-    let globals = printer.needs.globals.clone().into_iter().map(|handle| printer.global_declaration(handle)).collect();
+    let globals =
+        printer.requirements.globals.clone().into_iter().map(|handle| printer.global_declaration(handle)).collect();
     loop {
-        let before = (printer.needs.types.len(), printer.needs.constants.len());
-        let constants =
-            printer.needs.constants.clone().into_iter().map(|handle| printer.constant_declaration(handle)).collect();
-        let structures = printer.needs.types.clone().into_iter().map(|handle| printer.structure(handle)).collect();
-        if before == (printer.needs.types.len(), printer.needs.constants.len()) {
+        let before = (printer.requirements.types.len(), printer.requirements.constants.len());
+        let constants = printer
+            .requirements
+            .constants
+            .clone()
+            .into_iter()
+            .map(|handle| printer.constant_declaration(handle))
+            .collect();
+        let structures =
+            printer.requirements.types.clone().into_iter().map(|handle| printer.structure(handle)).collect();
+        if before == (printer.requirements.types.len(), printer.requirements.constants.len()) {
             return (structures, constants, globals);
         }
     }
 }
 
-/// Joins items of a single line into one section; longer ones stand alone.
+/// Joins consecutive items of one line into one section; each longer item is a section.
 fn grouped(items: Items) -> Items {
     let mut sections: Items = Vec::new();
     let mut open = false;

@@ -1,4 +1,4 @@
-//! What cannot be printed comes back as errors, all at once and with a place; and names that GLSL reserves never come out.
+//! Tests that unprintable parts are reported together, with spans, and that reserved GLSL names are never printed.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
@@ -6,19 +6,20 @@ mod support;
 use fragbuf_glsl::{Dialect, Unit};
 use support::{ALL, accept, print};
 
+/// Tests that every dialect reports the expected messages.
 #[track_caller]
-fn refused(source: &str, expected: &[&str]) {
+fn expect_errors(source: &str, expected: &[&str]) {
     for dialect in ALL {
         let errors = print(source, Unit::EntryPoint("main"), dialect).unwrap_err();
-        for what in expected {
-            assert!(errors.iter().any(|error| error.what.contains(what)), "no `{what}` in {errors:?}");
+        for message in expected {
+            assert!(errors.iter().any(|error| error.message.contains(message)), "no `{message}` in {errors:?}");
         }
     }
 }
 
 #[test]
 fn wide_integers() {
-    refused(
+    expect_errors(
         "@group(0) @binding(0) var<storage, read_write> a: array<i64>;
         @group(0) @binding(1) var<storage, read_write> b: atomic<i64>;
         @group(0) @binding(2) var<storage, read_write> c: array<u64>;
@@ -35,7 +36,7 @@ fn wide_integers() {
 
 #[test]
 fn overrides() {
-    refused(
+    expect_errors(
         "override size: u32 = 3u;
         @group(0) @binding(0) var<storage, read_write> a: array<u32>;
         @compute @workgroup_size(1) fn main() { a[0] = size; }",
@@ -45,7 +46,7 @@ fn overrides() {
 
 #[test]
 fn layouts_that_differ() {
-    refused(
+    expect_errors(
         "struct Padded { @size(16) a: u32, b: u32 }
         @group(0) @binding(0) var<storage, read_write> padded: Padded;
         @compute @workgroup_size(1) fn main() { padded.a = padded.b; }",
@@ -55,12 +56,12 @@ fn layouts_that_differ() {
 
 #[test]
 fn unknown_entry_point() {
-    refused("@compute @workgroup_size(1) fn other() {}", &["no entry point `main`"]);
+    expect_errors("@compute @workgroup_size(1) fn other() {}", &["no entry point `main`"]);
 }
 
 #[test]
 fn critical_sections_below_the_top_level() {
-    refused(
+    expect_errors(
         "fn critical_begin() {}
         fn critical_end() {}
         fn inner() { critical_begin(); critical_end(); }
@@ -71,7 +72,7 @@ fn critical_sections_below_the_top_level() {
 
 #[test]
 fn whole_compare_exchange_results() {
-    refused(
+    expect_errors(
         "@group(0) @binding(0) var<storage, read_write> a: atomic<u32>;
         @compute @workgroup_size(1) fn main() {
             var r = atomicCompareExchangeWeak(&a, 0u, 1u);
@@ -82,7 +83,7 @@ fn whole_compare_exchange_results() {
 }
 
 #[test]
-fn errors_have_a_place() {
+fn errors_have_spans() {
     let source = "@group(0) @binding(0) var<storage, read_write> a: array<i64>;
         @compute @workgroup_size(1) fn main() { a[0] = a[1]; }";
     let errors = print(source, Unit::EntryPoint("main"), Dialect::Vulkan450).unwrap_err();
@@ -91,10 +92,10 @@ fn errors_have_a_place() {
 
 #[test]
 fn reserved_names_are_accepted_as_wgsl_names() {
-    let words = include_str!("glsl_reserved.txt").split_whitespace();
+    let names = include_str!("glsl_reserved.txt").split_whitespace();
     let usable: Vec<&str> =
-        words.filter(|word| !naga::keywords::wgsl::RESERVED.contains(word) && !word.starts_with("gl_")).collect();
-    let lets: String = usable.iter().map(|word| format!("    let {word} = a[0];\n    a[1] = {word};\n")).collect();
+        names.filter(|name| !naga::keywords::wgsl::RESERVED.contains(name) && !name.starts_with("gl_")).collect();
+    let lets: String = usable.iter().map(|name| format!("    let {name} = a[0];\n    a[1] = {name};\n")).collect();
     let source = format!(
         "@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n@compute @workgroup_size(1) fn entry() {{\n{lets}}}\n"
     );
@@ -102,8 +103,8 @@ fn reserved_names_are_accepted_as_wgsl_names() {
         let text = print(&source, Unit::EntryPoint("entry"), dialect).unwrap_or_else(|errors| panic!("{errors:?}"));
         accept(&text, "reserved_locals", "comp", dialect).unwrap_or_else(|message| panic!("{message}"));
     }
-    let fields: String = usable.iter().map(|word| format!("    {word}: u32,\n")).collect();
-    let sum: Vec<String> = usable.iter().map(|word| format!("s.{word}")).collect();
+    let fields: String = usable.iter().map(|name| format!("    {name}: u32,\n")).collect();
+    let sum: Vec<String> = usable.iter().map(|name| format!("s.{name}")).collect();
     let source = format!(
         "struct S {{\n{fields}}}\n@group(0) @binding(0) var<storage, read_write> s: S;\n@compute @workgroup_size(1) fn entry() {{ s.{} = {}; }}\n",
         usable[0],

@@ -1,38 +1,37 @@
-//! naga reads and validates a linked text. What it refuses in a user's own file is the user's mistake, at the user's line
-//! and column. What it refuses elsewhere is a defect of ours and says so: in a closure with the user's line, in a template
-//! with the template's.
+//! Parses and validates linked WGSL with naga. An error in a user file is the user's, at the user's line and column. An error
+//! elsewhere is a defect of fragbuf and is reported as one: in a closure with the user's line, in a template with the template's.
 
-use fragbuf_codegen::{LineOrigin, PassText, Profile};
-use fragbuf_model::{Diagnostic, Diagnostics, Origin, codes};
+use fragbuf_codegen::{LineSource, PassSource, Profile};
+use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, codes};
 use naga::SourceLocation;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-/// A pass that naga took. Made by [`check`] only.
+/// A pass that naga accepts. Only [`check`] constructs it.
 #[derive(Clone, Debug)]
 pub struct Checked {
-    pass: PassText,
+    pass: PassSource,
     module: naga::Module,
     info: ModuleInfo,
 }
 
 impl Checked {
-    /// The text.
-    pub fn pass(&self) -> &PassText {
+    /// Returns the WGSL source.
+    pub fn pass(&self) -> &PassSource {
         &self.pass
     }
 
-    /// What naga made of it.
+    /// Returns naga's module.
     pub fn module(&self) -> &naga::Module {
         &self.module
     }
 
-    /// naga's proof.
+    /// Returns naga's result of validation.
     pub fn info(&self) -> &ModuleInfo {
         &self.info
     }
 }
 
-/// What naga may accept in a text of this profile.
+/// Returns the naga capabilities that sources of this profile may use.
 pub(crate) fn capabilities(profile: Profile) -> Capabilities {
     match profile {
         Profile::Portable => Capabilities::empty(),
@@ -47,8 +46,8 @@ pub(crate) fn capabilities(profile: Profile) -> Capabilities {
     }
 }
 
-/// Checks one pass; `description` is the place to name when no line of the user's is at fault.
-pub fn check(pass: PassText, profile: Profile, description: &Origin) -> Result<Checked, Diagnostics> {
+/// Checks one pass. Errors that are at no line of the user's are reported at `description`.
+pub fn check(pass: PassSource, profile: Profile, description: &SourceSpan) -> Result<Checked, Diagnostics> {
     let capabilities = capabilities(profile);
     let mut frontend = naga::front::wgsl::Frontend::new_with_options(naga::front::wgsl::Options {
         parse_doc_comments: true,
@@ -56,47 +55,57 @@ pub fn check(pass: PassText, profile: Profile, description: &Origin) -> Result<C
     });
     let module = frontend
         .parse(&pass.text)
-        .map_err(|error| refused(&pass, error.location(&pass.text), error.message(), description))?;
+        .map_err(|error| error_at(&pass, error.location(&pass.text), error.message(), description))?;
     let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
-        .map_err(|error| refused(&pass, error.location(&pass.text), &chain(error.as_inner()), description))?;
+        .map_err(|error| error_at(&pass, error.location(&pass.text), &chain(error.as_inner()), description))?;
     Ok(Checked { pass, module, info })
 }
 
-fn refused(pass: &PassText, location: Option<SourceLocation>, message: &str, description: &Origin) -> Diagnostics {
+fn error_at(
+    pass: &PassSource,
+    location: Option<SourceLocation>,
+    message: &str,
+    description: &SourceSpan,
+) -> Diagnostics {
     let line = location.map(|location| location.line_number as usize);
-    let (origin, place) = match line.map(|line| (line, pass.lines.origin(line))) {
-        Some((_, LineOrigin::Own(line))) => return refused_own(pass, location, message, &line),
-        Some((_, LineOrigin::User(origin))) => (origin, "this line".to_owned()),
-        Some((_, LineOrigin::Source { name, line })) => (description.clone(), format!("{name}:{line}")),
-        Some((line, LineOrigin::None)) => (description.clone(), format!("line {line}")),
-        None => (description.clone(), "the generated text".to_owned()),
+    let (span, at) = match line.map(|line| (line, pass.lines.source(line))) {
+        Some((_, LineSource::UserFile(line))) => return user_file_error(pass, location, message, &line),
+        Some((_, LineSource::Description(span))) => (span, "this line".to_owned()),
+        Some((_, LineSource::Source { name, line })) => (description.clone(), format!("{name}:{line}")),
+        Some((line, LineSource::None)) => (description.clone(), format!("line {line}")),
+        None => (description.clone(), "the generated source".to_owned()),
     };
-    let message = format!("naga refuses {place} of pass `{}`: {message}", pass.anchor);
-    let hint = "this is a defect of fragbuf: report it with the description; `show --dump wgsl` prints the text";
-    Diagnostic::new(codes::INTERNAL, &origin, message, hint).into()
+    let message = format!("naga rejects {at} of pass `{}`: {message}", pass.name);
+    let help = "this is a defect of fragbuf: report it with the description; `show --dump wgsl` prints the source";
+    Diagnostic::new(codes::INTERNAL, &span, message, help).into()
 }
 
-/// A mistake in a file of the user's own. The same line of several passes is one mistake, so the pass is not named.
-fn refused_own(pass: &PassText, location: Option<SourceLocation>, message: &str, line: &Origin) -> Diagnostics {
-    let origin = location.and_then(|location| narrowed(pass, location, line)).unwrap_or_else(|| line.clone());
-    let hint = "in scope are the file's own names, the contracts' functions, and the accessors of the row's buffers: \
-                `x_load`, `x_store` where a pass writes, `x_atomic_…` where it says `x atomic`";
-    Diagnostic::new(codes::REFUSED, &origin, message, hint).into()
+/// Returns an error in a user file. It does not name the pass: the same line in several passes gives one error.
+fn user_file_error(
+    pass: &PassSource,
+    location: Option<SourceLocation>,
+    message: &str,
+    line: &SourceSpan,
+) -> Diagnostics {
+    let span = location.and_then(|location| narrowed(pass, location, line)).unwrap_or_else(|| line.clone());
+    let help = "in scope are the file's own names, the functions of contracts, and the accessors of the row's buffers: \
+                `x_load`, `x_store` if the pass writes, `x_atomic_…` if the pass has `x atomic`";
+    Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into()
 }
 
-/// naga's place inside a line of the user's. `None` where renaming has changed the line's length.
-fn narrowed(pass: &PassText, location: SourceLocation, line: &Origin) -> Option<Origin> {
+/// Returns naga's location within a line of a user file; `None` if renaming has changed the line's length.
+fn narrowed(pass: &PassSource, location: SourceLocation, line: &SourceSpan) -> Option<SourceSpan> {
     let text = pass.text.lines().nth(location.line_number.checked_sub(1)? as usize)?;
     let indent = text.chars().count() - text.trim_start().chars().count();
     let is_same = indent as u32 + 1 == line.column && text.trim().chars().count() == line.length as usize;
     let before = text.get(..location.line_position.checked_sub(1)? as usize)?.chars().count() as u32;
     let most = (line.column + line.length).checked_sub(before + 1)?;
-    let origin = Origin::new(line.file.clone(), line.line, before + 1).with_length(location.length.min(most));
-    is_same.then_some(origin)
+    let span = SourceSpan::new(line.file.clone(), line.line, before + 1).with_length(location.length.min(most));
+    is_same.then_some(span)
 }
 
-/// An error and all that caused it, on one line.
+/// Returns an error and its causes on one line.
 fn chain(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();

@@ -1,72 +1,73 @@
-//! One variant, several targets: plan, link, check and emit, each step once for all targets that share it.
+//! Generates the files of a variant for several targets. Targets that share a plan or a linked program share that work.
 
 use fragbuf_codegen::{Form, Linking, Plan, Profile, link, plan};
-use fragbuf_model::{Diagnostic, Diagnostics, Refusal, Variant, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, MissingFeature, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Loads};
+use fragbuf_templates::vocabulary::{Feature, Loads};
 
-use crate::target::{Emission, File, Guards, InterlockOrder, Target};
+use crate::emission::{Emission, File, Guards, InterlockOrder};
+use crate::target::Target;
 use crate::{Checked, check};
 
-/// What to generate.
+/// The parameters of a generation.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
     /// The targets.
     pub targets: &'a [&'static Target],
-    /// Programs, or modules for a shader of the caller's own.
+    /// Programs, or modules for the caller's shader.
     pub form: Form,
-    /// Before every name but the entry points'; empty for none.
+    /// Prefix of every name except entry points; empty for none.
     pub prefix: &'a str,
-    /// The bind group of everything declared.
+    /// The bind group of all declared resources.
     pub group: u32,
 }
 
-/// What came of it.
+/// The result of [`generate`].
 #[derive(Clone, Debug)]
 pub struct Generation {
-    /// The plans, each with the targets that follow it. One, unless an `else` was taken on some target.
-    pub plans: Vec<Planned>,
+    /// The plans, each with the targets that use it. There is one, unless an `else` was taken on some target.
+    pub plans: Vec<PlanForTargets>,
     /// The files, in the order of the targets, the passes and the stages.
     pub files: Vec<File>,
-    /// Targets that cannot express the variant, and why.
-    pub refusals: Vec<(&'static Target, Refusal)>,
+    /// Targets that cannot express the variant, with the feature that they lack.
+    pub unsupported: Vec<(&'static Target, MissingFeature)>,
 }
 
-/// A plan and the targets that follow it.
+/// A plan and the targets that use it.
 #[derive(Clone, Debug)]
-pub struct Planned {
+pub struct PlanForTargets {
     /// The plan.
     pub plan: Plan,
     /// The targets.
     pub targets: Vec<&'static Target>,
 }
 
-/// Generates a variant. A target that cannot express it is a refusal, not an error.
+/// Generates a variant. A target that cannot express it is listed in [`Generation::unsupported`] and is not an error.
 pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -> Result<Generation, Diagnostics> {
-    let mut generation = Generation { plans: Vec::new(), files: Vec::new(), refusals: Vec::new() };
-    let mut texts: Vec<Texts> = Vec::new();
+    let mut generation = Generation { plans: Vec::new(), files: Vec::new(), unsupported: Vec::new() };
+    let mut programs: Vec<CheckedProgram> = Vec::new();
     for &target in request.targets {
         let Some(planned) = plan_for(variant, target, request, registry, &mut generation)? else { continue };
         let plan = &generation.plans[planned].plan;
-        let known = texts.iter().position(|texts| texts.planned == planned && texts.profile == target.profile);
+        let known = programs.iter().position(|program| program.planned == planned && program.profile == target.profile);
         let index = match known {
             Some(index) => index,
             None => {
-                texts.push(Texts {
+                programs.push(CheckedProgram {
                     planned,
                     profile: target.profile,
                     passes: checked(plan, target, request, registry)?,
                 });
-                texts.len() - 1
+                programs.len() - 1
             }
         };
-        let files = emit(target, plan, &texts[index].passes, request)?;
+        let files = emit(target, plan, &programs[index].passes, request)?;
         generation.files.extend(files);
     }
     Ok(generation)
 }
 
-/// The index of the plan that `target` follows; `None` where it was refused.
+/// Returns the index of the plan that `target` uses; `None` if the target does not support the variant.
 fn plan_for(
     variant: &Variant,
     target: &'static Target,
@@ -74,17 +75,18 @@ fn plan_for(
     registry: &Registry,
     generation: &mut Generation,
 ) -> Result<Option<usize>, Diagnostics> {
-    if request.form == Form::Module && !target.offers.contains(&Capability::Linkable) {
-        let refusal = Refusal { axis: "form".to_owned(), value: "module".to_owned(), capability: Capability::Linkable };
-        generation.refusals.push((target, refusal));
+    if request.form == Form::Module && !target.provides.contains(&Feature::Linkable) {
+        let missing =
+            MissingFeature { axis: "form".to_owned(), value: "module".to_owned(), feature: Feature::Linkable };
+        generation.unsupported.push((target, missing));
         return Ok(None);
     }
-    let mut offers = target.offers.to_vec();
-    offers.extend((request.form == Form::Program).then_some(Capability::OwnEntryPoints));
-    let selection = match variant.select(&offers) {
+    let mut provides = target.provides.to_vec();
+    provides.extend((request.form == Form::Program).then_some(Feature::OwnEntryPoints));
+    let selection = match variant.select(&provides) {
         Ok(selection) => selection,
-        Err(refusal) => {
-            generation.refusals.push((target, refusal));
+        Err(missing) => {
+            generation.unsupported.push((target, missing));
             return Ok(None);
         }
     };
@@ -93,7 +95,7 @@ fn plan_for(
         Some(index) => index,
         None => {
             let plan = plan(variant, &selection, registry)?;
-            generation.plans.push(Planned { plan, targets: Vec::new() });
+            generation.plans.push(PlanForTargets { plan, targets: Vec::new() });
             generation.plans.len() - 1
         }
     };
@@ -101,8 +103,8 @@ fn plan_for(
     Ok(Some(index))
 }
 
-/// The checked texts of one plan in one profile: all targets of that profile are made from them.
-struct Texts {
+/// The checked passes of one plan in one profile. All targets of that profile are emitted from them.
+struct CheckedProgram {
     planned: usize,
     profile: Profile,
     passes: Vec<Checked>,
@@ -123,12 +125,12 @@ fn checked(
     let mut diagnostics = Diagnostics::new();
     let mut checked = Vec::new();
     for pass in link(plan, &linking, registry)?.passes {
-        match check(pass, linking.profile, &plan.variant.name.origin) {
+        match check(pass, linking.profile, &plan.variant.name.span) {
             Ok(pass) => checked.push(pass),
-            Err(faults) => diagnostics.extend(faults),
+            Err(more) => diagnostics.extend(more),
         }
     }
-    diagnostics.gate(checked)
+    diagnostics.into_result(checked)
 }
 
 fn emit(
@@ -148,27 +150,27 @@ fn emit(
             target: target.name,
             prefix: &prefix,
             rechecked: rechecked.map(|usage| format!("{prefix}{}", usage.resource)).collect(),
-            interlock: match plan.requires.contains(&Capability::OrderedInterlock) {
+            interlock: match plan.requires.contains(&Feature::OrderedInterlock) {
                 true => InterlockOrder::Submission,
                 false => InterlockOrder::Any,
             },
-            guards: if plan.selection.own_files().next().is_some() { Guards::On } else { Guards::Off },
+            guards: if plan.selection.user_files().next().is_some() { Guards::On } else { Guards::Off },
         };
         match (target.emit)(&emission) {
             Ok(more) => files.extend(more),
             Err(problem) => diagnostics.push(Diagnostic::new(
                 codes::INTERNAL,
-                &plan.variant.name.origin,
-                format!("pass `{}` cannot be written as {}: {problem}", pass.anchor, target.name),
-                "report it with the description; another target may do meanwhile",
+                &plan.variant.name.span,
+                format!("pass `{}` cannot be written as {}: {problem}", pass.name, target.name),
+                "report this defect with the description; another target may work meanwhile",
             )),
         }
     }
     share(&mut files);
-    diagnostics.gate(files)
+    diagnostics.into_result(files)
 }
 
-/// Files of equal content are one file: the later ones take the first one's path.
+/// Gives files of equal content the path of the first one.
 fn share(files: &mut [File]) {
     for index in 1..files.len() {
         let (before, rest) = files.split_at_mut(index);

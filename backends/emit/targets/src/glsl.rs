@@ -1,12 +1,12 @@
-//! GLSL by our own printer, one file per entry point; a module is one file without `main`.
+//! Emits GLSL with `fragbuf-glsl`, one file per entry point. A module is one file without `main`.
 
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, print};
 
+use crate::emission::{Emission, File, InterlockOrder, stage_name, stage_suffix};
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MEMORY_FENCE};
-use crate::target::{Emission, File, InterlockOrder, stage_name, stage_suffix};
 
-/// `templates/shared/markers.wgsl`, in GLSL's words.
+/// The functions of `templates/shared/markers.wgsl` and the marker that each stands for.
 const MARKERS: [(&str, Marker); 3] =
     [(MEMORY_FENCE, Marker::MemoryFence), (HELPER_LANE, Marker::HelperLane), (CRITICAL_END, Marker::CriticalEnd)];
 
@@ -62,25 +62,25 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         bindings: &|group, binding| slot(dialect, group, binding),
         plain_loads: &plain_loads,
         written_first: &written_first,
-        // Templates write workgroup variables before they read them; SPIR-V is made on the same terms.
+        // Templates write workgroup variables before they read them.
         zero_workgroup_memory: false,
     };
-    print(checked.module(), checked.info(), source, unit, &options).map_err(|faults| {
-        let texts: Vec<String> = faults
+    print(checked.module(), checked.info(), source, unit, &options).map_err(|errors| {
+        let lines: Vec<String> = errors
             .iter()
-            .map(|fault| format!("line {}: {}", fault.span.location(source).line_number, fault.what))
+            .map(|error| format!("line {}: {}", error.span.location(source).line_number, error.message))
             .collect();
-        texts.join("; ")
+        lines.join("; ")
     })
 }
 
-/// The vertex stage only feeds the others: no algorithm is in it.
+/// Tests whether an entry point is a vertex stage, whose file lists no algorithms.
 fn is_vertex(emission: &Emission<'_>, name: &str) -> bool {
     let mut entries = emission.checked.pass().entry_points.iter();
     entries.any(|entry| entry.name == name && entry.stage == fragbuf_codegen::Stage::Vertex)
 }
 
-/// OpenGL has no sets, one row of bindings for uniform blocks and one for buffers, which may be no longer than 8.
+/// Returns the slot of a binding. OpenGL has no sets; it numbers uniform blocks and buffers separately and guarantees 8 buffers.
 pub(crate) fn slot(dialect: Dialect, group: u32, binding: u32) -> Slot {
     match (dialect, binding.checked_sub(FIRST_BINDING)) {
         (Dialect::Vulkan450, _) => Slot { set: group, binding },

@@ -1,9 +1,9 @@
-//! HLSL by naga, with fences in place of their markers. Register space is the bind group, register the binding.
+//! Emits HLSL with naga, with fences in place of their markers. The register space is the bind group, the register is the binding.
 
 use naga::back::hlsl;
 
+use crate::emission::{Emission, File, Guards};
 use crate::markers::with_fences;
-use crate::target::{Emission, File, Guards};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let module = with_fences(emission.checked.module(), emission.prefix);
@@ -14,7 +14,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         force_loop_bounding: emission.guards == Guards::On,
         ..hlsl::Options::default()
     };
-    let mut text = header(emission);
+    let mut text = emission.header();
     let pipeline = hlsl::PipelineOptions::default();
     let mut writer = hlsl::Writer::new(&mut text, &options, &pipeline);
     let reflection = writer.write(&module, emission.checked.info(), None).map_err(|error| error.to_string())?;
@@ -22,12 +22,4 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         name.map_err(|error| error.to_string())?;
     }
     Ok(vec![emission.whole(".hlsl", text.into_bytes())])
-}
-
-/// Technique, generator, choices and algorithms, as comments.
-pub(crate) fn header(emission: &Emission<'_>) -> String {
-    let notes = &emission.checked.pass().notes;
-    let lines = format!("{}\n{}", notes.generated, notes.algorithms);
-    let commented: String = lines.lines().map(|line| format!("// {line}").trim_end().to_owned() + "\n").collect();
-    commented + "\n"
 }

@@ -1,22 +1,24 @@
-//! What an engine follows: `manifest.json`. The schema is versioned; fields are only ever added within a version.
+//! Writes `manifest.json`, which an engine follows to run the generated passes. The schema is versioned: within one version,
+//! fields are added and never renamed or removed.
 
 mod frame;
 
-use fragbuf_codegen::{GENERATOR, Plan, PlanSymbol, PlanValue, Planned as PlannedResource, SymbolId};
+use fragbuf_codegen::{GENERATOR, Plan, PlanSymbol, PlanValue, PlannedResource, SymbolId};
 use fragbuf_glsl::Dialect;
 use fragbuf_model::{UniformBlock, mangled};
 use fragbuf_templates::COUNTERS;
-use fragbuf_templates::vocabulary::{Element, Init, Life, SYMBOLS, TextureFormat};
+use fragbuf_templates::vocabulary::{Element, Init, Lifetime, SYMBOLS, TextureFormat};
 use serde_json::{Map, Value, json};
 
-use crate::generate::{Generation, Planned};
+use crate::generate::{Generation, PlanForTargets};
 use crate::glsl::slot;
+use crate::names::kebab_case;
 use crate::tier;
 
 /// The schema of `manifest.json`.
-pub const SCHEMA: &str = "fragbuf-manifest/2";
+pub const SCHEMA: &str = "fragbuf-manifest/3";
 
-/// The manifest of a generation whose resources are in bind group `group`.
+/// Returns the manifest of a generation whose resources are in bind group `group`.
 pub fn manifest(generation: &Generation, group: u32) -> Value {
     let mut manifest = Map::new();
     manifest.insert("schema".into(), SCHEMA.into());
@@ -31,9 +33,9 @@ pub fn manifest(generation: &Generation, group: u32) -> Value {
         manifest.extend(plan_json(&first.plan, group));
     }
     manifest.insert("tier".into(), tiers(&generation.plans));
-    let refused: Map<String, Value> =
-        generation.refusals.iter().map(|(target, why)| (target.name.to_owned(), why.to_string().into())).collect();
-    manifest.insert("refused".into(), refused.into());
+    let unsupported: Map<String, Value> =
+        generation.unsupported.iter().map(|(target, why)| (target.name.to_owned(), why.to_string().into())).collect();
+    manifest.insert("unsupported".into(), unsupported.into());
     let alternatives: Vec<Value> = plans
         .map(|planned| {
             let mut alternative = Map::new();
@@ -62,7 +64,7 @@ fn files(generation: &Generation) -> Value {
     rows.collect()
 }
 
-fn tiers(plans: &[Planned]) -> Value {
+fn tiers(plans: &[PlanForTargets]) -> Value {
     let mut tiers = Map::new();
     for planned in plans {
         for target in &planned.targets {
@@ -72,7 +74,7 @@ fn tiers(plans: &[Planned]) -> Value {
     tiers.into()
 }
 
-/// The part of a manifest that one plan decides.
+/// Returns the part of a manifest that depends on one plan.
 pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     let mut map = Map::new();
     let axes: Map<String, Value> = plan
@@ -86,7 +88,7 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("words_per_pixel".into(), plan.words_per_pixel.clone().into());
     map.insert("symbols".into(), symbols(plan));
     map.insert("geometry_passes".into(), plan.geometry_passes.clone().into());
-    map.insert("features".into(), plan.requires.iter().map(|capability| Value::from(capability.word())).collect());
+    map.insert("features".into(), plan.requires.iter().map(|feature| Value::from(feature.name())).collect());
     map.insert(
         "constants".into(),
         plan.constants.iter().map(|(name, value)| (name.clone(), Value::from(*value))).collect::<Map<_, _>>().into(),
@@ -98,20 +100,20 @@ pub fn plan_json(plan: &Plan, group: u32) -> Map<String, Value> {
     map.insert("exchanges".into(), frame::exchanges(plan));
     map.insert("steps".into(), frame::steps(plan));
     map.insert("counters".into(), counters(plan));
-    let hazards = plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "what": hazard.what }));
+    let hazards = plan.hazards.iter().map(|hazard| json!({ "name": hazard.name, "description": hazard.description }));
     map.insert("hazards".into(), hazards.collect());
     map
 }
 
-/// The symbols of formulas: what each is, when and by whom it is set, its range, and its value where nobody sets one.
+/// Returns the symbols of formulas: meaning, time of binding, setter, range, and the value or default if there is one.
 fn symbols(plan: &Plan) -> Value {
     let symbol = |(_, symbol): (SymbolId, &PlanSymbol)| {
         let (least, most) = symbol.range;
         let mut value = json!({
             "name": symbol.name,
             "meaning": symbol.meaning,
-            "when": symbol.when.word(),
-            "set_by": symbol.set_by.word(),
+            "when": symbol.when.name(),
+            "set_by": symbol.set_by.name(),
             "least": least,
             "most": most,
         });
@@ -125,33 +127,23 @@ fn symbols(plan: &Plan) -> Value {
     plan.symbols.iter().take(SYMBOLS.len()).map(symbol).collect()
 }
 
-/// A `Debug` name in lower case, words joined by `-`.
-fn dashed(name: &str) -> String {
-    let mut text = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_uppercase() && !text.is_empty() {
-            text.push('-');
-        }
-        text.push(letter.to_ascii_lowercase());
-    }
-    text
-}
-
 fn entry(plan: &Plan) -> Value {
-    let words = plan.layout.beside.iter().map(|word| word.field.as_str());
+    let words = plan.layout.values.iter().map(|word| word.field.as_str());
     let fields: Vec<&str> = std::iter::once("key").chain(words).collect();
-    json!({ "words": plan.layout.entry_words(), "fields": fields, "key": dashed(&format!("{:?}", plan.layout.key)) })
+    json!({ "words": plan.layout.entry_words(), "fields": fields, "key": kebab_case(&format!("{:?}", plan.layout.key)) })
 }
 
-/// Uniform blocks with their fields in order, offsets and sizes in bytes: WGSL's uniform layout, which std140 equals here.
+/// Returns the uniform blocks with their fields in order. Offsets and sizes are bytes of WGSL's uniform layout, which equals
+/// std140 for these types.
 fn uniform_blocks(plan: &Plan, group: u32) -> Value {
     let field = |name: &str, kind: &str, offset: u32| json!({ "name": name, "type": kind, "offset": offset });
     let frame = (0..).zip(&plan.fields).map(|(word, id)| field(&plan.symbols.get(*id).name, "u32", 4 * word));
     let frame: Vec<Value> = frame.collect();
     let uniforms = &plan.variant.uniforms;
     let UniformBlock { offsets, size } = UniformBlock::of(uniforms);
-    let own = offsets.into_iter().zip(uniforms);
-    let own = own.map(|(offset, one)| field(&mangled(&one.name.value), one.kind.value.wgsl_type(), offset));
+    let user_fields = offsets.into_iter().zip(uniforms);
+    let user_fields =
+        user_fields.map(|(offset, one)| field(&mangled(&one.name.value), one.kind.value.wgsl_type(), offset));
     let block = |name: &str, binding: u32, bytes: u32, fields: Vec<Value>| {
         let opengl = opengl_binding(group, binding);
         json!({
@@ -160,7 +152,7 @@ fn uniform_blocks(plan: &Plan, group: u32) -> Value {
     };
     let mut blocks = vec![block("frame", 0, (4 * plan.fields.len() as u32).next_multiple_of(16), frame)];
     if !uniforms.is_empty() {
-        blocks.push(block("uniforms", 1, size, own.collect()));
+        blocks.push(block("uniforms", 1, size, user_fields.collect()));
     }
     blocks.push(block("camera", 2, 64, vec![field("view_projection", "mat4x4<f32>", 0)]));
     blocks.into()
@@ -170,7 +162,7 @@ fn opengl_binding(group: u32, binding: u32) -> u32 {
     slot(Dialect::OpenGl450, group, binding).binding
 }
 
-/// Inputs of the vertex stage of geometry passes, in program form.
+/// Returns the vertex inputs of geometry passes, in program form.
 fn vertex_inputs(plan: &Plan) -> Value {
     let position = json!({ "location": 0, "name": "position", "type": "vec3<f32>" });
     let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
@@ -189,14 +181,14 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         Element::Word => "word".to_owned(),
         Element::Word64 => "word64".to_owned(),
         Element::Entry => "entry".to_owned(),
-        Element::Beside => "beside".to_owned(),
-        Element::BesideTextures(format) => format!("beside-textures:{}", texture_format(format)),
+        Element::Value => "value".to_owned(),
+        Element::ValueTextures(format) => format!("value-textures:{}", texture_format(format)),
         Element::EntryTextures(format) => format!("entry-textures:{}", texture_format(format)),
     };
     let init = match resource.init {
         Init::Clear(value) => json!({ "clear": value }),
         Init::Keep => json!("keep"),
-        Init::Host => json!("host"),
+        Init::External => json!("external"),
     };
     let mut value = json!({
         "name": resource.name,
@@ -208,7 +200,7 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
         "words": planned.words.to_string(),
         "bytes": format!("4 * ({})", planned.words),
         "init": init,
-        "life": if resource.life == Life::Persistent { "persistent" } else { "frame" },
+        "lifetime": if resource.lifetime == Lifetime::Persistent { "persistent" } else { "frame" },
         "summary": resource.summary,
     });
     if let Element::Texture(format) = resource.element {
@@ -217,8 +209,8 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
     value
 }
 
-/// What a texture is made with: as large as the frame, and what it is cleared to in the words of its format. `word`: the
-/// field of an entry that it holds, where the entry has a texture for each.
+/// Returns how to create a texture. It has the size of the frame; `clear` has one value per channel of its format. `word` is the
+/// field of an entry that it stores, if an entry is spread over one texture per word.
 fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
     let resource = &planned.resource;
     let samples = resource.extents.iter().find(|extent| extent.name == SAMPLE);
@@ -234,7 +226,7 @@ fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
     })
 }
 
-/// The vocabulary's name for the part of a texture's index that counts samples.
+/// The name of the extent that counts the samples of a texture.
 const SAMPLE: &str = "sample";
 
 fn clear_value(format: TextureFormat, word: u32) -> Value {
@@ -270,7 +262,7 @@ fn counters(plan: &Plan) -> Value {
         return json!([]);
     }
     let rows = COUNTERS.iter().enumerate().map(
-        |(index, (name, loss, meaning))| json!({ "name": name, "index": index, "loss": loss, "meaning": meaning }),
+        |(index, (name, is_loss, meaning))| json!({ "name": name, "index": index, "is_loss": is_loss, "meaning": meaning }),
     );
     rows.collect()
 }

@@ -1,12 +1,12 @@
-//! Marker functions: what WGSL has no word for (`templates/shared/markers.wgsl`), by name, before any prefix.
+//! The names of marker functions, without prefix. They stand for what WGSL cannot express (`templates/shared/markers.wgsl`).
 //!
-//! Memory fences for targets that naga writes: its validator refuses them in fragment shaders, so they take the place of
-//! the marker's calls after validation. The other markers are each target's own affair.
+//! For targets that naga writes, memory fences replace the calls of their marker after validation, because naga's validator
+//! rejects them in fragment shaders. Each target replaces the other markers itself.
 
 pub(crate) use fragbuf_codegen::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MEMORY_FENCE};
 use naga::{Block, Statement};
 
-/// The module with a fence over storage buffers in place of every call to the marker.
+/// Returns the module with a fence over storage buffers in place of every call of the fence marker.
 pub(crate) fn with_fences(module: &naga::Module, prefix: &str) -> naga::Module {
     let mut module = module.clone();
     let name = format!("{prefix}{MEMORY_FENCE}");

@@ -1,12 +1,11 @@
-//! Metal by naga. Every resource is bound as the buffer, or the texture, of its binding number; naga asks for the sizes of all
-//! buffers in one more.
+//! Emits Metal with naga. The Metal index of a buffer or texture is its binding number. naga needs one more buffer
+//! with the sizes of all others.
 
 use naga::back::msl;
 
-use crate::hlsl::header;
-use crate::target::{Emission, File, Guards};
+use crate::emission::{Emission, File, Guards};
 
-/// The buffer of sizes: the last that Metal guarantees.
+/// The index of the buffer of sizes, the last that Metal guarantees.
 const SIZES: u8 = 30;
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
@@ -25,7 +24,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     for name in info.entry_point_names {
         name.map_err(|error| error.to_string())?;
     }
-    Ok(vec![emission.whole(".metal", (header(emission) + &text).into_bytes())])
+    Ok(vec![emission.whole(".metal", (emission.header() + &text).into_bytes())])
 }
 
 fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String> {
@@ -34,7 +33,7 @@ fn resources(module: &naga::Module) -> Result<msl::EntryPointResourceMap, String
         let Some(binding) = variable.binding else { continue };
         let slot = u8::try_from(binding.binding).map_err(|_| format!("binding {} is beyond 255", binding.binding))?;
         if slot >= SIZES {
-            return Err(format!("binding {slot} meets the buffer of sizes at {SIZES}"));
+            return Err(format!("binding {slot} is not below {SIZES}, the buffer of sizes"));
         }
         let read_only = matches!(variable.space, naga::AddressSpace::Uniform)
             || matches!(variable.space, naga::AddressSpace::Storage { access } if !access.contains(naga::StorageAccess::STORE));

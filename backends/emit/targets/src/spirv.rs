@@ -1,7 +1,7 @@
-//! SPIR-V by naga, with the words that WGSL lacks in place of their markers. One module per entry point.
+//! Emits SPIR-V with naga, one module per entry point, and replaces markers by instructions that WGSL cannot express.
 //!
 //! Clip space is WGSL's (y up, z from 0 to 1), as in wgpu: a Vulkan host sets a viewport of negative height. Indices are
-//! not clamped and loops not bounded at run time unless a file of the user's own is part of the program.
+//! clamped and loops bounded at run time only if a user file is part of the program.
 
 mod edits;
 mod initial;
@@ -9,8 +9,8 @@ mod sample_mask;
 
 use naga::back::spv;
 
+use crate::emission::{Emission, File, Guards, stage_name, stage_of, stage_suffix};
 use crate::markers::with_fences;
-use crate::target::{Emission, File, Guards, stage_name, stage_of, stage_suffix};
 
 pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     let pass = emission.checked.pass();
@@ -21,7 +21,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         let pipeline = spv::PipelineOptions { shader_stage: stage_of(entry.stage), entry_point: entry.name.clone() };
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
-        // Reading words back costs more than writing them.
+        // Parsing the words costs more than writing them.
         let words = match edits::may_apply(&module, &entry.name, emission.prefix) {
             true => edits::apply(words, emission.prefix, emission.interlock)?,
             false => words,
@@ -34,7 +34,7 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
     Ok(files)
 }
 
-/// Every option that the output depends on, said here: naga's defaults differ between builds.
+/// Returns naga's options. Every option that affects the output is set: naga's defaults differ between builds.
 fn options(guards: Guards) -> spv::Options<'static> {
     spv::Options {
         lang_version: (1, 3),

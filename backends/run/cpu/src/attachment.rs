@@ -1,6 +1,6 @@
-//! What a pass is attached to: colour targets, depth and stencil, each a list of words by sample and pixel.
+//! The attachments of a pass: colour, depth and stencil, each a list of words by sample and pixel.
 //!
-//! In: the state of a pass and the plan's resources. Out: references to words, checked for size. Nothing is drawn here.
+//! The constructor checks the sizes and formats of the resources.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,25 +9,25 @@ use fragbuf_templates::vocabulary::{Blend, Compare, DepthState, Element, Pass, S
 
 use crate::texel::Texel;
 
-/// Everything that a pass is attached to.
+/// The attachments of a pass.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attachments<'a> {
-    pub(crate) targets: Vec<Target<'a>>,
-    pub(crate) depth: Option<Depth<'a>>,
-    pub(crate) stencil: Option<Stencil<'a>>,
-    /// Pixels of the frame.
+    pub(crate) targets: Vec<ColorAttachment<'a>>,
+    pub(crate) depth: Option<DepthAttachment<'a>>,
+    pub(crate) stencil: Option<StencilAttachment<'a>>,
+    /// The number of pixels of the frame.
     pub(crate) pixels: usize,
-    /// Samples of a pixel.
+    /// The samples per pixel.
     pub(crate) samples: u32,
-    /// Samples that may be written.
+    /// The mask of samples that are written.
     pub(crate) mask: u32,
-    /// Whether depth and stencil are tested before the shader, whatever it does.
+    /// Whether depth and stencil are tested before the shader (forced early tests).
     pub(crate) is_early: bool,
 }
 
-/// A colour target.
+/// A colour attachment and its blending.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Target<'a> {
+pub(crate) struct ColorAttachment<'a> {
     pub(crate) words: &'a [AtomicU32],
     pub(crate) texel: Texel,
     pub(crate) blend: Blend,
@@ -35,7 +35,7 @@ pub(crate) struct Target<'a> {
 
 /// A depth attachment and its test.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Depth<'a> {
+pub(crate) struct DepthAttachment<'a> {
     pub(crate) words: &'a [AtomicU32],
     pub(crate) format: TextureFormat,
     pub(crate) compare: Compare,
@@ -44,7 +44,7 @@ pub(crate) struct Depth<'a> {
 
 /// A stencil attachment and its test.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stencil<'a> {
+pub(crate) struct StencilAttachment<'a> {
     pub(crate) words: &'a [AtomicU32],
     pub(crate) compare: Compare,
     pub(crate) fail: StencilOperation,
@@ -52,14 +52,14 @@ pub(crate) struct Stencil<'a> {
     pub(crate) reference: u32,
 }
 
-/// The words and format of a texture by name.
+/// A function from the name of a texture to its words and format.
 pub(crate) type Textures<'f, 'a> = &'f dyn Fn(&str) -> Option<(&'a [AtomicU32], Element)>;
 
-/// The vocabulary's name for the caller's own target.
+/// The name of the caller's output in the vocabulary.
 pub(crate) const OUTPUT: &str = "output";
 
 impl<'a> Attachments<'a> {
-    /// Those of `pass`. `numbers`: samples, their mask, the stencil's reference.
+    /// Returns the attachments of `pass`, given the sample count, the sample mask and the stencil reference.
     pub(crate) fn of(
         pass: &Pass,
         [samples, mask, reference]: [u32; 3],
@@ -69,40 +69,40 @@ impl<'a> Attachments<'a> {
         if ![1, 2, 4, 8].contains(&samples) {
             return Err(unsupported(format!("{samples} samples per pixel")));
         }
-        let found = |name: &str| {
+        let texture = |name: &str| {
             let (words, element) = textures(name).ok_or_else(|| unsupported(format!("the attachment `{name}`")))?;
             let Element::Texture(format) = element else {
-                return Err(unsupported(format!("`{name}`, which is no texture, as an attachment")));
+                return Err(unsupported(format!("`{name}`, which is not a texture, as an attachment")));
             };
             if words.len() < pixels * samples as usize * format.words() as usize {
-                return Err(unsupported(format!("`{name}` with {samples} samples: it has fewer")));
+                return Err(unsupported(format!("`{name}` with {samples} samples, which has fewer")));
             }
             Ok((words, format))
         };
-        let target = |target: &fragbuf_templates::vocabulary::Target| {
+        let target = |target: &fragbuf_templates::vocabulary::ColorTarget| {
             let (words, texel) = match target.resource.as_str() {
-                OUTPUT if samples > 1 => return Err(unsupported("several samples of the output".to_owned())),
+                OUTPUT if samples > 1 => return Err(unsupported("a multisampled output".to_owned())),
                 OUTPUT => (output, Texel::Output),
                 name => {
-                    let (words, format) = found(name)?;
+                    let (words, format) = texture(name)?;
                     (words, Texel::Format(format))
                 }
             };
-            if texel.is_raw() && target.blend != Blend::Replace {
-                return Err(unsupported(format!("blending of whole numbers in `{}`", target.resource)));
+            if texel.is_integer() && target.blend != Blend::Replace {
+                return Err(unsupported(format!("blending of integers in `{}`", target.resource)));
             }
-            Ok(Target { words, texel, blend: target.blend })
+            Ok(ColorAttachment { words, texel, blend: target.blend })
         };
         let depth = |state: &DepthState| {
-            let (words, format) = found(&state.resource)?;
-            Ok(Depth { words, format, compare: state.compare, writes: state.write })
+            let (words, format) = texture(&state.resource)?;
+            Ok(DepthAttachment { words, format, compare: state.compare, writes: state.write })
         };
-        let stencil = |state: &fragbuf_templates::vocabulary::StencilState| match found(&state.resource)? {
+        let stencil = |state: &fragbuf_templates::vocabulary::StencilState| match texture(&state.resource)? {
             (words, TextureFormat::Depth24PlusStencil8) => {
                 let reference = reference & 0xff;
-                Ok(Stencil { words, compare: state.compare, fail: state.fail, pass: state.pass, reference })
+                Ok(StencilAttachment { words, compare: state.compare, fail: state.fail, pass: state.pass, reference })
             }
-            _ => Err(unsupported(format!("`{}` as a stencil: it has none", state.resource))),
+            _ => Err(unsupported(format!("`{}` as a stencil attachment, which has no stencil", state.resource))),
         };
         Ok(Attachments {
             targets: pass.state.targets.iter().map(target).collect::<Result<_, _>>()?,
@@ -116,16 +116,16 @@ impl<'a> Attachments<'a> {
     }
 }
 
-impl Target<'_> {
-    /// The words of the texel `index`.
+impl ColorAttachment<'_> {
+    /// Returns the words of the texel `index`.
     pub(crate) fn load(&self, index: usize) -> [u32; 4] {
         self.texel.load(self.words, index)
     }
 
     pub(crate) fn store(&self, index: usize, texel: [u32; 4]) {
         let words = self.texel.words();
-        for (held, word) in self.words.iter().skip(index * words).zip(texel).take(words) {
-            held.store(word, Ordering::Relaxed);
+        for (stored, word) in self.words.iter().skip(index * words).zip(texel).take(words) {
+            stored.store(word, Ordering::Relaxed);
         }
     }
 }

@@ -1,35 +1,37 @@
-//! Clipping in homogeneous coordinates: what of a triangle lies in front of the eye, between near and far plane, and near
-//! enough to the frame for the rasteriser's whole numbers.
+//! Clips triangles in homogeneous coordinates against the eye plane, the near and far planes, and a guard band that keeps
+//! coordinates within the rasteriser's integers.
 //!
-//! In: three positions. Out: a convex polygon, each corner with its share of the three. Where an edge is cut depends on its
-//! ends alone, so triangles that share it stay closed.
+//! The result is a convex polygon; each corner has a weight per corner of the triangle. A clipped edge depends only on its
+//! ends, so triangles with a common edge leave no gap.
 
 /// A corner of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner {
     /// In clip space.
     pub(crate) position: [f32; 4],
-    /// How much it is of each corner of the triangle; they add up to one.
-    pub(crate) shares: [f32; 3],
+    /// Its weights of the corners of the triangle; their sum is one.
+    pub(crate) weights: [f32; 3],
 }
 
-/// What is left of a triangle.
+/// The clipped triangle.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Clipped {
-    /// All of it.
-    Whole,
+pub(crate) enum ClipResult {
+    /// The triangle needs no clipping.
+    Inside,
     /// A polygon of at least three corners.
-    Part(Vec<Corner>),
-    Nothing,
+    Polygon(Vec<Corner>),
+    /// Nothing is left.
+    Empty,
 }
 
-/// The nearest that a corner may come to the plane of the eye, where perspective ends.
+/// The least w of a corner: w is 0 in the eye plane.
 const LEAST_W: f32 = 1.0 / (1u64 << 60) as f32;
 
-/// Pixels from the frame's middle that coordinates may reach: with 8 bits of subpixel, products of two stay within 63 bits.
+/// The greatest distance of coordinates from the centre of the frame, in pixels: with 8 subpixel bits, products of two
+/// coordinates fit into 63 bits.
 const GUARD: f32 = 1_048_576.0;
 
-/// How far inside of a plane a position is; negative: outside.
+/// The signed distance of a position from a plane; negative outside.
 type Plane = fn(&[f32; 4], (f32, f32)) -> f32;
 
 const PLANES: [Plane; 7] = [
@@ -42,32 +44,32 @@ const PLANES: [Plane; 7] = [
     |p, (_, y)| y * p[3] - p[1],
 ];
 
-/// What of the triangle is drawn into a frame of this size.
-pub(crate) fn clip(positions: [[f32; 4]; 3], (width, height): (u32, u32)) -> Clipped {
+/// Clips a triangle for a frame of this size.
+pub(crate) fn clip(positions: [[f32; 4]; 3], (width, height): (u32, u32)) -> ClipResult {
     if positions.iter().flatten().any(|number| !number.is_finite()) {
-        return Clipped::Nothing;
+        return ClipResult::Empty;
     }
     let beyond = |outside: fn(&[f32; 4]) -> bool| positions.iter().all(outside);
     if beyond(|p| p[0] < -p[3]) || beyond(|p| p[0] > p[3]) || beyond(|p| p[1] < -p[3]) || beyond(|p| p[1] > p[3]) {
-        return Clipped::Nothing;
+        return ClipResult::Empty;
     }
     let guard = (2.0 * GUARD / width as f32, 2.0 * GUARD / height as f32);
     let is_inside = |plane: &Plane| positions.iter().all(|position| plane(position, guard) >= 0.0);
     if PLANES.iter().all(is_inside) {
-        return Clipped::Whole;
+        return ClipResult::Inside;
     }
-    let mut shares = [[0.0; 3]; 3];
-    (0..3).for_each(|corner| shares[corner][corner] = 1.0);
+    let mut weights = [[0.0; 3]; 3];
+    (0..3).for_each(|corner| weights[corner][corner] = 1.0);
     let mut polygon: Vec<Corner> =
-        positions.into_iter().zip(shares).map(|(position, shares)| Corner { position, shares }).collect();
+        positions.into_iter().zip(weights).map(|(position, weights)| Corner { position, weights }).collect();
     for plane in PLANES {
-        polygon = cut(&polygon, plane, guard);
+        polygon = clip_by(&polygon, plane, guard);
     }
-    if polygon.len() < 3 { Clipped::Nothing } else { Clipped::Part(polygon) }
+    if polygon.len() < 3 { ClipResult::Empty } else { ClipResult::Polygon(polygon) }
 }
 
-/// The part of a polygon inside of one plane.
-fn cut(polygon: &[Corner], plane: Plane, guard: (f32, f32)) -> Vec<Corner> {
+/// Clips a polygon against one plane.
+fn clip_by(polygon: &[Corner], plane: Plane, guard: (f32, f32)) -> Vec<Corner> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (index, corner) in polygon.iter().enumerate() {
         let next = &polygon[(index + 1) % polygon.len()];
@@ -75,7 +77,7 @@ fn cut(polygon: &[Corner], plane: Plane, guard: (f32, f32)) -> Vec<Corner> {
         if here >= 0.0 {
             kept.push(*corner);
         }
-        // Always from the end inside, so that both triangles at the edge find the same place.
+        // Interpolate from the inner end, so that both triangles at the edge compute the same point.
         match (here >= 0.0, there >= 0.0) {
             (true, false) => kept.push(between(corner, next, here / (here - there))),
             (false, true) => kept.push(between(next, corner, there / (there - here))),
@@ -89,7 +91,7 @@ fn between(from: &Corner, to: &Corner, share: f32) -> Corner {
     let mix = |a: f32, b: f32| a + share * (b - a);
     Corner {
         position: std::array::from_fn(|axis| mix(from.position[axis], to.position[axis])),
-        shares: std::array::from_fn(|corner| mix(from.shares[corner], to.shares[corner])),
+        weights: std::array::from_fn(|corner| mix(from.weights[corner], to.weights[corner])),
     }
 }
 
@@ -101,47 +103,49 @@ mod tests {
     const SIZE: (u32, u32) = (64, 64);
 
     #[test]
-    fn what_is_inside_stays_whole_and_what_is_outside_goes() {
+    fn inner_triangles_are_not_clipped_and_outer_ones_are_dropped() {
         let inside = [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 1.0, 1.0], [0.0, -1.0, 0.5, 1.0]];
-        assert_eq!(clip(inside, SIZE), Clipped::Whole);
-        assert_eq!(clip(inside.map(|p| [p[0] + 2.5, p[1], p[2], p[3]]), SIZE), Clipped::Nothing);
-        assert_eq!(clip(inside.map(|p| [p[0], p[1], p[2] + 1.5, p[3]]), SIZE), Clipped::Nothing);
-        assert_eq!(clip(inside.map(|p| [p[0], p[1], p[2], -p[3]]), SIZE), Clipped::Nothing);
-        assert_eq!(clip([[f32::NAN; 4]; 3], SIZE), Clipped::Nothing);
+        assert_eq!(clip(inside, SIZE), ClipResult::Inside);
+        assert_eq!(clip(inside.map(|p| [p[0] + 2.5, p[1], p[2], p[3]]), SIZE), ClipResult::Empty);
+        assert_eq!(clip(inside.map(|p| [p[0], p[1], p[2] + 1.5, p[3]]), SIZE), ClipResult::Empty);
+        assert_eq!(clip(inside.map(|p| [p[0], p[1], p[2], -p[3]]), SIZE), ClipResult::Empty);
+        assert_eq!(clip([[f32::NAN; 4]; 3], SIZE), ClipResult::Empty);
     }
 
     #[test]
-    fn the_near_plane_cuts_where_depth_is_zero() {
-        let Clipped::Part(polygon) = clip([[0.0, 0.0, -1.0, 1.0], [0.5, 0.0, 1.0, 1.0], [0.0, 0.5, 1.0, 1.0]], SIZE)
+    fn the_near_plane_clips_at_depth_zero() {
+        let ClipResult::Polygon(polygon) =
+            clip([[0.0, 0.0, -1.0, 1.0], [0.5, 0.0, 1.0, 1.0], [0.0, 0.5, 1.0, 1.0]], SIZE)
         else {
-            panic!("it is cut");
+            panic!("not clipped");
         };
         assert_eq!(polygon.len(), 4);
         for corner in &polygon {
             assert!(corner.position[2] >= 0.0);
-            assert!((corner.shares.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+            assert!((corner.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
         }
-        let cut: Vec<&Corner> = polygon.iter().filter(|corner| corner.position[2] == 0.0).collect();
-        assert_eq!(cut.len(), 2);
-        assert!(cut.iter().all(|corner| corner.shares[0] == 0.5));
+        let on_plane: Vec<&Corner> = polygon.iter().filter(|corner| corner.position[2] == 0.0).collect();
+        assert_eq!(on_plane.len(), 2);
+        assert!(on_plane.iter().all(|corner| corner.weights[0] == 0.5));
     }
 
     #[test]
-    fn an_edge_is_cut_at_one_place_from_both_sides() {
+    fn both_triangles_of_an_edge_clip_it_at_the_same_point() {
         let (a, b) = ([0.3, 0.1, -0.7, 1.3], [-0.2, 0.6, 0.9, 1.1]);
-        let places = |other: [f32; 4], turned: bool| -> Vec<[f32; 4]> {
+        let points = |other: [f32; 4], turned: bool| -> Vec<[f32; 4]> {
             let triangle = if turned { [b, a, other] } else { [a, b, other] };
-            let Clipped::Part(polygon) = clip(triangle, SIZE) else { panic!("it is cut") };
-            polygon.iter().filter(|c| c.shares[2] == 0.0 && c.position[2].abs() < 1e-6).map(|c| c.position).collect()
+            let ClipResult::Polygon(polygon) = clip(triangle, SIZE) else { panic!("not clipped") };
+            polygon.iter().filter(|c| c.weights[2] == 0.0 && c.position[2].abs() < 1e-6).map(|c| c.position).collect()
         };
-        assert_eq!(places([0.9, 0.9, 0.9, 1.0], false), places([-0.9, -0.9, 0.2, 1.0], true));
+        assert_eq!(points([0.9, 0.9, 0.9, 1.0], false), points([-0.9, -0.9, 0.2, 1.0], true));
     }
 
     #[test]
-    fn behind_the_eye_nothing_is_left() {
-        let Clipped::Part(polygon) = clip([[0.0, 0.0, 0.5, 1.0], [0.0, 0.5, -2.0, -1.0], [0.5, 0.0, 0.5, 1.0]], SIZE)
+    fn nothing_behind_the_eye_is_left() {
+        let ClipResult::Polygon(polygon) =
+            clip([[0.0, 0.0, 0.5, 1.0], [0.0, 0.5, -2.0, -1.0], [0.5, 0.0, 0.5, 1.0]], SIZE)
         else {
-            panic!("it is cut");
+            panic!("not clipped");
         };
         assert!(polygon.iter().all(|corner| corner.position[3] > 0.0));
     }

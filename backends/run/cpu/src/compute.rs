@@ -1,43 +1,49 @@
-//! Compute passes: workgroups in parallel, the invocations of each on one thread.
+//! Runs compute passes: workgroups in parallel, the invocations of each on one thread.
 //!
-//! In: a program, its memory, the number of workgroups. Out: changed memory. Workgroups share nothing but buffers.
+//! Workgroups share only buffers.
 
 use std::sync::atomic::AtomicU32;
 use std::sync::{Mutex, PoisonError};
 
-use fragbuf_interpreter::{Dispatch, Fault, Program, Space, workgroup};
+use fragbuf_interpreter::{Bytecode, DispatchEnd, OutOfBoundsAccess, Space, workgroup};
 use rayon::prelude::*;
 
 use crate::memory::words;
 use crate::view::View;
 
-/// Workgroups that one thread takes at a time.
+/// The workgroups that one thread takes at a time.
 const CHUNK: u64 = 16;
 
-/// Dispatches; an index out of bounds, if there was one. `Err`: why it does not end.
-pub(crate) fn compute(program: &Program, view: &View<'_>, groups: [u32; 3]) -> Result<Option<Fault>, &'static str> {
+/// Runs a dispatch; returns an access out of bounds, if there was one. `Err`: the reason why it does not terminate.
+pub(crate) fn compute(
+    program: &Bytecode,
+    view: &View<'_>,
+    groups: [u32; 3],
+) -> Result<Option<OutOfBoundsAccess>, &'static str> {
     let total: u64 = groups.iter().map(|count| u64::from(*count)).product();
-    let fault: Mutex<Option<Fault>> = Mutex::default();
+    let out_of_bounds: Mutex<Option<OutOfBoundsAccess>> = Mutex::default();
     (0..total.div_ceil(CHUNK)).into_par_iter().try_for_each(|chunk| {
         for number in chunk * CHUNK..((chunk + 1) * CHUNK).min(total) {
             let (x, y) = (u64::from(groups[0]), u64::from(groups[1]));
             let group = [number % x, number / x % y, number / (x * y)].map(|index| index as u32);
-            match one(program, view, group, groups) {
-                Dispatch::Ended => {}
-                Dispatch::Fault(new) => {
-                    fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(new);
+            match run_workgroup(program, view, group, groups) {
+                DispatchEnd::Ended => {}
+                DispatchEnd::OutOfBounds(new) => {
+                    out_of_bounds.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(new);
                 }
-                Dispatch::Endless => return Err("an invocation goes round for ever"),
-                Dispatch::DivergentBarrier => return Err("some wait at a barrier that others never reach"),
+                DispatchEnd::Endless => return Err("an invocation loops without end"),
+                DispatchEnd::DivergentBarrier => {
+                    return Err("some invocations wait at a barrier that the others do not reach");
+                }
             }
         }
         Ok(())
     })?;
-    Ok(fault.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(out_of_bounds.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-fn one(program: &Program, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) -> Dispatch {
-    let own: Vec<Vec<AtomicU32>> = program
+fn run_workgroup(program: &Bytecode, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) -> DispatchEnd {
+    let local: Vec<Vec<AtomicU32>> = program
         .buffers
         .iter()
         .map(|buffer| match buffer.space {
@@ -45,9 +51,9 @@ fn one(program: &Program, view: &View<'_>, group: [u32; 3], groups: [u32; 3]) ->
             _ => Vec::new(),
         })
         .collect();
-    let buffers = program.buffers.iter().zip(view.buffers.iter().zip(&own));
-    let buffers = buffers.map(|(buffer, (shared, own))| match buffer.space {
-        Space::Workgroup => own.as_slice(),
+    let buffers = program.buffers.iter().zip(view.buffers.iter().zip(&local));
+    let buffers = buffers.map(|(buffer, (shared, local))| match buffer.space {
+        Space::Workgroup => local.as_slice(),
         _ => *shared,
     });
     workgroup(

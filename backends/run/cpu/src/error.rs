@@ -1,19 +1,19 @@
-//! What can go wrong between a variant and its pixels, as values.
+//! The errors of the CPU device.
 
 use std::fmt;
 
-use fragbuf_model::{Diagnostics, Refusal};
+use fragbuf_model::{Diagnostics, MissingFeature};
 
-/// Why there is no picture.
+/// Why the device cannot render.
 #[derive(Clone, Debug)]
 pub enum Error {
-    /// Every choice of an axis needs what this device does not have.
-    Refused(Refusal),
-    /// The variant could not be planned or linked, or naga refused it.
+    /// Every choice of an axis needs a feature that this device lacks.
+    MissingFeature(MissingFeature),
+    /// The variant cannot be planned or linked, or naga rejects it.
     Diagnostics(Diagnostics),
-    /// A size or a value that the plan does not take, or a step that is not run here.
+    /// A size or value that the plan does not accept, or an unsupported step.
     Frame(fragbuf_frame::Error),
-    /// A shader has something that the interpreter does not run.
+    /// A shader uses a construct that the interpreter does not run.
     Shader {
         /// The pass.
         pass: String,
@@ -22,43 +22,43 @@ pub enum Error {
     },
     /// There is not enough memory.
     OutOfMemory {
-        /// What was being made.
+        /// The allocation.
         what: String,
         /// Its size.
         bytes: u64,
     },
-    /// An invocation goes round for ever, or some of a workgroup wait at a barrier that others never reach.
-    Stuck {
+    /// An invocation does not terminate, or some of a workgroup wait at a barrier that the others do not reach.
+    NotTerminating {
         /// The pass.
         pass: String,
-        /// Which of the two.
-        how: &'static str,
+        /// The reason.
+        reason: &'static str,
     },
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Refused(refusal) => write!(
+            Error::MissingFeature(missing) => write!(
                 f,
-                "the CPU device cannot express `{}: {}`: it has no {}; choose another `{}`",
-                refusal.axis,
-                refusal.value,
-                refusal.capability.meaning(),
-                refusal.axis
+                "the CPU device does not support `{}: {}`: it has no {}; choose another `{}`",
+                missing.axis,
+                missing.value,
+                missing.feature.meaning(),
+                missing.axis
             ),
             Error::Diagnostics(diagnostics) => diagnostics.fmt(f),
             Error::Frame(error) => error.fmt(f),
             Error::Shader { pass, what } => {
-                write!(
-                    f,
-                    "pass `{pass}`: the CPU device does not run {what}: take another device, or another technique"
-                )
+                write!(f, "pass `{pass}`: the CPU device does not run {what}: use another device or another technique")
             }
             Error::OutOfMemory { what, bytes } => {
-                write!(f, "out of memory at {what} ({bytes} bytes): take a smaller frame, or keep less")
+                write!(
+                    f,
+                    "out of memory allocating {what} ({bytes} bytes): use a smaller frame or keep fewer fragments"
+                )
             }
-            Error::Stuck { pass, how } => write!(f, "pass `{pass}` does not end: {how}"),
+            Error::NotTerminating { pass, reason } => write!(f, "pass `{pass}` does not terminate: {reason}"),
         }
     }
 }

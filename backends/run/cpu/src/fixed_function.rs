@@ -1,7 +1,7 @@
-//! What happens to a fragment around its shader: stencil test, depth test, blending, sample by sample.
+//! The fixed function around a shader: stencil test, depth test and blending, sample by sample.
 //!
-//! In: a sample's number, depth and colours. Out: changed attachments, or a sample turned away. The order is the graphics APIs':
-//! stencil, then depth; a fragment that only depth turns away leaves the stencil as it is, for the vocabulary says nothing else.
+//! The stencil test precedes the depth test, as in the graphics APIs. A fragment that fails only the depth test leaves the
+//! stencil unchanged: the vocabulary has no operation for that case.
 
 #[cfg(test)]
 mod tests;
@@ -10,11 +10,11 @@ use std::sync::atomic::Ordering;
 
 use fragbuf_templates::vocabulary::{Blend, Compare, StencilOperation, TextureFormat};
 
-use crate::attachment::{Attachments, Depth, Stencil};
+use crate::attachment::{Attachments, DepthAttachment, StencilAttachment};
 use crate::texel::DEPTH_24;
 
 impl Attachments<'_> {
-    /// Tests a sample and writes what the tests write; whether it passes.
+    /// Tests a sample and updates depth and stencil; returns whether it passes.
     pub(crate) fn test(&self, index: usize, depth: f32) -> bool {
         if let Some(stencil) = &self.stencil
             && !stencil.passes(index)
@@ -36,11 +36,11 @@ impl Attachments<'_> {
         true
     }
 
-    /// Blends a colour, the words of a fragment's output, into a sample of a target.
+    /// Blends a colour, the words of a fragment output, into a sample of a colour attachment.
     pub(crate) fn blend(&self, target: usize, index: usize, color: [u32; 4]) {
         let Some(target) = self.targets.get(target) else { return };
-        if target.texel.is_raw() {
-            return target.store(index, target.texel.encode_whole(color));
+        if target.texel.is_integer() {
+            return target.store(index, target.texel.encode_integer(color));
         }
         let new = color.map(f32::from_bits);
         let old = if target.blend == Blend::Replace { [0.0; 4] } else { target.texel.decode(target.load(index)) };
@@ -60,7 +60,7 @@ fn blended(blend: Blend, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
     }
 }
 
-impl Depth<'_> {
+impl DepthAttachment<'_> {
     fn passes(&self, index: usize, depth: f32) -> bool {
         let word = self.words[index].load(Ordering::Relaxed);
         match self.format {
@@ -84,7 +84,7 @@ fn depth_24(depth: f32) -> u32 {
     (f64::from(depth.clamp(0.0, 1.0)) * DEPTH_24).round_ties_even() as u32
 }
 
-impl Stencil<'_> {
+impl StencilAttachment<'_> {
     fn passes(&self, index: usize) -> bool {
         compared(self.compare, self.reference, self.words[index].load(Ordering::Relaxed) & 0xff)
     }
@@ -100,7 +100,7 @@ impl Stencil<'_> {
     }
 }
 
-/// The new value against the stored one.
+/// Compares the new value with the stored one.
 fn compared<T: PartialOrd>(compare: Compare, new: T, stored: T) -> bool {
     match compare {
         Compare::Always => true,

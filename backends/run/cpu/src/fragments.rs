@@ -1,75 +1,77 @@
-//! The fragments of a tile: which there are, in which order they run, and the fixed function around them.
+//! Runs the fragments of a tile, with the tests and blending around their shaders.
 //!
-//! In: a draw's triangles and one of its tiles. Out: changed memory and attachments. Whatever order the shaders run in, tests
-//! and blending keep the order of submission, pixel by pixel, as the graphics APIs do.
+//! Tests and blending keep the submission order per pixel in any order of the shaders, as the graphics APIs require.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use fragbuf_interpreter::{Exit, Fault, Machine};
+use fragbuf_interpreter::{Exit, Machine, OutOfBoundsAccess};
 use fragbuf_templates::vocabulary::Coverage;
 
-use crate::device::Order;
-use crate::draw::Draw;
-use crate::interface::{Outputs, Rate};
-use crate::schedule::{Waiting, interleave};
-use crate::stages::{FragmentStage, Place};
-use crate::tile::{Bin, Bins, Covered, SIDE, cover};
-use crate::triangle::{MIDDLE, Triangle, sample_places};
+use crate::draw_call::DrawCall;
+use crate::fragment_stage::{FragmentPosition, FragmentStage};
+use crate::interface::{FragmentOutputs, Rate};
+use crate::schedule::{PixelFragment, interleave};
+use crate::settings::FragmentOrder;
+use crate::tile::{Bin, Bins, CoveredPixel, SIDE, cover};
+use crate::triangle::{PIXEL_CENTRE, Triangle, sample_positions};
 use crate::view::View;
 
-/// What tiles find, all together.
+/// The results of all tiles of a draw call.
 #[derive(Default)]
-pub(crate) struct Found {
+pub(crate) struct TileResults {
     pub(crate) samples: AtomicU64,
     pub(crate) endless: AtomicU64,
-    pub(crate) fault: Mutex<Option<Fault>>,
+    pub(crate) out_of_bounds: Mutex<Option<OutOfBoundsAccess>>,
 }
 
-/// The tiles of a batch of triangles.
-pub(crate) struct Tiles<'a> {
-    pub(crate) draw: &'a Draw<'a>,
+/// The state that the tiles of a batch of triangles share.
+pub(crate) struct FragmentBatch<'a> {
+    pub(crate) draw: &'a DrawCall<'a>,
     pub(crate) stage: FragmentStage<'a>,
     pub(crate) rate: Rate,
-    pub(crate) outputs: &'a Outputs,
+    pub(crate) outputs: &'a FragmentOutputs,
     pub(crate) triangles: &'a [Triangle],
     pub(crate) bins: &'a Bins,
-    pub(crate) found: &'a Found,
+    pub(crate) results: &'a TileResults,
 }
 
-impl<'a> Tiles<'a> {
-    /// Runs all fragments of a tile.
+impl<'a> FragmentBatch<'a> {
+    /// Runs the fragments of a tile.
     pub(crate) fn run(&self, bin: &Bin, machine: &mut Machine<'a>, view: &mut View<'_>) {
         let mut samples = 0;
         match self.draw.order {
-            Order::Shuffled(seed) => self.shuffled(bin, view, seed, &mut samples),
-            Order::Submission => self.each(bin, |triangle, place| {
-                // One that does not end is found after seconds: the others would be no better.
-                if self.found.endless.load(Ordering::Relaxed) == 0 {
-                    samples += u64::from(self.shade(machine, view, triangle, place));
+            FragmentOrder::Shuffled(seed) => self.shuffled(bin, view, seed, &mut samples),
+            FragmentOrder::Submission => self.for_each_fragment(bin, |triangle, position| {
+                // A fragment that does not terminate takes seconds; the others would too.
+                if self.results.endless.load(Ordering::Relaxed) == 0 {
+                    samples += u64::from(self.shade(machine, view, triangle, position));
                 }
             }),
         }
-        self.found.samples.fetch_add(samples, Ordering::Relaxed);
+        self.results.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
-    /// Every fragment of the tile, triangle after triangle.
-    fn each(&self, bin: &Bin, mut fragment: impl FnMut(&'a Triangle, Place)) {
+    /// Calls `fragment` for every fragment of the tile, triangle after triangle.
+    fn for_each_fragment(&self, bin: &Bin, mut fragment: impl FnMut(&'a Triangle, FragmentPosition)) {
         let attachments = &self.draw.attachments;
         let sampling = (attachments.samples, self.draw.coverage);
         for number in self.bins.triangles(bin) {
             let triangle = &self.triangles[*number as usize];
-            cover(triangle, bin.rectangle, self.draw.size, sampling, |Covered { x, y, mask }| {
+            cover(triangle, bin.rectangle, self.draw.size, sampling, |CoveredPixel { x, y, mask }| {
                 let mask = mask & attachments.mask;
                 match self.rate {
                     _ if mask == 0 => {}
                     Rate::Pixel => {
-                        fragment(triangle, Place { x, y, weights: triangle.weights(x, y, MIDDLE), mask, sample: 0 });
+                        fragment(
+                            triangle,
+                            FragmentPosition { x, y, weights: triangle.weights(x, y, PIXEL_CENTRE), mask, sample: 0 },
+                        );
                     }
                     Rate::Sample => {
                         for sample in (0..attachments.samples).filter(|sample| mask >> sample & 1 == 1) {
-                            let weights = triangle.weights(x, y, self.sample(sample));
-                            fragment(triangle, Place { x, y, weights, mask: 1 << sample, sample });
+                            let weights = triangle.weights(x, y, self.sample_position(sample));
+                            fragment(triangle, FragmentPosition { x, y, weights, mask: 1 << sample, sample });
                         }
                     }
                 }
@@ -77,108 +79,117 @@ impl<'a> Tiles<'a> {
         }
     }
 
-    /// Runs one fragment with the tests around it; the samples that passed.
-    fn shade(&self, machine: &mut Machine<'a>, view: &mut View<'_>, triangle: &Triangle, mut place: Place) -> u32 {
+    /// Runs one fragment with its tests; returns the number of samples that passed.
+    fn shade(
+        &self,
+        machine: &mut Machine<'a>,
+        view: &mut View<'_>,
+        triangle: &Triangle,
+        mut position: FragmentPosition,
+    ) -> u32 {
         if self.draw.attachments.is_early {
-            place.mask = self.tested(triangle, &place, None);
-            if place.mask == 0 {
+            position.mask = self.passing_samples(triangle, &position, None);
+            if position.mask == 0 {
                 return 0;
             }
         }
-        self.stage.begin(machine, triangle, &place);
+        self.stage.begin(machine, triangle, &position);
         let exit = machine.run(view);
-        self.notice(machine, exit);
-        if exit == Exit::Ended { self.settle(triangle, place, machine.result()) } else { 0 }
+        self.record_exit(machine, exit);
+        if exit == Exit::Ended { self.test_and_blend(triangle, position, machine.result()) } else { 0 }
     }
 
-    /// What comes after the shader: late tests, then blending. The samples that passed.
-    fn settle(&self, triangle: &Triangle, mut place: Place, result: &[u32]) -> u32 {
+    /// Performs late tests and blending after the shader; returns the number of samples that passed.
+    fn test_and_blend(&self, triangle: &Triangle, mut position: FragmentPosition, result: &[u32]) -> u32 {
         let attachments = &self.draw.attachments;
-        place.mask &= self.outputs.mask.map_or(u32::MAX, |at| result[at]);
+        position.mask &= self.outputs.mask.map_or(u32::MAX, |at| result[at]);
         if !attachments.is_early {
-            place.mask = self.tested(triangle, &place, self.outputs.depth.map(|at| f32::from_bits(result[at])));
+            position.mask =
+                self.passing_samples(triangle, &position, self.outputs.depth.map(|at| f32::from_bits(result[at])));
         }
-        if place.mask == 0 {
+        if position.mask == 0 {
             return 0;
         }
-        let pixel = self.pixel(&place);
+        let pixel = self.pixel(&position);
         for target in 0..attachments.targets.len() {
             let Some(Some(words)) = self.outputs.colors.get(target) else { continue };
             let mut color = [0, 0, 0, 1.0f32.to_bits()];
             color.iter_mut().zip(&result[words.clone()]).for_each(|(to, from)| *to = *from);
-            for sample in (0..attachments.samples).filter(|sample| place.mask >> sample & 1 == 1) {
+            for sample in (0..attachments.samples).filter(|sample| position.mask >> sample & 1 == 1) {
                 attachments.blend(target, sample as usize * attachments.pixels + pixel, color);
             }
         }
-        place.mask.count_ones()
+        position.mask.count_ones()
     }
 
-    /// The samples of a fragment that pass the tests.
-    fn tested(&self, triangle: &Triangle, place: &Place, depth: Option<f32>) -> u32 {
+    /// Performs the tests; returns the mask of samples that passed.
+    fn passing_samples(&self, triangle: &Triangle, position: &FragmentPosition, depth: Option<f32>) -> u32 {
         let attachments = &self.draw.attachments;
         if attachments.depth.is_none() && attachments.stencil.is_none() {
-            return place.mask;
+            return position.mask;
         }
-        let pixel = self.pixel(place);
+        let pixel = self.pixel(position);
         let mut mask = 0;
-        for sample in (0..attachments.samples).filter(|sample| place.mask >> sample & 1 == 1) {
-            let own = || triangle.weights(place.x, place.y, self.sample(sample)).depth;
-            let passes = attachments.test(sample as usize * attachments.pixels + pixel, depth.unwrap_or_else(own));
+        for sample in (0..attachments.samples).filter(|sample| position.mask >> sample & 1 == 1) {
+            let interpolated = || triangle.weights(position.x, position.y, self.sample_position(sample)).depth;
+            let passes =
+                attachments.test(sample as usize * attachments.pixels + pixel, depth.unwrap_or_else(interpolated));
             mask |= u32::from(passes) << sample;
         }
         mask
     }
 
-    fn pixel(&self, place: &Place) -> usize {
-        place.y as usize * self.draw.size.0 as usize + place.x as usize
+    fn pixel(&self, position: &FragmentPosition) -> usize {
+        position.y as usize * self.draw.size.0 as usize + position.x as usize
     }
 
-    /// Where a sample is tested.
-    fn sample(&self, sample: u32) -> (i64, i64) {
-        let places = match self.draw.coverage {
-            Coverage::PerSample => sample_places(self.draw.attachments.samples),
-            Coverage::WholePixel => sample_places(1),
+    /// Returns the position at which a sample is tested.
+    fn sample_position(&self, sample: u32) -> (i64, i64) {
+        let positions = match self.draw.coverage {
+            Coverage::PerSample => sample_positions(self.draw.attachments.samples),
+            Coverage::WholePixel => sample_positions(1),
         };
-        places[sample as usize % places.len()]
+        positions[sample as usize % positions.len()]
     }
 
-    /// All fragments of each pixel, their shaders interleaved: early tests come before all of them, the rest after.
+    /// Runs the fragments of each pixel with interleaved shaders: early tests precede all of them, late tests and blending
+    /// follow.
     fn shuffled(&self, bin: &Bin, view: &View<'_>, seed: u64, samples: &mut u64) {
         let [x0, _, y0, _] = bin.rectangle;
-        let mut pixels: Vec<Vec<Waiting<'a>>> = Vec::new();
+        let mut pixels: Vec<Vec<PixelFragment<'a>>> = Vec::new();
         pixels.resize_with((SIDE * SIDE) as usize, Vec::new);
-        self.each(bin, |triangle, place| {
-            pixels[((place.y - y0) * SIDE + place.x - x0) as usize].push((triangle, place));
+        self.for_each_fragment(bin, |triangle, position| {
+            pixels[((position.y - y0) * SIDE + position.x - x0) as usize].push((triangle, position));
         });
         for mut fragments in pixels {
             if self.draw.attachments.is_early {
-                fragments.retain_mut(|(triangle, place)| {
-                    place.mask = self.tested(triangle, place, None);
-                    place.mask != 0
+                fragments.retain_mut(|(triangle, position)| {
+                    position.mask = self.passing_samples(triangle, position, None);
+                    position.mask != 0
                 });
             }
-            let Some((_, place)) = fragments.first() else { continue };
-            if self.found.endless.load(Ordering::Relaxed) > 0 {
+            let Some((_, position)) = fragments.first() else { continue };
+            if self.results.endless.load(Ordering::Relaxed) > 0 {
                 return;
             }
-            let seed = seed ^ (u64::from(place.y) << 32 | u64::from(place.x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let seed = seed ^ (u64::from(position.y) << 32 | u64::from(position.x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             let mut results: Vec<Option<Vec<u32>>> = vec![None; fragments.len()];
             interleave(&self.stage, &fragments, view, seed, |number, machine, exit| {
-                self.notice(machine, exit);
+                self.record_exit(machine, exit);
                 results[number] = (exit == Exit::Ended).then(|| machine.result().to_vec());
             });
-            for ((triangle, place), result) in fragments.into_iter().zip(results) {
-                *samples += result.map_or(0, |result| u64::from(self.settle(triangle, place, &result)));
+            for ((triangle, position), result) in fragments.into_iter().zip(results) {
+                *samples += result.map_or(0, |result| u64::from(self.test_and_blend(triangle, position, &result)));
             }
         }
     }
 
-    fn notice(&self, machine: &mut Machine<'_>, exit: Exit) {
+    fn record_exit(&self, machine: &mut Machine<'_>, exit: Exit) {
         if exit == Exit::Endless {
-            self.found.endless.fetch_add(1, Ordering::Relaxed);
+            self.results.endless.fetch_add(1, Ordering::Relaxed);
         }
-        if let Some(fault) = machine.fault.take() {
-            self.found.fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(fault);
+        if let Some(out_of_bounds) = machine.out_of_bounds.take() {
+            self.results.out_of_bounds.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(out_of_bounds);
         }
     }
 }

@@ -1,9 +1,6 @@
-//! One frame: the turns of its cursor, one after the other.
-//!
-//! In: a device and a mesh. Out: the picture and what the frame counted. What the plan says and this device does not run is an
-//! error with its name.
+//! Renders a frame: performs the steps of its cursor. A step that this device does not support is an error.
 
-mod call;
+mod draw_arguments;
 mod objects;
 mod pass;
 
@@ -11,74 +8,82 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
 use fragbuf_codegen::PassId;
-use fragbuf_frame::{COUNTERS_RESOURCE, Counters, Cursor, PassTime, Question, Span, Turn, resource};
+use fragbuf_frame::{COUNTERS_RESOURCE, Counters, Cursor, FrameStep, HostWait, PassTime, WordRange, resource};
 
-use crate::device::{Device, Mesh, Picture, Stage};
+use crate::device::Device;
 use crate::memory::{Words, read, words, zeros};
+use crate::mesh::Mesh;
+use crate::picture::{PassProgress, Picture};
 use crate::{Code, Error};
 
-/// Words of a pixel of the output: four floats.
+/// The words of a pixel of the output: four floats.
 const OUTPUT_WORDS: usize = 4;
 
-pub(crate) fn render(
-    device: &mut Device,
-    mesh: &Mesh<'_>,
-    progress: &(dyn Fn(Stage<'_>) + Sync),
-) -> Result<Picture, Error> {
-    let code = device.code.clone();
-    let pixels = device.settings.width as usize * device.settings.height as usize;
-    let output = zeros("the output", (4 * OUTPUT_WORDS * pixels) as u64)?;
-    let (uniforms, camera) = (words(&device.uniforms), words(&device.camera));
-    let mut frame = Frame {
-        code: &code,
-        mesh: *mesh,
-        progress,
-        output,
-        uniforms,
-        camera,
-        wide: Mutex::new(()),
-        times: code.passes.iter().map(|_| 0.0).collect(),
-        samples: vec![0; code.passes.len()],
-        out_of_bounds: Vec::new(),
-        cursor: Cursor::new(&code.plan, device.counting, device.memory.flipped),
-        objects: Vec::new(),
-        device,
-    };
-    frame.run()?;
-    Ok(frame.picture())
+impl Device {
+    /// Renders a frame. `progress` is called from several threads. Fails if the caller has not set an external texture.
+    pub fn render(&mut self, mesh: &Mesh<'_>, progress: &(dyn Fn(PassProgress<'_>) + Sync)) -> Result<Picture, Error> {
+        let code = self.code.clone();
+        if let Some(planned) = self.missing.first().and_then(|index| code.plan.resources.get(*index)) {
+            let expected =
+                "set with `Device::set_texture` before the frame begins, at the size of the frame".to_owned();
+            let name = format!("the texture `{}`", planned.resource.name);
+            return Err(fragbuf_frame::Error::BadValue { name, expected }.into());
+        }
+        let pixels = self.settings.width as usize * self.settings.height as usize;
+        let output = zeros("the output", (4 * OUTPUT_WORDS * pixels) as u64)?;
+        let (uniforms, camera) = (words(&self.uniforms), words(&self.camera));
+        let mut frame = Frame {
+            code: &code,
+            mesh: *mesh,
+            progress,
+            output,
+            uniforms,
+            camera,
+            wide: Mutex::new(()),
+            times: code.passes.iter().map(|_| 0.0).collect(),
+            samples: vec![0; code.passes.len()],
+            out_of_bounds: Vec::new(),
+            cursor: Cursor::new(&code.plan, self.readbacks, self.memory.flipped),
+            objects: Vec::new(),
+            device: self,
+        };
+        frame.run()?;
+        Ok(frame.picture())
+    }
 }
 
+/// The state of a frame.
 struct Frame<'a> {
     code: &'a Code,
     device: &'a mut Device,
     mesh: Mesh<'a>,
-    progress: &'a (dyn Fn(Stage<'_>) + Sync),
+    progress: &'a (dyn Fn(PassProgress<'_>) + Sync),
     output: Words,
     uniforms: Words,
     camera: Words,
     wide: Mutex<()>,
-    /// Milliseconds by pass.
+    /// Milliseconds per pass.
     times: Vec<f64>,
-    /// Samples that passed in the last run of each pass.
+    /// The samples that passed in the last run of each pass.
     samples: Vec<u64>,
     out_of_bounds: Vec<String>,
     cursor: Cursor,
-    /// What the last query found out of each object: 0 where no sample of its box passed.
+    /// The result of the last query per object: 0 if no sample of its box passed.
     objects: Vec<u32>,
 }
 
 impl Frame<'_> {
-    /// Goes through the frame, turn by turn.
+    /// Performs the steps of the frame.
     fn run(&mut self) -> Result<(), Error> {
         let plan = &self.code.plan;
-        while let Some(turn) = self.cursor.next(plan, &self.device.values)? {
-            match turn {
-                Turn::Clear { resource, value } => self.device.memory.clear(plan, resource, value),
-                Turn::Copy { from, to } => self.device.memory.copy(plan, from, to),
-                Turn::Pass(run) => self.pass(run)?,
-                Turn::Ask(question) => {
-                    let words = self.answer(question);
-                    self.cursor.answer(plan, &words, &mut self.device.values)?;
+        while let Some(step) = self.cursor.next(plan, &self.device.values)? {
+            match step {
+                FrameStep::Clear { resource, value } => self.device.memory.clear(plan, resource, value),
+                FrameStep::Copy { from, to } => self.device.memory.copy(plan, from, to),
+                FrameStep::Pass(run) => self.pass(run)?,
+                FrameStep::Wait(wait) => {
+                    let words = self.read_back(wait);
+                    self.cursor.supply(plan, &words, &mut self.device.values)?;
                     self.device.memory.resize(plan, &self.device.values)?;
                 }
             }
@@ -87,15 +92,15 @@ impl Frame<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, question: Question) -> Vec<u32> {
-        match question {
-            Question::Words(spans) => spans.into_iter().flat_map(|span| self.words(span)).collect(),
-            Question::Samples(PassId(pass)) => vec![u32::from(self.samples[pass] > 0)],
-            Question::Objects(_) => std::mem::take(&mut self.objects),
+    fn read_back(&mut self, wait: HostWait) -> Vec<u32> {
+        match wait {
+            HostWait::Words(spans) => spans.into_iter().flat_map(|span| self.words(span)).collect(),
+            HostWait::Samples(PassId(pass)) => vec![u32::from(self.samples[pass] > 0)],
+            HostWait::Objects(_) => std::mem::take(&mut self.objects),
         }
     }
 
-    fn words(&mut self, Span { resource, first, count }: Span) -> Vec<u32> {
+    fn words(&mut self, WordRange { resource, first, count }: WordRange) -> Vec<u32> {
         let words = self.device.memory.physical(&self.code.plan, resource);
         words.iter().skip(first as usize).take(count as usize).map(|word| word.load(Ordering::Relaxed)).collect()
     }
@@ -105,7 +110,7 @@ impl Frame<'_> {
         let counters = resource(plan, COUNTERS_RESOURCE).ok().map(|id| &self.device.memory.resources[id.0]);
         let mut times: Vec<PassTime> = Vec::new();
         for (pass, milliseconds) in plan.passes.iter().zip(&self.times) {
-            times.push(PassTime { milliseconds: *milliseconds, ..PassTime::none(pass.anchor.clone()) });
+            times.push(PassTime { milliseconds: *milliseconds, ..PassTime::zero(pass.name.clone()) });
         }
         let channels: Vec<f32> = read(&self.output).into_iter().map(f32::from_bits).collect();
         let pixels = channels.chunks_exact(OUTPUT_WORDS).map(|c| [c[0], c[1], c[2], c[3]]).collect();

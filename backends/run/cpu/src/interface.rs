@@ -1,147 +1,152 @@
-//! How the stages of a draw hang together: which words of a vertex feed which input of a fragment, and where its outputs go.
+//! The interface between the stages of a draw: the source of each fragment input and the target of each output.
 //!
-//! In: the programs of a pass. Out: plain tables, made once per draw. What is fed by nothing here is refused by name.
+//! The tables are computed once per draw. An input without a source is an error.
 
 use std::ops::Range;
 
-use fragbuf_interpreter::{Input, Program};
+use fragbuf_interpreter::{Bytecode, InterfaceVariable};
 use naga::{Binding, BuiltIn, Interpolation, Sampling, ScalarKind};
 
-/// The words of a vertex as it leaves its stage.
+/// The layout of the output of the vertex stage.
 #[derive(Clone, Debug)]
-pub(crate) struct Varyings {
-    /// Words of a vertex.
+pub(crate) struct VertexOutputLayout {
+    /// The number of words of a vertex.
     pub(crate) stride: usize,
-    /// Where its position begins.
+    /// The first word of the position.
     pub(crate) position: usize,
-    /// Per word, whether it is a float, which clipping may weigh; others are taken from the first corner.
-    pub(crate) weighed: Vec<Weighed>,
+    /// How clipping interpolates each word.
+    pub(crate) interpolation: Vec<ClipInterpolation>,
 }
 
-/// What clipping makes of a word.
+/// The interpolation of a word at a clipped corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Weighed {
-    Float,
+pub(crate) enum ClipInterpolation {
+    /// Floats are interpolated linearly.
+    Linear,
+    /// Other words are those of the first corner.
     Flat,
 }
 
-/// What an input of the fragment stage is fed with.
+/// One input of the fragment stage.
 #[derive(Clone, Debug)]
-pub(crate) struct Feed {
-    /// The machine's words.
+pub(crate) struct FragmentInput {
+    /// The words of the machine.
     pub(crate) to: Range<usize>,
-    pub(crate) from: Source,
+    pub(crate) from: InputSource,
 }
 
-/// Where it comes from.
+/// The source of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Source {
+pub(crate) enum InputSource {
     Position,
     FrontFacing,
     PrimitiveIndex,
     SampleIndex,
     SampleMask,
-    /// Words of the first corner, from this one on.
+    /// Words of the first corner, from this index.
     Flat(usize),
-    /// Words of all corners.
+    /// Interpolated words of the corners, from this index.
     Perspective(usize),
     Linear(usize),
 }
 
-/// Where what a fragment returns goes: words of its result, from the first.
+/// The outputs of the fragment stage, as words of its result.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Outputs {
+pub(crate) struct FragmentOutputs {
     pub(crate) depth: Option<usize>,
     pub(crate) mask: Option<usize>,
-    /// By location.
+    /// The colours, by location.
     pub(crate) colors: Vec<Option<Range<usize>>>,
 }
 
-/// How often a fragment runs.
+/// The frequency of the fragment stage: once per pixel or once per sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rate {
     Pixel,
     Sample,
 }
 
-impl Varyings {
-    pub(crate) fn of(vertex: &Program) -> Result<Self, String> {
+impl VertexOutputLayout {
+    pub(crate) fn of(vertex: &Bytecode) -> Result<Self, String> {
         let position = vertex.outputs.iter().find(|output| output.is(BuiltIn::Position { invariant: false }));
-        let position = position.ok_or_else(|| "a vertex without a position".to_owned())?;
+        let position = position.ok_or_else(|| "a vertex shader without a position".to_owned())?;
         let first = vertex.result.start;
-        let mut weighed = vec![Weighed::Flat; vertex.result.len()];
+        let mut interpolation = vec![ClipInterpolation::Flat; vertex.result.len()];
         for output in vertex.outputs.iter().filter(|output| output.kind == Some(ScalarKind::Float)) {
-            weighed[output.words.start - first..output.words.end - first].fill(Weighed::Float);
+            interpolation[output.words.start - first..output.words.end - first].fill(ClipInterpolation::Linear);
         }
-        Ok(Varyings { stride: vertex.result.len(), position: position.words.start - first, weighed })
+        Ok(VertexOutputLayout { stride: vertex.result.len(), position: position.words.start - first, interpolation })
     }
-}
 
-impl Varyings {
-    /// The position among the words of a vertex, in clip space.
+    /// Returns the clip-space position in the words of a vertex.
     pub(crate) fn position_in(&self, words: &[u32]) -> [f32; 4] {
         std::array::from_fn(|axis| f32::from_bits(words[self.position + axis]))
     }
 }
 
-/// What feeds the inputs of `fragment`, and how often it runs.
-pub(crate) fn feeds(vertex: &Program, fragment: &Program) -> Result<(Vec<Feed>, Rate), String> {
+/// Returns the sources of the inputs of `fragment`, and how often it runs.
+pub(crate) fn fragment_inputs(vertex: &Bytecode, fragment: &Bytecode) -> Result<(Vec<FragmentInput>, Rate), String> {
     let mut rate = Rate::Pixel;
-    let mut feeds = Vec::new();
+    let mut inputs = Vec::new();
     for input in &fragment.inputs {
         let from = match &input.binding {
             Some(Binding::BuiltIn(built_in)) => {
                 if *built_in == BuiltIn::SampleIndex {
                     rate = Rate::Sample;
                 }
-                source(*built_in)?
+                built_in_source(*built_in)?
             }
             Some(Binding::Location { location, interpolation, sampling, .. }) => {
                 if *sampling == Some(Sampling::Sample) {
                     rate = Rate::Sample;
                 }
-                varying(vertex, *location, *interpolation)?
+                varying_source(vertex, *location, *interpolation)?
             }
-            None => return Err(format!("the input `{}`, which nothing feeds", input.name)),
+            None => return Err(format!("the input `{}`, which has no source", input.name)),
         };
-        feeds.push(Feed { to: input.words.clone(), from });
+        inputs.push(FragmentInput { to: input.words.clone(), from });
     }
-    Ok((feeds, rate))
+    Ok((inputs, rate))
 }
 
-fn source(built_in: BuiltIn) -> Result<Source, String> {
+fn built_in_source(built_in: BuiltIn) -> Result<InputSource, String> {
     Ok(match built_in {
-        BuiltIn::Position { .. } => Source::Position,
-        BuiltIn::FrontFacing => Source::FrontFacing,
-        BuiltIn::PrimitiveIndex => Source::PrimitiveIndex,
-        BuiltIn::SampleIndex => Source::SampleIndex,
-        BuiltIn::SampleMask => Source::SampleMask,
+        BuiltIn::Position { .. } => InputSource::Position,
+        BuiltIn::FrontFacing => InputSource::FrontFacing,
+        BuiltIn::PrimitiveIndex => InputSource::PrimitiveIndex,
+        BuiltIn::SampleIndex => InputSource::SampleIndex,
+        BuiltIn::SampleMask => InputSource::SampleMask,
         other => return Err(format!("the built-in value {other:?} of a fragment")),
     })
 }
 
-fn varying(vertex: &Program, location: u32, interpolation: Option<Interpolation>) -> Result<Source, String> {
+fn varying_source(
+    vertex: &Bytecode,
+    location: u32,
+    interpolation: Option<Interpolation>,
+) -> Result<InputSource, String> {
     let output = vertex.outputs.iter().find(|output| output.location() == Some(location));
-    let output = output.ok_or_else(|| format!("a fragment's input at location {location}, which no vertex has"))?;
+    let output = output
+        .ok_or_else(|| format!("a fragment's input at location {location}, which is no output of the vertex shader"))?;
     let first = output.words.start - vertex.result.start;
     Ok(match interpolation {
-        Some(Interpolation::Flat) => Source::Flat(first),
-        Some(Interpolation::Linear) => Source::Linear(first),
-        None | Some(Interpolation::Perspective) => Source::Perspective(first),
-        Some(other) => return Err(format!("interpolation of the kind {other:?}")),
+        Some(Interpolation::Flat) => InputSource::Flat(first),
+        Some(Interpolation::Linear) => InputSource::Linear(first),
+        None | Some(Interpolation::Perspective) => InputSource::Perspective(first),
+        Some(other) => return Err(format!("{other:?} interpolation")),
     })
 }
 
-/// Where the results of `fragment` go.
-pub(crate) fn outputs(fragment: &Program) -> Result<Outputs, String> {
-    let mut outputs = Outputs::default();
+/// Returns the outputs of `fragment`.
+pub(crate) fn fragment_outputs(fragment: &Bytecode) -> Result<FragmentOutputs, String> {
+    let mut outputs = FragmentOutputs::default();
     for output in &fragment.outputs {
         let first = fragment.result.start;
         let words = output.words.start - first..output.words.end - first;
         match output {
             _ if output.is(BuiltIn::FragDepth) => outputs.depth = Some(words.start),
             _ if output.is(BuiltIn::SampleMask) => outputs.mask = Some(words.start),
-            Input { binding: Some(Binding::Location { location, .. }), .. } => {
+            InterfaceVariable { binding: Some(Binding::Location { location, .. }), .. } => {
                 let location = *location as usize;
                 outputs.colors.resize(outputs.colors.len().max(location + 1), None);
                 outputs.colors[location] = Some(words);

@@ -1,35 +1,38 @@
-//! A device without a driver: a rasteriser around the interpreter. Every plan runs here, on any machine.
+//! A device without a driver: a rasteriser on the interpreter. It runs every plan on any machine.
 //!
 //! ```text
-//! Variant ──Code::of──► Code (a Program per stage) ──Device::new──► Device ──render──► Picture
-//!                                                                     ▲ Mesh: words of vertices and indices
+//! Variant ──Code::of──► Code (Bytecode per stage) ──Device::new──► Device ──render──► Picture
+//!                                                                    ▲ Mesh: words of vertices and indices
 //! ```
 //!
-//! The frame is cut into tiles. Fragments of one pixel run one after the other, in the order of submission, on one thread;
-//! tiles run in parallel, so what pixels share (pools, counters) is atomic. [`Order::Shuffled`] interleaves the fragments of
-//! a pixel instead, from one shared access to the next, as a GPU may.
+//! A frame is divided into tiles. The fragments of a pixel run one after the other in submission order on one thread. Tiles
+//! run in parallel, so memory that pixels share (pools, counters) is atomic. [`FragmentOrder::Shuffled`] interleaves the
+//! fragments of a pixel from one shared access to the next, as a GPU may.
 //!
-//! Rasterisation follows the rules of the graphics APIs: 8 bits of subpixel, top left edges, perspective-correct and flat
-//! attributes, clipping at the near and far planes, depth and stencil tests, blending, 1, 2, 4 or 8 samples, with multisample
-//! coverage or without. Attachments are read as textures by later passes, loops end when a counter or a query says so, objects are
-//! drawn by their boxes' queries, draws and dispatches by arguments in a buffer. Nothing here knows a technique, naga's front
-//! end or a GPU.
+//! Rasterisation follows the rules of the graphics APIs: 8 subpixel bits, top-left rule, perspective-correct, linear and flat
+//! attributes, clipping at the near and far planes, depth and stencil tests, blending, 1, 2, 4 or 8 samples, with or without
+//! multisample coverage. Later passes read attachments as textures. Loops end by a counter or a query, box queries cull
+//! objects, and draws and dispatches may be indirect. This crate is independent of techniques, naga's front end and GPUs.
 
 mod attachment;
+mod bound_texture;
 mod clip;
 mod code;
 mod compute;
 mod device;
 mod draw;
+mod draw_call;
 mod error;
 mod fixed_function;
+mod fragment_stage;
 mod fragments;
 mod frame;
 mod interface;
 mod memory;
-mod sampled;
+mod mesh;
+mod picture;
 mod schedule;
-mod stages;
+mod settings;
 mod texel;
 mod tile;
 mod triangle;
@@ -37,5 +40,8 @@ mod vertices;
 mod view;
 
 pub use code::Code;
-pub use device::{Device, Mesh, Order, Picture, Settings, Stage};
+pub use device::Device;
 pub use error::Error;
+pub use mesh::Mesh;
+pub use picture::{PassProgress, Picture};
+pub use settings::{FragmentOrder, Settings};

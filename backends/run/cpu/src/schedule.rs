@@ -1,129 +1,129 @@
-//! Fragments of one pixel, interleaved as a GPU may: each stops before every shared access, and a seed decides who goes on.
+//! Interleaves the fragments of a pixel as a GPU may: each stops before every shared access, and a seed selects the next one.
 //!
-//! In: fragments, memory, a seed. Out: memory as that schedule leaves it; the same seed gives the same schedule. It is fair: of those that can
-//! go on each is as likely as any other, and one that tried a lock in vain waits until the word changes, or until nobody else can
-//! go on. An interlock is kept: between its begin and its end no other fragment of the pixel begins.
+//! The same seed gives the same schedule. The schedule is fair: every fragment that can continue is equally likely. A fragment
+//! that failed to take a lock waits until the word changes, or until no other fragment can continue. Between the beginning and
+//! the end of an interlock no other fragment of the pixel enters it.
 
-use fragbuf_interpreter::{Access, Atomic, Event, Exit, Machine, Operation, Place as Word, Reply, Shared};
+use fragbuf_interpreter::{Access, Atomic, Event, Exit, Machine, Operation, Reply, SharedMemory, WordAddress};
 
-use crate::stages::{FragmentStage, Place};
+use crate::fragment_stage::{FragmentPosition, FragmentStage};
 use crate::triangle::Triangle;
 use crate::view::View;
 
-/// A fragment that has not begun.
-pub(crate) type Waiting<'a> = (&'a Triangle, Place);
+/// A fragment of a pixel: its triangle and position.
+pub(crate) type PixelFragment<'a> = (&'a Triangle, FragmentPosition);
 
-/// Fragments of a pixel that have begun and not ended, at most: what a GPU has in flight.
+/// The most fragments of a pixel in flight, as on a GPU.
 const IN_FLIGHT: usize = 8;
 
-/// Runs all fragments; `ended` hears how each ended, by its number.
+/// Runs all fragments; calls `ended` with the number, the machine and the exit of each.
 pub(crate) fn interleave<'a>(
     stage: &FragmentStage<'a>,
-    fragments: &[Waiting<'a>],
+    fragments: &[PixelFragment<'a>],
     view: &View<'_>,
     seed: u64,
     mut ended: impl FnMut(usize, &mut Machine<'a>, Exit),
 ) {
-    let mut numbers = Numbers::seeded(seed);
+    let mut rng = Rng::seeded(seed);
     let mut waiting: Vec<usize> = (0..fragments.len()).collect();
-    let mut flight: Vec<Running<'a>> = Vec::with_capacity(IN_FLIGHT);
+    let mut flight: Vec<Invocation<'a>> = Vec::with_capacity(IN_FLIGHT);
     let mut spare: Vec<Machine<'a>> = Vec::new();
     loop {
         while flight.len() < IN_FLIGHT && !waiting.is_empty() {
-            let number = waiting.swap_remove(numbers.below(waiting.len()));
-            let (triangle, place) = &fragments[number];
+            let number = waiting.swap_remove(rng.below(waiting.len()));
+            let (triangle, position) = &fragments[number];
             let mut machine = spare.pop().unwrap_or_else(|| stage.machine());
-            stage.begin(&mut machine, triangle, place);
-            flight.push(Running { number, machine, standing: None, parked: None, is_inside: false });
+            stage.begin(&mut machine, triangle, position);
+            flight.push(Invocation { number, machine, pending: None, awaited: None, holds_interlock: false });
         }
-        let Some(next) = choose(&mut flight, &mut numbers) else { return };
-        let mut step = Step { view, may_go: flight[next].standing.is_some(), done: None };
+        let Some(next) = choose(&mut flight, &mut rng) else { return };
+        let mut step = SingleStepMemory { view, may_access: flight[next].pending.is_some(), done: None };
         let exit = flight[next].machine.run(&mut step);
         let done = step.done;
         if let Some((event, old)) = done {
-            settle(&mut flight, next, event, old);
+            apply_event(&mut flight, next, event, old);
         }
         match exit {
-            Exit::Stopped(event) => flight[next].standing = Some(event),
+            Exit::Stopped(event) => flight[next].pending = Some(event),
             exit => {
-                let mut over = flight.swap_remove(next);
-                ended(over.number, &mut over.machine, exit);
-                spare.push(over.machine);
+                let mut last = flight.swap_remove(next);
+                ended(last.number, &mut last.machine, exit);
+                spare.push(last.machine);
             }
         }
     }
 }
 
-/// A fragment that has begun.
-struct Running<'a> {
-    /// Which of the fragments it is.
+/// The invocation of a fragment in flight.
+struct Invocation<'a> {
+    /// The number of its fragment.
     number: usize,
     machine: Machine<'a>,
-    /// What it stands before; nothing, before its first access.
-    standing: Option<Event>,
-    /// The word that it waits for.
-    parked: Option<Word>,
-    /// Whether it is inside of the interlock.
-    is_inside: bool,
+    /// The event before which it stopped; `None` before its first access.
+    pending: Option<Event>,
+    /// The word whose change it waits for.
+    awaited: Option<WordAddress>,
+    /// Whether it is inside the interlock.
+    holds_interlock: bool,
 }
 
-/// Who goes on. `None`: nobody is left.
-fn choose(flight: &mut [Running<'_>], numbers: &mut Numbers) -> Option<usize> {
-    let is_taken = flight.iter().any(|running| running.is_inside);
-    let is_shut_out = |running: &Running<'_>| is_taken && running.standing == Some(Event::CriticalBegin);
-    let mut able: Vec<usize> =
-        (0..flight.len()).filter(|at| flight[*at].parked.is_none() && !is_shut_out(&flight[*at])).collect();
-    if able.is_empty() {
-        // All wait for each other: they try again, as they would on a GPU.
-        flight.iter_mut().for_each(|running| running.parked = None);
-        able = (0..flight.len()).filter(|at| !is_shut_out(&flight[*at])).collect();
+/// Selects the invocation that continues. `None`: all have ended.
+fn choose(flight: &mut [Invocation<'_>], rng: &mut Rng) -> Option<usize> {
+    let is_interlocked = flight.iter().any(|invocation| invocation.holds_interlock);
+    let is_blocked = |invocation: &Invocation<'_>| is_interlocked && invocation.pending == Some(Event::CriticalBegin);
+    let mut ready: Vec<usize> =
+        (0..flight.len()).filter(|at| flight[*at].awaited.is_none() && !is_blocked(&flight[*at])).collect();
+    if ready.is_empty() {
+        // All wait for each other: they retry, as on a GPU.
+        flight.iter_mut().for_each(|invocation| invocation.awaited = None);
+        ready = (0..flight.len()).filter(|at| !is_blocked(&flight[*at])).collect();
     }
-    (!able.is_empty()).then(|| able[numbers.below(able.len())])
+    (!ready.is_empty()).then(|| ready[rng.below(ready.len())])
 }
 
-/// What an event that has happened means for the others.
-fn settle(flight: &mut [Running<'_>], of: usize, event: Event, old: u64) {
+/// Updates the waiting invocations after an event.
+fn apply_event(flight: &mut [Invocation<'_>], of: usize, event: Event, old: u64) {
     match event {
-        Event::CriticalBegin => flight[of].is_inside = true,
-        Event::CriticalEnd => flight[of].is_inside = false,
+        Event::CriticalBegin => flight[of].holds_interlock = true,
+        Event::CriticalEnd => flight[of].holds_interlock = false,
         Event::Access(access) if access.writes() => {
-            // A plain store does not say what stood there.
+            // The old value of a plain store is unknown.
             if access.operation == Operation::Store || access.new_value(old) != old {
                 flight
                     .iter_mut()
-                    .filter(|other| other.parked == Some(access.place))
-                    .for_each(|other| other.parked = None);
-            } else if is_try(&access) {
-                flight[of].parked = Some(access.place);
+                    .filter(|other| other.awaited == Some(access.address))
+                    .for_each(|other| other.awaited = None);
+            } else if is_failed_attempt(&access) {
+                flight[of].awaited = Some(access.address);
             }
         }
         _ => {}
     }
 }
 
-/// Whether an access that changed nothing was an attempt at something.
-fn is_try(access: &Access) -> bool {
+/// Returns whether an access without effect was a failed attempt, such as at a lock.
+fn is_failed_attempt(access: &Access) -> bool {
     matches!(access.operation, Operation::Atomic(Atomic::Exchange | Atomic::CompareExchange))
 }
 
-/// Memory up to the next access: one event happens if it may, then it stops.
-struct Step<'v, 'a> {
+/// Memory for a single step: performs at most one event, then stops the machine.
+struct SingleStepMemory<'v, 'a> {
     view: &'v View<'a>,
-    may_go: bool,
+    may_access: bool,
     done: Option<(Event, u64)>,
 }
 
-impl Shared for Step<'_, '_> {
+impl SharedMemory for SingleStepMemory<'_, '_> {
     fn length(&self, buffer: u16) -> u32 {
         self.view.length(buffer)
     }
 
-    fn constant(&self, place: Word) -> u32 {
-        self.view.constant(place)
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.view.constant(address)
     }
 
-    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
-        self.view.texel(texture, place)
+    fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]> {
+        self.view.texel(texture, coordinates)
     }
 
     fn extent(&self, texture: u16) -> [u32; 3] {
@@ -134,10 +134,10 @@ impl Shared for Step<'_, '_> {
         if *event == Event::Fence {
             return Reply::Done(0);
         }
-        if !self.may_go {
+        if !self.may_access {
             return Reply::Stop;
         }
-        self.may_go = false;
+        self.may_access = false;
         let old = match event {
             Event::Access(access) => self.view.access(access),
             _ => 0,
@@ -147,12 +147,12 @@ impl Shared for Step<'_, '_> {
     }
 }
 
-/// Numbers from a seed: xorshift (Marsaglia 2003).
-struct Numbers(u64);
+/// A seeded generator of random numbers: xorshift (Marsaglia 2003).
+struct Rng(u64);
 
-impl Numbers {
+impl Rng {
     fn seeded(seed: u64) -> Self {
-        Numbers((seed ^ 0x2545_f491_4f6c_dd1d).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+        Rng((seed ^ 0x2545_f491_4f6c_dd1d).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
     fn below(&mut self, end: usize) -> usize {

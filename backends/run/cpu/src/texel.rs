@@ -1,26 +1,26 @@
-//! Texels: how the formats of attachments keep channels in words.
+//! Texels: the encoding of channels in words, per texture format.
 //!
-//! In: channels as floats. Out: words, and back. Values are clamped and rounded to nearest as the graphics APIs say.
+//! Values are clamped and rounded to nearest, as the graphics APIs require.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use fragbuf_interpreter::{from_half, to_half};
 use fragbuf_templates::vocabulary::TextureFormat;
 
-/// Steps of a 24-bit depth.
+/// The greatest 24-bit depth.
 pub(crate) const DEPTH_24: f64 = 16_777_215.0;
 
-/// How a colour attachment keeps its texels.
+/// The texel format of a colour attachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Texel {
-    /// One of the plan's textures.
+    /// The format of a texture of the plan.
     Format(TextureFormat),
-    /// The caller's output: four floats.
+    /// The output of the caller: four floats.
     Output,
 }
 
 impl Texel {
-    /// Words of one.
+    /// Returns the words of a texel.
     pub(crate) fn words(self) -> usize {
         match self {
             Texel::Format(format) => format.words() as usize,
@@ -28,22 +28,22 @@ impl Texel {
         }
     }
 
-    /// Whether it holds bits rather than numbers, so that nothing can be blended.
-    pub(crate) fn is_raw(self) -> bool {
+    /// Returns whether the channels are integers, which cannot be blended.
+    pub(crate) fn is_integer(self) -> bool {
         matches!(self, Texel::Format(TextureFormat::R32Uint | TextureFormat::Rg16Uint))
     }
 
-    /// The words of the texel `index`; those beyond its size are 0.
-    pub(crate) fn load(self, held: &[AtomicU32], index: usize) -> [u32; 4] {
+    /// Returns the words of the texel `index`; those beyond its size are 0.
+    pub(crate) fn load(self, stored: &[AtomicU32], index: usize) -> [u32; 4] {
         let words = self.words();
-        std::array::from_fn(|word| match held.get(index * words + word) {
-            Some(held) if word < words => held.load(Ordering::Relaxed),
+        std::array::from_fn(|word| match stored.get(index * words + word) {
+            Some(stored) if word < words => stored.load(Ordering::Relaxed),
             _ => 0,
         })
     }
 
-    /// The words of a texel of whole numbers.
-    pub(crate) fn encode_whole(self, channels: [u32; 4]) -> [u32; 4] {
+    /// Encodes the channels of an integer texel.
+    pub(crate) fn encode_integer(self, channels: [u32; 4]) -> [u32; 4] {
         let [low, high, ..] = channels;
         match self {
             Texel::Format(TextureFormat::Rg16Uint) => [low & 0xffff | high << 16, 0, 0, 0],
@@ -51,8 +51,8 @@ impl Texel {
         }
     }
 
-    /// The channels of a texel of whole numbers, of which nothing is a number with a point: words of a colour, or a stencil.
-    pub(crate) fn decode_whole(self, words: [u32; 4]) -> [u32; 4] {
+    /// Decodes the channels of an integer texel: a colour or a stencil.
+    pub(crate) fn decode_integer(self, words: [u32; 4]) -> [u32; 4] {
         match self {
             Texel::Format(TextureFormat::Rg16Uint) => [words[0] & 0xffff, words[0] >> 16, 0, 1],
             Texel::Format(TextureFormat::Depth24PlusStencil8) => [words[0] & 0xff, 0, 0, 1],
@@ -60,7 +60,7 @@ impl Texel {
         }
     }
 
-    /// The channels of a texel.
+    /// Decodes the channels of a texel.
     pub(crate) fn decode(self, words: [u32; 4]) -> [f32; 4] {
         let [a, b, _, _] = words;
         match self {
@@ -73,7 +73,7 @@ impl Texel {
         }
     }
 
-    /// The words of a texel; those beyond its size are 0.
+    /// Encodes the channels of a texel; words beyond its size are 0.
     pub(crate) fn encode(self, channels: [f32; 4]) -> [u32; 4] {
         let [r, g, b, a] = channels;
         match self {
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_format_holds_comes_back() {
+    fn encoded_texels_decode_to_the_same_channels() {
         let color = [0.0, 1.0, 0.2, 0.6];
         for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba16Float] {
             let texel = Texel::Format(format);

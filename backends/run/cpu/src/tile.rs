@@ -1,12 +1,12 @@
-//! Tiles: which triangles touch which part of the frame, and which of its pixels a triangle covers.
+//! Tiles: the triangles that overlap each part of the frame, and the pixels that a triangle covers.
 //!
-//! In: triangles in the order of submission. Out: a list of them per tile, in the same order, and the covered pixels of each.
+//! Lists of triangles keep the submission order.
 
 use fragbuf_templates::vocabulary::Coverage;
 
-use crate::triangle::{MIDDLE, Triangle, sample_places};
+use crate::triangle::{PIXEL_CENTRE, Triangle, sample_positions};
 
-/// Pixels along each side of a tile.
+/// The pixels along each side of a tile.
 pub(crate) const SIDE: u32 = 16;
 
 /// A part of the frame: `x0..x1`, `y0..y1`.
@@ -15,17 +15,18 @@ pub(crate) type Rectangle = [u32; 4];
 /// The triangles of each tile that has any.
 pub(crate) struct Bins {
     pub(crate) tiles: Vec<Bin>,
-    /// Numbers of triangles, tile after tile.
+    /// The numbers of triangles, tile after tile.
     numbers: Vec<u32>,
 }
 
-/// One tile's part of the list.
+/// The range of the list that belongs to one tile.
 pub(crate) struct Bin {
     pub(crate) rectangle: Rectangle,
     range: std::ops::Range<usize>,
 }
 
 impl Bins {
+    /// Sorts triangles into tiles.
     pub(crate) fn of(triangles: &[Triangle], (width, height): (u32, u32)) -> Self {
         let columns = width.div_ceil(SIDE) as usize;
         let rows = height.div_ceil(SIDE) as usize;
@@ -61,7 +62,7 @@ impl Bins {
         Bins { tiles, numbers }
     }
 
-    /// The numbers of a tile's triangles, in order.
+    /// Returns the numbers of the triangles of a tile, in submission order.
     pub(crate) fn triangles(&self, bin: &Bin) -> &[u32] {
         &self.numbers[bin.range.clone()]
     }
@@ -86,37 +87,37 @@ fn touch(triangle: &Triangle, size: (u32, u32), mut tile: impl FnMut(u32, u32)) 
 
 /// A covered pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Covered {
+pub(crate) struct CoveredPixel {
     pub(crate) x: u32,
     pub(crate) y: u32,
-    /// Its covered samples.
+    /// The mask of covered samples.
     pub(crate) mask: u32,
 }
 
-/// Calls `pixel` for every pixel of the rectangle that the triangle covers a sample of, row after row.
+/// Calls `pixel` for every pixel of the rectangle with a covered sample, row after row.
 pub(crate) fn cover(
     triangle: &Triangle,
     rectangle: Rectangle,
     size: (u32, u32),
     (samples, coverage): (u32, Coverage),
-    mut pixel: impl FnMut(Covered),
+    mut pixel: impl FnMut(CoveredPixel),
 ) {
     let bounds = triangle.bounds(size);
     let (x0, x1) = (bounds[0].max(rectangle[0]), bounds[1].min(rectangle[1]));
     let (y0, y1) = (bounds[2].max(rectangle[2]), bounds[3].min(rectangle[3]));
     let steps = triangle.steps();
-    let by_middle = samples == 1 || coverage == Coverage::WholePixel;
+    let by_centre = samples == 1 || coverage == Coverage::WholePixel;
     let all = u32::MAX >> (32 - samples);
     for y in y0..y1 {
-        let mut edges = triangle.edges(x0, y, MIDDLE);
+        let mut edges = triangle.edges(x0, y, PIXEL_CENTRE);
         for x in x0..x1 {
-            let mask = if by_middle {
+            let mask = if by_centre {
                 if (edges[0] | edges[1] | edges[2]) >= 0 { all } else { 0 }
             } else {
                 covered(triangle, x, y, samples)
             };
             if mask != 0 {
-                pixel(Covered { x, y, mask });
+                pixel(CoveredPixel { x, y, mask });
             }
             edges.iter_mut().zip(steps).for_each(|(edge, step)| *edge += step);
         }
@@ -125,7 +126,7 @@ pub(crate) fn cover(
 
 fn covered(triangle: &Triangle, x: u32, y: u32, samples: u32) -> u32 {
     let mut mask = 0;
-    for (sample, offset) in sample_places(samples).iter().enumerate() {
+    for (sample, offset) in sample_positions(samples).iter().enumerate() {
         let [a, b, c] = triangle.edges(x, y, *offset);
         mask |= u32::from((a | b | c) >= 0) << sample;
     }
@@ -136,11 +137,11 @@ fn covered(triangle: &Triangle, x: u32, y: u32, samples: u32) -> u32 {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use crate::triangle::{MIDDLE, Vertex};
+    use crate::triangle::{PIXEL_CENTRE, Vertex};
 
     const SIZE: (u32, u32) = (40, 24);
 
-    /// A triangle by its corners in pixels.
+    /// Returns a triangle by its corners in pixels.
     fn triangle(corners: [(f32, f32); 3]) -> Option<Triangle> {
         let vertex = |(x, y): (f32, f32)| {
             let position = [2.0 * x / SIZE.0 as f32 - 1.0, 1.0 - 2.0 * y / SIZE.1 as f32, 0.5, 1.0];
@@ -163,7 +164,7 @@ mod tests {
         counts
     }
 
-    /// Numbers from 0 to 1 from a seed.
+    /// Returns a seeded generator of numbers from 0 to 1.
     fn numbers(seed: u64) -> impl FnMut() -> f32 {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         move || {
@@ -178,23 +179,23 @@ mod tests {
     fn triangles_around_a_point_cover_every_sample_once() {
         for seed in 0..200 {
             let mut number = numbers(seed);
-            // Corners of the frame, and a point inside: often in the middle of a pixel, or on its border.
+            // Corners of the frame, and a point inside: often at the centre or the edge of a pixel.
             let step = [1.0, 2.0, 256.0, 1000.0][seed as usize % 4];
-            let middle =
+            let point =
                 ((number() * SIZE.0 as f32 * step).round() / step, (number() * SIZE.1 as f32 * step).round() / step);
             let frame = [(0.0, 0.0), (SIZE.0 as f32, 0.0), (SIZE.0 as f32, SIZE.1 as f32), (0.0, SIZE.1 as f32)];
-            let sides = (0..4).filter_map(|side| triangle([middle, frame[side], frame[(side + 1) % 4]]));
+            let sides = (0..4).filter_map(|side| triangle([point, frame[side], frame[(side + 1) % 4]]));
             let triangles: Vec<Triangle> = sides.collect();
             for samples in [1, 2, 4, 8] {
                 let counts = counts(&triangles, samples);
-                assert!(counts.iter().flatten().all(|count| *count == 1), "seed {seed}, {samples} samples, {middle:?}");
+                assert!(counts.iter().flatten().all(|count| *count == 1), "seed {seed}, {samples} samples, {point:?}");
             }
         }
     }
 
     #[test]
     fn samples_on_edges_belong_to_top_and_left() {
-        // Edges through the middles of pixels: 10 × 6 of them are in, the right column and the lower row are out.
+        // Edges through pixel centres: 10 × 6 pixels are covered, the right column and the lower row are not.
         let corners = [(4.5, 3.5), (14.5, 3.5), (14.5, 9.5), (4.5, 9.5)];
         let halves = [[0, 1, 2], [0, 2, 3]].map(|half| triangle(half.map(|corner: usize| corners[corner])).unwrap());
         let counts = counts(&halves, 1);
@@ -207,8 +208,8 @@ mod tests {
     }
 
     #[test]
-    fn coverage_is_what_the_256ths_say() {
-        // The middle of pixel (3, 3) lies 1/256 inside, then on, then outside of a right edge.
+    fn coverage_is_exact_in_256ths() {
+        // The centre of pixel (3, 3) is 1/256 inside, then on, then outside a right edge.
         for (edge, covered) in [(3.5 + 1.0 / 256.0, 1), (3.5, 0), (3.5 + 0.4 / 256.0, 0), (3.5 + 0.6 / 256.0, 1)] {
             let triangle = triangle([(edge, -50.0), (edge, 70.0), (-60.0, 10.0)]).unwrap();
             assert_eq!(counts(&[triangle], 1)[(3 * SIZE.0 + 3) as usize][0], covered, "{edge}");
@@ -216,13 +217,13 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_area_covers_nothing() {
+    fn triangles_without_area_cover_nothing() {
         assert!(triangle([(1.0, 1.0), (5.0, 5.0), (9.0, 9.0)]).is_none());
         assert!(triangle([(1.0, 1.0), (1.001, 1.0), (1.0, 1.001)]).is_none());
     }
 
     #[test]
-    fn the_middle_decides_for_all_samples_where_it_is_asked_to() {
+    fn whole_pixel_coverage_tests_the_centre() {
         let triangle = triangle([(2.6, 0.0), (2.6, 20.0), (-20.0, 10.0)]).unwrap();
         let mut masks = Vec::new();
         cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::WholePixel), |covered| {
@@ -233,7 +234,7 @@ mod tests {
         cover(&triangle, [0, 16, 8, 9], SIZE, (4, Coverage::PerSample), |covered| {
             masks.push((covered.x, covered.mask))
         });
-        // Samples at 3/8 and 1/8 lie left of 0.6.
+        // The samples at 3/8 and 1/8 are left of 0.6.
         assert_eq!(masks, [(0, 15), (1, 15), (2, 0b0101)]);
     }
 
@@ -241,13 +242,13 @@ mod tests {
     fn weights_are_the_exact_fractions() {
         let at = |corners: [[f32; 4]; 3], x, y| {
             let triangle = Triangle::new(corners.map(|position| Vertex { position, words: 0 }), 0, 0, (4, 4)).unwrap();
-            (triangle.weights(x, y, MIDDLE), triangle.is_front)
+            (triangle.weights(x, y, PIXEL_CENTRE), triangle.is_front)
         };
-        // w grows from 1 on the left to 4 on the right: at pixel 1 of 4, 3/8 of the way on the screen.
+        // w increases from 1 on the left to 4 on the right; the centre of pixel 1 of 4 is at 3/8 of the screen.
         let corners = [[-1.0, -1.0, 0.0, 1.0], [4.0, -4.0, 4.0, 4.0], [-1.0, 1.0, 0.0, 1.0]];
         let (weights, is_front) = at(corners, 1, 2);
         assert!(is_front);
-        // Turned, so that the second weight is that of the right corner.
+        // The corners are reordered, so the second weight is that of the right corner.
         let right = 0.375_f64;
         let exact = (right / 4.0) / (1.0 - right + right / 4.0);
         assert!((weights.linear[1] - right).abs() < 1e-12, "{weights:?}");

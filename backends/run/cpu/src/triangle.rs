@@ -1,77 +1,78 @@
-//! One triangle on the grid of pixels: which samples it covers, and what its corners weigh there.
+//! A triangle on the pixel grid: the samples that it covers, and the weights of its corners at a sample.
 //!
-//! In: positions in clip space. Out: answers per sample. Coverage is whole numbers in 256ths of a pixel, so that triangles
-//! that share an edge share no sample and leave none out: a sample on an edge belongs to the triangle whose top or left edge it is.
+//! Coverage uses integers in 256ths of a pixel and the top-left rule: triangles with a common edge cover each sample of the
+//! edge exactly once.
 
 use crate::clip::Corner;
 
 /// 256ths of a pixel.
 pub(crate) const SUBPIXELS: i64 = 256;
 
-/// Where a pixel is sampled, in 256ths from its top left: the standard places of the graphics APIs.
-pub(crate) fn sample_places(samples: u32) -> &'static [(i64, i64)] {
+/// Returns the standard sample positions of the graphics APIs, in 256ths of a pixel from its top left corner.
+pub(crate) fn sample_positions(samples: u32) -> &'static [(i64, i64)] {
     match samples {
         2 => &[(192, 192), (64, 64)],
         4 => &[(96, 32), (224, 96), (32, 160), (160, 224)],
         8 => &[(144, 80), (112, 176), (208, 144), (80, 48), (48, 208), (16, 112), (176, 240), (240, 16)],
-        _ => &[MIDDLE],
+        _ => &[PIXEL_CENTRE],
     }
 }
 
-/// The middle of a pixel.
-pub(crate) const MIDDLE: (i64, i64) = (128, 128);
+/// The centre of a pixel.
+pub(crate) const PIXEL_CENTRE: (i64, i64) = (128, 128);
 
-/// A triangle, ready to be sampled.
+/// A triangle after setup.
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
-    /// Corners in 256ths of a pixel, turned so that the area is positive.
+    /// The corners in 256ths of a pixel, ordered so that the area is positive.
     corners: [(i64, i64); 3],
-    /// Added to an edge's function: 0 where the edge's own samples are the triangle's, else -1.
+    /// Added to the edge functions: 0 if the triangle covers the samples on the edge, else -1.
     bias: [i64; 3],
-    plane: Plane,
+    plane: WeightPlane,
     depths: [f32; 3],
     /// 1 / w.
     inverse_w: [f32; 3],
-    /// Where the words of each corner are, in the list of vertices.
+    /// The first word of each corner in the vertex list.
     pub(crate) vertices: [u32; 3],
-    /// The vertex that flat attributes come from.
+    /// The first word of the provoking vertex: the source of flat attributes.
     pub(crate) provoking: u32,
     pub(crate) primitive: u32,
     pub(crate) is_front: bool,
 }
 
-/// What the corners weigh at one sample.
+/// The weights of the corners at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights {
-    /// On the screen; those of the second and third corner.
+    /// Linear in screen space, of the second and third corner.
     pub(crate) linear: [f64; 2],
-    /// In space.
+    /// Perspective-correct, of the second and third corner.
     pub(crate) perspective: [f32; 2],
     /// 1 / w.
     pub(crate) inverse_w: f32,
     pub(crate) depth: f32,
 }
 
-/// A corner of a triangle and where its words are.
+/// A corner of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
     /// In clip space.
     pub(crate) position: [f32; 4],
+    /// Its first word in the vertex list.
     pub(crate) words: u32,
 }
 
 impl Triangle {
-    /// `None`: it has no area.
+    /// Sets up a triangle. `None`: its area is zero.
     pub(crate) fn new(vertices: [Vertex; 3], provoking: u32, primitive: u32, size: (u32, u32)) -> Option<Self> {
-        let placed = vertices.map(|vertex| Placed::of(&vertex, size));
-        let area = edge(placed[0].place, placed[1].place, placed[2].place);
+        let screen = vertices.map(|vertex| ScreenVertex::of(&vertex, size));
+        let area = edge(screen[0].snapped, screen[1].snapped, screen[2].snapped);
         if area == 0 {
             return None;
         }
-        // Counter-clockwise is the front, with y upwards; on the screen y goes down, and that is a negative area.
+        // Counter-clockwise with y upwards is the front. Screen y points down, so its area is negative.
         let is_front = area < 0;
-        let [a, b, c] = if is_front { [placed[0], placed[2], placed[1]] } else { placed };
-        let corners = [a.place, b.place, c.place];
+        let [a, b, c] = if is_front { [screen[0], screen[2], screen[1]] } else { screen };
+        let corners = [a.snapped, b.snapped, c.snapped];
         let bias = std::array::from_fn(|index| {
             let (from, to) = (corners[(index + 1) % 3], corners[(index + 2) % 3]);
             let (x, y) = (to.0 - from.0, to.1 - from.1);
@@ -81,7 +82,7 @@ impl Triangle {
         Some(Triangle {
             corners,
             bias,
-            plane: Plane::of([a, b, c], area.unsigned_abs()),
+            plane: WeightPlane::of([a, b, c], area.unsigned_abs()),
             depths: [a.depth, b.depth, c.depth],
             inverse_w: [a.inverse_w, b.inverse_w, c.inverse_w],
             vertices: [a.words, b.words, c.words],
@@ -91,7 +92,7 @@ impl Triangle {
         })
     }
 
-    /// The pixels around it, `x0..x1` and `y0..y1`, inside the frame.
+    /// Returns the bounding box within the frame, as pixels `x0..x1` and `y0..y1`.
     pub(crate) fn bounds(&self, (width, height): (u32, u32)) -> [u32; 4] {
         let of = |values: [i64; 3], end: u32| {
             let least = values.iter().copied().min().unwrap_or(0).div_euclid(SUBPIXELS);
@@ -103,33 +104,33 @@ impl Triangle {
         [x0, x1, y0, y1]
     }
 
-    /// Whether it can touch the pixels `x0..x1`, `y0..y1`: false only where all of them lie beyond one edge.
+    /// Returns whether the triangle may touch the pixels `x0..x1`, `y0..y1`: false only if all are outside one edge.
     pub(crate) fn may_touch(&self, [x0, x1, y0, y1]: [u32; 4]) -> bool {
         let [left, right, top, bottom] = [x0, x1, y0, y1].map(|pixel| i64::from(pixel) * SUBPIXELS);
         (0..3).all(|index| {
             let (from, to) = (self.corners[(index + 1) % 3], self.corners[(index + 2) % 3]);
             let (x, y) = (to.0 - from.0, to.1 - from.1);
-            // The rectangle's corner that is farthest inside.
-            let place = (if y < 0 { right } else { left }, if x > 0 { bottom } else { top });
-            edge(from, to, place) >= 0
+            // The corner of the rectangle that is farthest inside.
+            let corner = (if y < 0 { right } else { left }, if x > 0 { bottom } else { top });
+            edge(from, to, corner) >= 0
         })
     }
 
-    /// The edge functions at a sample, the bias added: it is covered where none is negative.
+    /// Returns the biased edge functions at a sample; the triangle covers it if none is negative.
     #[inline]
     pub(crate) fn edges(&self, x: u32, y: u32, offset: (i64, i64)) -> [i64; 3] {
-        let place = (i64::from(x) * SUBPIXELS + offset.0, i64::from(y) * SUBPIXELS + offset.1);
+        let sample = (i64::from(x) * SUBPIXELS + offset.0, i64::from(y) * SUBPIXELS + offset.1);
         let [a, b, c] = self.corners;
-        [edge(b, c, place) + self.bias[0], edge(c, a, place) + self.bias[1], edge(a, b, place) + self.bias[2]]
+        [edge(b, c, sample) + self.bias[0], edge(c, a, sample) + self.bias[1], edge(a, b, sample) + self.bias[2]]
     }
 
-    /// What an edge function grows by from one pixel to the next on its right.
+    /// Returns the increments of the edge functions from a pixel to its right neighbour.
     pub(crate) fn steps(&self) -> [i64; 3] {
         let [a, b, c] = self.corners;
         [(b.1 - c.1) * SUBPIXELS, (c.1 - a.1) * SUBPIXELS, (a.1 - b.1) * SUBPIXELS]
     }
 
-    /// What the corners weigh at a sample.
+    /// Returns the weights of the corners at a sample.
     #[inline]
     pub(crate) fn weights(&self, x: u32, y: u32, offset: (i64, i64)) -> Weights {
         let linear = self.plane.at(f64::from(x) + offset.0 as f64 / 256.0, f64::from(y) + offset.1 as f64 / 256.0);
@@ -144,44 +145,45 @@ impl Triangle {
         Weights { linear, perspective, inverse_w: inverse_w as f32, depth }
     }
 
-    /// Exact where the three are equal.
+    /// Interpolates linearly; exact if the three values are equal.
     fn mixed(&self, values: [f32; 3], shares: [f64; 2]) -> f64 {
         let [a, b, c] = values.map(f64::from);
         a + shares[0] * (b - a) + shares[1] * (c - a)
     }
 }
 
-/// The weights of the second and third corner, linear on the screen. They follow the corners as they are, not as coverage has
-/// rounded them: so depth does not depend on the rounding, and steep triangles meet where they should.
+/// The weights of the second and third corner as linear functions of screen space. They use the exact corners, not the snapped
+/// ones, so depth does not depend on snapping and steep triangles intersect at the right pixels.
 #[derive(Clone, Debug)]
-struct Plane {
+struct WeightPlane {
     origin: [f64; 2],
-    /// By x and y, for each of the two.
+    /// The derivatives by x and y of each weight.
     slopes: [[f64; 2]; 2],
 }
 
-impl Plane {
-    fn of(corners: [Placed; 3], snapped_area: u64) -> Self {
+impl WeightPlane {
+    fn of(corners: [ScreenVertex; 3], snapped_area: u64) -> Self {
         let exact = corners.map(|corner| corner.exact.map(f64::from));
         let snapped_area = snapped_area as f64 / (SUBPIXELS * SUBPIXELS) as f64;
-        let plane = Plane::through(exact);
-        // A sliver that rounding has made much wider, or turned, is taken as it was rounded.
+        let plane = WeightPlane::through(exact);
+        // A sliver that snapping widened or flipped uses the snapped corners.
         match plane {
             Some((area, plane)) if (0.5..2.0).contains(&(area / snapped_area)) => plane,
             _ => {
-                let snapped =
-                    corners.map(|corner| [corner.place.0, corner.place.1].map(|place| place as f64 / SUBPIXELS as f64));
-                Plane::through(snapped).map_or(Plane { origin: snapped[0], slopes: [[0.0; 2]; 2] }, |(_, plane)| plane)
+                let snapped = corners
+                    .map(|corner| [corner.snapped.0, corner.snapped.1].map(|axis| axis as f64 / SUBPIXELS as f64));
+                WeightPlane::through(snapped)
+                    .map_or(WeightPlane { origin: snapped[0], slopes: [[0.0; 2]; 2] }, |(_, plane)| plane)
             }
         }
     }
 
-    /// Twice the area, and the plane.
+    /// Returns twice the area, and the plane.
     fn through([a, b, c]: [[f64; 2]; 3]) -> Option<(f64, Self)> {
         let (b, c) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let area = b[0] * c[1] - b[1] * c[0];
         let slopes = [[c[1] / area, -c[0] / area], [-b[1] / area, b[0] / area]];
-        (area > 0.0).then_some((area, Plane { origin: a, slopes }))
+        (area > 0.0).then_some((area, WeightPlane { origin: a, slopes }))
     }
 
     #[inline]
@@ -191,37 +193,37 @@ impl Plane {
     }
 }
 
-/// A corner on the screen.
+/// A corner in screen space.
 #[derive(Clone, Copy)]
-struct Placed {
-    /// In pixels.
+struct ScreenVertex {
+    /// The position in pixels.
     exact: [f32; 2],
-    /// In 256ths of a pixel.
-    place: (i64, i64),
+    /// The position rounded to 256ths of a pixel.
+    snapped: (i64, i64),
     depth: f32,
     inverse_w: f32,
     words: u32,
 }
 
-impl Placed {
+impl ScreenVertex {
     fn of(vertex: &Vertex, (width, height): (u32, u32)) -> Self {
         let [x, y, z, w] = vertex.position;
         let inverse_w = 1.0 / w;
         let (half_width, half_height) = (0.5 * width as f32, 0.5 * height as f32);
         let screen = (x * inverse_w * half_width + half_width, half_height - y * inverse_w * half_height);
-        let snapped = |value: f32| (f64::from(value) * SUBPIXELS as f64).round() as i64;
-        let place = (snapped(screen.0), snapped(screen.1));
-        Placed { exact: [screen.0, screen.1], place, depth: z * inverse_w, inverse_w, words: vertex.words }
+        let snap = |value: f32| (f64::from(value) * SUBPIXELS as f64).round() as i64;
+        let snapped = (snap(screen.0), snap(screen.1));
+        ScreenVertex { exact: [screen.0, screen.1], snapped, depth: z * inverse_w, inverse_w, words: vertex.words }
     }
 }
 
-/// Twice the signed area of the three; positive where `at` lies to the right of the way, with y downwards.
+/// Returns twice the signed area of the three points; positive if `at` is to the right of the edge, with y downwards.
 #[inline]
 fn edge(from: (i64, i64), to: (i64, i64), at: (i64, i64)) -> i64 {
     (to.0 - from.0) * (at.1 - from.1) - (to.1 - from.1) * (at.0 - from.0)
 }
 
-/// A polygon as triangles around its first corner.
+/// Triangulates a polygon as a fan around its first corner.
 pub(crate) fn fan(polygon: &[Corner]) -> impl Iterator<Item = [usize; 3]> {
     (2..polygon.len()).map(|last| [0, last - 1, last])
 }

@@ -1,37 +1,35 @@
-//! The vertex stage: every vertex once, in parallel.
-//!
-//! In: a program, words of interleaved vertices. Out: the words that each vertex leaves behind.
+//! Runs the vertex stage: every vertex once, in parallel.
 
-use fragbuf_interpreter::{Exit, Machine, Program};
+use fragbuf_interpreter::{Bytecode, Exit, Machine};
 use naga::BuiltIn;
 use rayon::prelude::*;
 
 use crate::view::View;
 
-/// Vertices that one thread runs before it takes others.
+/// The vertices that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// Where an input of the vertex stage comes from.
-enum Feed {
+/// The source of an input of the vertex stage.
+enum VertexInput {
     VertexIndex,
     InstanceIndex,
-    /// The word of an interleaved vertex.
+    /// Words of an interleaved vertex, from this index.
     Words(usize),
 }
 
-/// Words of one interleaved vertex that `program` reads: its inputs in the order of their locations.
-pub(crate) fn stride(program: &Program) -> usize {
+/// Returns the words of one interleaved vertex: the inputs of `program` in the order of their locations.
+pub(crate) fn stride(program: &Bytecode) -> usize {
     program.inputs.iter().filter(|input| input.location().is_some()).map(|input| input.words.len()).sum()
 }
 
-/// Runs `count` vertices of an instance, whose words are `vertices`. `Err`: an input that nothing feeds, or one goes round for ever.
+/// Runs `count` vertices of an instance. `Err`: an input without a source, or a vertex that does not terminate.
 pub(crate) fn run(
-    (program, view): (&Program, &View<'_>),
+    (program, view): (&Bytecode, &View<'_>),
     vertices: &[u32],
     count: usize,
     instance: u32,
 ) -> Result<Vec<u32>, String> {
-    let feeds = feeds(program)?;
+    let inputs = vertex_inputs(program)?;
     let stride = stride(program);
     let words = program.result.len();
     let mut results = vec![0; words * count];
@@ -44,11 +42,11 @@ pub(crate) fn run(
             for (offset, result) in results.chunks_mut(words.max(1)).enumerate() {
                 let vertex = chunk * CHUNK + offset;
                 machine.restart();
-                for (number, feed) in feeds.iter().enumerate() {
-                    match feed {
-                        Feed::VertexIndex => machine.set_input(number, &[vertex as u32]),
-                        Feed::InstanceIndex => machine.set_input(number, &[instance]),
-                        Feed::Words(first) => {
+                for (number, source) in inputs.iter().enumerate() {
+                    match source {
+                        VertexInput::VertexIndex => machine.set_input(number, &[vertex as u32]),
+                        VertexInput::InstanceIndex => machine.set_input(number, &[instance]),
+                        VertexInput::Words(first) => {
                             let from = vertices.get(vertex * stride + first..).unwrap_or_default();
                             machine.set_input(number, from);
                         }
@@ -62,19 +60,23 @@ pub(crate) fn run(
             true
         })
         .collect();
-    if ended.into_iter().all(|ended| ended) { Ok(results) } else { Err("a vertex that goes round for ever".to_owned()) }
+    if ended.into_iter().all(|ended| ended) {
+        Ok(results)
+    } else {
+        Err("a vertex shader that does not terminate".to_owned())
+    }
 }
 
-fn feeds(program: &Program) -> Result<Vec<Feed>, String> {
+fn vertex_inputs(program: &Bytecode) -> Result<Vec<VertexInput>, String> {
     let before = |location: u32| -> usize {
-        let earlier = program.inputs.iter().filter(|input| input.location().is_some_and(|own| own < location));
+        let earlier = program.inputs.iter().filter(|input| input.location().is_some_and(|other| other < location));
         earlier.map(|input| input.words.len()).sum()
     };
-    let feed = |input: &fragbuf_interpreter::Input| match input.location() {
-        Some(location) => Ok(Feed::Words(before(location))),
-        None if input.is(BuiltIn::VertexIndex) => Ok(Feed::VertexIndex),
-        None if input.is(BuiltIn::InstanceIndex) => Ok(Feed::InstanceIndex),
-        None => Err(format!("the input `{}` of a vertex", input.name)),
+    let source = |input: &fragbuf_interpreter::InterfaceVariable| match input.location() {
+        Some(location) => Ok(VertexInput::Words(before(location))),
+        None if input.is(BuiltIn::VertexIndex) => Ok(VertexInput::VertexIndex),
+        None if input.is(BuiltIn::InstanceIndex) => Ok(VertexInput::InstanceIndex),
+        None => Err(format!("the vertex input `{}`", input.name)),
     };
-    program.inputs.iter().map(feed).collect()
+    program.inputs.iter().map(source).collect()
 }

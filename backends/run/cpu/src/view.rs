@@ -1,34 +1,33 @@
-//! Memory as one program sees it: its buffers by number, everything at once.
+//! The memory of one program: its buffers and textures by number. Every access takes effect at once.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use fragbuf_interpreter::{Access, Atomic, Event, Operation, Place, Reply, Shared};
+use fragbuf_interpreter::{Access, Atomic, Event, Operation, Reply, SharedMemory, WordAddress};
 
-use crate::sampled::Sampled;
+use crate::bound_texture::BoundTexture;
 
-/// Buffers of a program, by its numbers.
+/// The buffers and textures of a program, by their numbers.
 #[derive(Clone)]
 pub(crate) struct View<'a> {
     pub(crate) buffers: Vec<&'a [AtomicU32]>,
-    /// Textures, by its numbers too.
-    pub(crate) textures: Vec<Sampled<'a>>,
-    /// Held during accesses of 64 bits, which are two words here.
+    pub(crate) textures: Vec<BoundTexture<'a>>,
+    /// Locked during 64-bit accesses, which are two words here.
     pub(crate) wide: &'a Mutex<()>,
 }
 
 impl View<'_> {
-    fn word(&self, place: Place) -> &AtomicU32 {
-        &self.buffers[usize::from(place.buffer)][place.word as usize]
+    fn word(&self, address: WordAddress) -> &AtomicU32 {
+        &self.buffers[usize::from(address.buffer)][address.word as usize]
     }
 
-    /// Carries out an access; the old value.
+    /// Performs an access; returns the old value.
     pub(crate) fn access(&self, access: &Access) -> u64 {
         if access.words == 1 { self.narrow(access).into() } else { self.wide(access) }
     }
 
     fn narrow(&self, access: &Access) -> u32 {
-        let word = self.word(access.place);
+        let word = self.word(access.address);
         let value = access.value as u32;
         match access.operation {
             Operation::Load => word.load(Ordering::Relaxed),
@@ -54,9 +53,9 @@ impl View<'_> {
     }
 
     fn wide(&self, access: &Access) -> u64 {
-        let _held = self.wide.lock().unwrap_or_else(PoisonError::into_inner);
-        let low = self.word(access.place);
-        let high = self.word(Place { word: access.place.word + 1, ..access.place });
+        let _guard = self.wide.lock().unwrap_or_else(PoisonError::into_inner);
+        let low = self.word(access.address);
+        let high = self.word(WordAddress { word: access.address.word + 1, ..access.address });
         let old = u64::from(low.load(Ordering::Relaxed)) | u64::from(high.load(Ordering::Relaxed)) << 32;
         if access.writes() {
             let new = access.new_value(old);
@@ -67,19 +66,19 @@ impl View<'_> {
     }
 }
 
-impl Shared for View<'_> {
+impl SharedMemory for View<'_> {
     #[inline]
     fn length(&self, buffer: u16) -> u32 {
         self.buffers[usize::from(buffer)].len() as u32
     }
 
     #[inline]
-    fn constant(&self, place: Place) -> u32 {
-        self.word(place).load(Ordering::Relaxed)
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.word(address).load(Ordering::Relaxed)
     }
 
-    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
-        self.textures[usize::from(texture)].texel(place)
+    fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]> {
+        self.textures[usize::from(texture)].texel(coordinates)
     }
 
     fn extent(&self, texture: u16) -> [u32; 3] {

@@ -1,18 +1,18 @@
-//! Dual depth peeling (Bavoil & Myers 2008): three targets, blending by the greater, a loop until a counter is zero.
+//! Dual depth peeling (Bavoil & Myers 2008): three colour attachments, max blending, a loop until a counter is zero.
 
-use fragbuf_cpu::Order;
+use fragbuf_cpu::FragmentOrder;
 use fragbuf_frame::LoopEnd;
 use fragbuf_templates::vocabulary::{Access, Blend, Element, Pass, Repeat, Resource, Row, Step, TextureFormat, Until};
 
 use crate::stage::{built_in, code, device, different, draw, picture, scattered, stacked, storage, texture};
 
-/// The least float: what is below every depth and every negated depth.
+/// The least float: below every depth and every negated depth.
 const NOTHING: u32 = 0xff7f_ffff;
 
 const BOUNDS: &str = "
 @fragment
-fn bounds(varyings: Varyings) -> @location(0) vec2<f32> {
-    return vec2<f32>(-varyings.position.z, varyings.position.z);
+fn bounds(inputs: FragmentInput) -> @location(0) vec2<f32> {
+    return vec2<f32>(-inputs.position.z, inputs.position.z);
 }
 ";
 
@@ -24,11 +24,11 @@ struct Peeled {
 }
 
 @fragment
-fn peel_both(varyings: Varyings) -> Peeled {
-    let depth = varyings.position.z;
-    let before = last_bounds_load(pixel_index(varyings.position.xy));
+fn peel_both(inputs: FragmentInput) -> Peeled {
+    let depth = inputs.position.z;
+    let before = last_bounds_load(pixel_index(inputs.position.xy));
     var peeled = Peeled(vec2<f32>(-3.402823466e+38), vec4<f32>(), vec4<f32>());
-    let color = varyings_fragment(varyings).color;
+    let color = fragment_from_inputs(inputs).color;
     let premultiplied = vec4<f32>(color.rgb * color.a, color.a);
     if depth > -before.x && depth < before.y {
         left_atomic_add(1u);
@@ -74,24 +74,24 @@ fn rows() -> Row {
         ],
         vec![
             Step::Pass(Pass::geometry("bounds", "bounds").target("last_bounds", Blend::Max)),
-            Step::Repeat(Repeat { body, until: Until::Zero("left".to_owned()), at_most: "64".into() }),
+            Step::Repeat(Repeat { body, until: Until::WordIsZero("left".to_owned()), at_most: "64".into() }),
             Step::Pass(picture("composite").uses("front", Access::Sampled).uses("back", Access::Sampled)),
         ],
     )
 }
 
 #[test]
-fn two_layers_a_round_are_the_picture() {
-    let texts = [("bounds", BOUNDS), ("peel_both", PEEL_BOTH), ("composite", COMPOSITE)];
-    let code = code(rows(), &texts, None).unwrap_or_else(|error| panic!("{error}"));
+fn peeling_two_layers_per_iteration_gives_the_image() {
+    let skeletons = [("bounds", BOUNDS), ("peel_both", PEEL_BOTH), ("composite", COMPOSITE)];
+    let code = code(rows(), &skeletons, None).unwrap_or_else(|error| panic!("{error}"));
     for (name, triangles) in [("stacked", stacked(14, 8)), ("scattered", scattered(9, 6))] {
         let expected = draw(&mut built_in("ab_ll"), &triangles);
-        for order in [Order::Submission, Order::Shuffled(2)] {
+        for order in [FragmentOrder::Submission, FragmentOrder::Shuffled(2)] {
             let seen = draw(&mut device(&code, order), &triangles);
             assert_eq!(different(&seen.pixels, &expected.pixels, 1.0 / 128.0), 0, "{name}, {order:?}");
-            let looped = &seen.loops[0];
-            assert_eq!((looped.until.as_str(), looped.end), ("`left` is zero", LoopEnd::Reached));
-            assert!((2..8).contains(&looped.rounds), "{name}: {looped:?}");
+            let report = &seen.loops[0];
+            assert_eq!((report.until.as_str(), report.end), ("`left` is zero", LoopEnd::ConditionMet));
+            assert!((2..8).contains(&report.iterations), "{name}: {report:?}");
         }
     }
 }

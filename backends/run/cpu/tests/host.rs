@@ -1,6 +1,6 @@
-//! A host step that reads many words: a histogram of the fragments of pixels, from which it decides how many slots there are.
+//! A host step that reads many words: it computes the number of slots from a histogram of fragments per pixel.
 
-use fragbuf_cpu::Order;
+use fragbuf_cpu::FragmentOrder;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Element, Host, HostCall, HostFunction, Pass, Resource, Row, Step};
 
@@ -8,8 +8,8 @@ use crate::stage::{code_with, device, draw, fragments, stacked, storage};
 
 const COUNT: &str = "
 @fragment
-fn count_each(varyings: Varyings) {
-    let before = counts_atomic_add(pixel_index(varyings.position.xy), 1u);
+fn count_each(inputs: FragmentInput) {
+    let before = counts_atomic_add(pixel_index(inputs.position.xy), 1u);
 }
 ";
 
@@ -22,14 +22,14 @@ fn histogram(@builtin(global_invocation_id) invocation: vec3<u32>) {
 }
 ";
 
-/// The last bin with a pixel.
+/// Returns the last bin with a pixel.
 fn deepest(call: &HostCall<'_>) -> Vec<u64> {
     let last = call.reads[0].iter().rposition(|pixels| *pixels > 0);
     vec![last.map_or(0, |bin| bin as u64)]
 }
 
 #[test]
-fn a_histogram_decides_how_many_slots_there_are() {
+fn a_histogram_determines_the_number_of_slots() {
     let row = storage(
         vec![
             Resource::new("counts", Element::Word, "").by("pixel", "pixels").cleared(0),
@@ -50,7 +50,7 @@ fn a_histogram_decides_how_many_slots_there_are() {
     let registry = Registry::builtin().with(host);
     let code = code_with(registry, row, &[("count_each", COUNT), ("histogram", HISTOGRAM)], None);
     let code = code.unwrap_or_else(|error| panic!("{error}"));
-    let mut seen = device(&code, Order::Submission);
+    let mut seen = device(&code, FragmentOrder::Submission);
     for count in [12, 4, 9] {
         let triangles = stacked(count, 3);
         draw(&mut seen, &triangles);
@@ -64,20 +64,20 @@ fn a_histogram_decides_how_many_slots_there_are() {
     }
 }
 
-/// What is cleared stays clear where a host step decides k, whose memory is for any, and where one decides how long a pool is.
+/// Cleared resources stay cleared after a host step sets k (memory is sized for any k) or the length of a pool.
 #[test]
-fn what_a_frame_begins_with_outlives_decisions() {
-    let said = || Resource::new("said", Element::Word, "").by("word", "2").cleared(3);
+fn initial_content_survives_host_steps() {
+    let sizes = || Resource::new("sizes", Element::Word, "").by("word", "2").cleared(3);
     let row = storage(
         vec![
-            said(),
+            sizes(),
             Resource::new("slots", Element::Word, "").by("slot", "k").by("pixel", "pixels").cleared(7),
             Resource::new("pool", Element::Word, "").by("node", "fragments").cleared(5),
         ],
-        vec![Step::Host(Host::new("allocate").reads_all("said").sets("k").sets("fragments"))],
+        vec![Step::Host(Host::new("allocate").reads_all("sizes").sets("k").sets("fragments"))],
     );
-    let code = code_with(Registry::builtin(), row, &[], None).unwrap_or_else(|error| panic!("{error}"));
-    let mut seen = device(&code, Order::Submission);
+    let code = code_with(Registry::builtin(), row, &[], Some(64)).unwrap_or_else(|error| panic!("{error}"));
+    let mut seen = device(&code, FragmentOrder::Submission);
     for _ in 0..2 {
         draw(&mut seen, &stacked(1, 1));
         assert_eq!(seen.symbol("k"), Some(3));

@@ -1,6 +1,7 @@
-//! Passes with attachments whose shaders are interleaved: the fixed function keeps the order of submission, what shaders share does not.
+//! Passes with attachments and interleaved shaders: fixed-function operations keep the submission order, shared memory does
+//! not.
 
-use fragbuf_cpu::{Code, Order};
+use fragbuf_cpu::{Code, FragmentOrder};
 use fragbuf_frame::LoopEnd;
 use fragbuf_templates::vocabulary::{
     Access, Blend, Compare, DepthState, Element, Pass, Repeat, Resource, Row, Step, TextureFormat, Until,
@@ -11,18 +12,18 @@ use crate::stage::{FAR, Triangle, code, device, draw, numbers, stacked, storage,
 
 const SEEDS: std::ops::Range<u64> = 0..6;
 
-/// Liu et al. 2009: k keys in no order, without a lock, again and again until nothing changes.
+/// Liu et al. 2009: stores k unordered keys without a lock, repeated until no key changes.
 const STORE_AGAIN: &str = "
 @fragment
-fn store_again(varyings: Varyings) -> @location(0) vec4<f32> {
-    let entry = fragment_pack(varyings_fragment(varyings));
-    let pixel = pixel_index(varyings.position.xy);
+fn store_again(inputs: FragmentInput) -> @location(0) vec4<f32> {
+    let entry = fragment_pack(fragment_from_inputs(inputs));
+    let pixel = pixel_index(inputs.position.xy);
     var worst = 0u;
     var worst_key = 0u;
     for (var slot = 0u; slot < frame.k; slot++) {
         let key = keys_load(slot, pixel);
         if key == entry.key {
-            return vec4<f32>(varyings.position.z);
+            return vec4<f32>(inputs.position.z);
         }
         if key >= worst_key {
             worst = slot;
@@ -33,7 +34,7 @@ fn store_again(varyings: Varyings) -> @location(0) vec4<f32> {
         keys_store(worst, pixel, entry.key);
         changed_store(1u);
     }
-    return vec4<f32>(varyings.position.z);
+    return vec4<f32>(inputs.position.z);
 }
 ";
 
@@ -52,12 +53,12 @@ fn repeated(at_most: &'static str) -> Arc<Code> {
             texture("last_drawn", TextureFormat::R32Float).cleared(0),
             Resource::new("changed", Element::Word, ""),
         ],
-        vec![Step::Repeat(Repeat { body, until: Until::Zero("changed".to_owned()), at_most: at_most.into() })],
+        vec![Step::Repeat(Repeat { body, until: Until::WordIsZero("changed".to_owned()), at_most: at_most.into() })],
     );
     code(rows, &[("store_again", STORE_AGAIN)], Some(4)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The keys of each pixel, least first.
+/// Returns the keys of each pixel in ascending order.
 fn kept(words: &[u32]) -> Vec<Vec<u32>> {
     let pixels = words.len() / 4;
     let mut kept: Vec<Vec<u32>> =
@@ -67,39 +68,39 @@ fn kept(words: &[u32]) -> Vec<Vec<u32>> {
 }
 
 #[test]
-fn repeated_passes_repair_what_races_lost() {
+fn repeated_passes_restore_keys_lost_to_races() {
     let (whole, once) = (repeated("64"), repeated("1"));
     let triangles = stacked(14, 2);
-    let mut in_order = device(&whole, Order::Submission);
+    let mut in_order = device(&whole, FragmentOrder::Submission);
     let first = draw(&mut in_order, &triangles);
-    // Whatever comes in order is kept at once; the second round changes nothing.
-    assert_eq!((first.loops[0].rounds, first.loops[0].end), (2, LoopEnd::Reached));
+    // In submission order the first iteration keeps all keys; the second changes nothing.
+    assert_eq!((first.loops[0].iterations, first.loops[0].end), (2, LoopEnd::ConditionMet));
     let expected = kept(&in_order.words("keys").unwrap());
     let drawn = in_order.words("last_drawn").unwrap();
     let mut races = 0;
     for seed in SEEDS {
-        let mut repaired = device(&whole, Order::Shuffled(seed));
+        let mut repaired = device(&whole, FragmentOrder::Shuffled(seed));
         let picture = draw(&mut repaired, &triangles);
-        assert_eq!(picture.loops[0].end, LoopEnd::Reached);
-        assert!(picture.loops[0].rounds > 2, "seed {seed} shows no race");
+        assert_eq!(picture.loops[0].end, LoopEnd::ConditionMet);
+        assert!(picture.loops[0].iterations > 2, "seed {seed} shows no race");
         assert!(kept(&repaired.words("keys").unwrap()) == expected, "seed {seed}");
-        // What the depth test lets through does not depend on the order of the shaders.
+        // The depth test does not depend on the order of the shaders.
         assert!(repaired.words("last_drawn").unwrap() == drawn && picture.samples == first.samples, "seed {seed}");
         assert!(repaired.words("nearest") == in_order.words("nearest"), "seed {seed}");
-        let mut racing = device(&once, Order::Shuffled(seed));
-        assert_eq!(draw(&mut racing, &triangles).loops[0].end, LoopEnd::Cut);
+        let mut racing = device(&once, FragmentOrder::Shuffled(seed));
+        assert_eq!(draw(&mut racing, &triangles).loops[0].end, LoopEnd::LimitReached);
         races +=
             kept(&racing.words("keys").unwrap()).iter().zip(&expected).filter(|(seen, right)| seen != right).count();
     }
-    assert!(races > 100, "{races} pixels lost fragments in a single round");
+    assert!(races > 100, "{races} pixels lost fragments in a single iteration");
 }
 
 const COUNT_RUNS: &str = "
 @fragment
-fn count_runs(varyings: Varyings) -> @location(0) vec4<f32> {
-    let pixel = pixel_index(varyings.position.xy);
+fn count_runs(inputs: FragmentInput) -> @location(0) vec4<f32> {
+    let pixel = pixel_index(inputs.position.xy);
     let order = runs_atomic_add(pixel, 1u);
-    let color = varyings_fragment(varyings).color;
+    let color = fragment_from_inputs(inputs).color;
     return vec4<f32>(color.rgb * color.a, color.a);
 }
 ";
@@ -117,7 +118,7 @@ fn blended(early: bool, blend: Blend) -> Arc<Code> {
     code(rows, &[("count_runs", COUNT_RUNS)], None).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Triangles in an order that is neither from the front nor from the back.
+/// Returns triangles in an order that is neither front to back nor back to front.
 fn mixed() -> Vec<Triangle> {
     let (mut triangles, mut number) = (stacked(12, 4), numbers(5));
     for at in (1..triangles.len()).rev() {
@@ -127,26 +128,26 @@ fn mixed() -> Vec<Triangle> {
 }
 
 #[test]
-fn blending_keeps_the_order_of_submission_under_any_schedule() {
+fn blending_keeps_the_submission_order_under_any_schedule() {
     for blend in [Blend::Over, Blend::Under, Blend::Replace] {
-        let expected = draw(&mut device(&blended(false, blend), Order::Submission), &mixed());
+        let expected = draw(&mut device(&blended(false, blend), FragmentOrder::Submission), &mixed());
         for seed in SEEDS {
-            let seen = draw(&mut device(&blended(false, blend), Order::Shuffled(seed)), &mixed());
+            let seen = draw(&mut device(&blended(false, blend), FragmentOrder::Shuffled(seed)), &mixed());
             assert!(seen.pixels == expected.pixels, "{blend:?}, seed {seed}");
         }
     }
 }
 
-/// How many fragments run depends on the depths before each: on the order of submission, and on nothing else.
+/// The number of fragments that run depends only on the submission order.
 #[test]
-fn early_tests_come_in_the_order_of_submission_under_any_schedule() {
-    let mut in_order = device(&blended(true, Blend::Over), Order::Submission);
+fn early_tests_keep_the_submission_order_under_any_schedule() {
+    let mut in_order = device(&blended(true, Blend::Over), FragmentOrder::Submission);
     let expected = draw(&mut in_order, &mixed());
     let runs = in_order.words("runs").unwrap();
     let all = crate::stage::fragments(&mixed());
-    assert!(runs.iter().zip(&all).filter(|(runs, all)| runs < all).count() > 50, "tests turn fragments away");
+    assert!(runs.iter().zip(&all).filter(|(runs, all)| runs < all).count() > 50, "the tests reject fragments");
     for seed in SEEDS {
-        let mut shuffled = device(&blended(true, Blend::Over), Order::Shuffled(seed));
+        let mut shuffled = device(&blended(true, Blend::Over), FragmentOrder::Shuffled(seed));
         let seen = draw(&mut shuffled, &mixed());
         assert!(shuffled.words("runs").unwrap() == runs && seen.pixels == expected.pixels, "seed {seed}");
         assert_eq!(seen.samples, expected.samples);

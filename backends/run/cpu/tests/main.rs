@@ -1,4 +1,4 @@
-//! Whole plans of a few lines each: what the fixed function, textures, loops, queries and arguments of a plan do on this device.
+//! Runs small plans: fixed function, textures, loops, queries and indirect arguments on this device.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,8 +8,9 @@ mod indirect;
 mod interleaved;
 mod objects;
 mod peeling;
+mod peeling_loop;
 mod primitives;
-mod refusals;
+mod rejected_plans;
 mod routing;
 mod stage;
 mod textures;

@@ -1,7 +1,7 @@
-//! Stencil routing (Myers & Bavoil 2007): the i-th fragment of a pixel lands in its sample i. Right at edges only where a
-//! triangle covers pixels as wholes.
+//! Stencil routing (Myers & Bavoil 2007): the i-th fragment of a pixel is stored in its sample i. At edges it is correct only
+//! with whole-pixel coverage.
 
-use fragbuf_cpu::{Code, Order};
+use fragbuf_cpu::{Code, FragmentOrder};
 use fragbuf_templates::vocabulary::{
     Access, Blend, Compare, Coverage, Pass, Repeat, Row, Samples, StencilOperation, StencilState, Step, TextureFormat,
     Until,
@@ -17,8 +17,8 @@ struct Stored {
 }
 
 @fragment
-fn store_routed(varyings: Varyings) -> Stored {
-    let fragment = varyings_fragment(varyings);
+fn store_routed(inputs: FragmentInput) -> Stored {
+    let fragment = fragment_from_inputs(inputs);
     return Stored(fragment.depth, fragment.color);
 }
 ";
@@ -34,8 +34,8 @@ fn resolve_samples(@builtin(position) position: vec4<f32>) -> @location(0) vec4<
     let pixel = pixel_index(position.xy);
     var sum = vec4<f32>();
     var last = -1.0;
-    // The next behind the last, as often as there are samples.
-    for (var round = 0u; round < textureNumSamples(depths); round++) {
+    // Selects the nearest sample behind the last one, once per sample.
+    for (var layer = 0u; layer < textureNumSamples(depths); layer++) {
         var nearest = 1.0;
         var color = vec4<f32>();
         for (var sample = 0u; sample < frame.k; sample++) {
@@ -52,10 +52,11 @@ fn resolve_samples(@builtin(position) position: vec4<f32>) -> @location(0) vec4<
 }
 ";
 
-const TEXTS: [(&str, &str); 3] =
+const SKELETONS: [(&str, &str); 3] =
     [("nothing", NOTHING), ("store_routed", STORE_ROUTED), ("resolve_samples", RESOLVE_SAMPLES)];
 
-/// The pass that sees the pixels whose last sample was passed: an occlusion count, for a shader that counts would run before the test.
+/// The pass that counts the pixels with more fragments than samples. It is an occlusion query, because a shader that counts
+/// would run before the test.
 const OVERFLOW: usize = 2;
 
 fn stencil(compare: Compare, both: [StencilOperation; 2], reference: &'static str) -> Option<StencilState> {
@@ -65,18 +66,18 @@ fn stencil(compare: Compare, both: [StencilOperation; 2], reference: &'static st
 
 fn rows(coverage: Coverage) -> Row {
     use StencilOperation::{DecrementClamp, Keep, Replace};
-    let samples = |mask: &'static str| Some(Samples { count: "k".into(), mask: mask.into(), coverage });
+    let samples = |mask: &'static str| Some(Samples { count: "capacity".into(), mask: mask.into(), coverage });
     let mut route = Pass::fullscreen("route", "nothing");
     route.state.stencil = stencil(Compare::Always, [Keep, Replace], "iteration + 2");
     route.state.samples = samples("pow2(iteration)");
     let mut store =
         Pass::geometry("store", "store_routed").target("depths", Blend::Replace).target("colors", Blend::Replace);
     store.state.stencil = stencil(Compare::Equal, [DecrementClamp, DecrementClamp], "2");
-    store.state.samples = samples("pow2(k) - 1");
+    store.state.samples = samples("pow2(capacity) - 1");
     let mut overflow = Pass::fullscreen("overflow", "nothing");
     overflow.state.stencil = stencil(Compare::Equal, [Keep, Keep], "0");
-    overflow.state.samples = samples("pow2(k - 1)");
-    let rounds = Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() };
+    overflow.state.samples = samples("pow2(capacity - 1)");
+    let clears = Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() };
     storage(
         vec![
             sampled("depths", TextureFormat::R32Float).cleared(FAR),
@@ -84,7 +85,7 @@ fn rows(coverage: Coverage) -> Row {
             sampled("routing", TextureFormat::Depth24PlusStencil8),
         ],
         vec![
-            Step::Repeat(rounds),
+            Step::Repeat(clears),
             Step::Pass(store),
             Step::Pass(overflow),
             Step::Pass(picture("resolve_samples").uses("depths", Access::Sampled).uses("colors", Access::Sampled)),
@@ -93,22 +94,22 @@ fn rows(coverage: Coverage) -> Row {
 }
 
 fn routed(coverage: Coverage, k: u32) -> Arc<Code> {
-    code(rows(coverage), &TEXTS, Some(k)).unwrap_or_else(|error| panic!("{error}"))
+    code(rows(coverage), &SKELETONS, Some(k)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
-fn every_fragment_lands_in_a_sample_of_its_own_at_edges_too() {
+fn every_fragment_gets_a_separate_sample_at_edges_too() {
     for (k, count, seed) in [(2, 2, 6), (4, 4, 2), (8, 8, 3), (8, 8, 4)] {
         let triangles = scattered(count, seed);
         let expected = draw(&mut built_in("ab_ll"), &triangles);
-        for order in [Order::Submission, Order::Shuffled(7)] {
+        for order in [FragmentOrder::Submission, FragmentOrder::Shuffled(7)] {
             let mut device = device(&routed(Coverage::WholePixel, k), order);
             let seen = draw(&mut device, &triangles);
             assert_eq!(different(&seen.pixels, &expected.pixels, 1.0 / 255.0), 0, "k = {k}, seed {seed}");
             assert_eq!(seen.samples[OVERFLOW], 0, "k = {k}");
         }
-        // With multisample coverage fragments at edges are half there.
-        let split = draw(&mut device(&routed(Coverage::PerSample, k), Order::Submission), &triangles);
+        // With multisample coverage, fragments at edges cover a part of the samples.
+        let split = draw(&mut device(&routed(Coverage::PerSample, k), FragmentOrder::Submission), &triangles);
         assert!(different(&split.pixels, &expected.pixels, 1.0 / 255.0) > 4, "k = {k}, seed {seed}");
     }
 }
@@ -117,9 +118,9 @@ fn every_fragment_lands_in_a_sample_of_its_own_at_edges_too() {
 fn pixels_with_more_fragments_than_samples_are_counted() {
     for seed in 9..12 {
         let triangles = scattered(24, seed);
-        let seen = draw(&mut device(&routed(Coverage::WholePixel, 4), Order::Submission), &triangles);
-        let crowded = fragments(&triangles).into_iter().filter(|count| *count > 4).count();
-        assert!(crowded > 10);
-        assert_eq!(seen.samples[OVERFLOW], crowded as u64, "seed {seed}");
+        let seen = draw(&mut device(&routed(Coverage::WholePixel, 4), FragmentOrder::Submission), &triangles);
+        let over_capacity = fragments(&triangles).into_iter().filter(|count| *count > 4).count();
+        assert!(over_capacity > 10);
+        assert_eq!(seen.samples[OVERFLOW], over_capacity as u64, "seed {seed}");
     }
 }

@@ -1,13 +1,13 @@
-//! What an earlier pass has drawn, read as a texture: whole numbers, floats, depth, stencil; one sample and several.
+//! Reads attachments of an earlier pass as textures: integers, floats, depth, stencil; single and multisampled.
 
-use fragbuf_cpu::{Code, Order};
+use fragbuf_cpu::{Code, FragmentOrder};
 use fragbuf_templates::vocabulary::{
     Access, Blend, Compare, Coverage, Element, Pass, Resource, Row, Samples, StencilOperation, StencilState, Step,
     TextureFormat,
 };
 use std::sync::Arc;
 
-use crate::peeling::depth;
+use crate::peeling_loop::depth;
 use crate::stage::{FAR, SIZE, Triangle, code, device, draw, quad, sampled, storage, texture};
 
 const DRAW_EACH: &str = "
@@ -21,8 +21,8 @@ struct Drawn {
 }
 
 @fragment
-fn draw_each(varyings: Varyings, @builtin(front_facing) front: bool) -> Drawn {
-    let color = varyings_fragment(varyings).color;
+fn draw_each(inputs: FragmentInput, @builtin(front_facing) front: bool) -> Drawn {
+    let color = fragment_from_inputs(inputs).color;
     return Drawn(0x80000001u, vec2<u32>(0x10003u, 0xfedcu), color.r, vec2<f32>(-color.g, color.b), color, 4.0 * color + f32(!front));
 }
 ";
@@ -57,9 +57,9 @@ fn seen(count: &'static str) -> Resource {
     Resource::new("seen", Element::Word, "").by("word", count).cleared(0)
 }
 
-fn run(rows: Row, texts: &[(&str, &str)], keep: Option<u32>, triangles: &[Triangle]) -> Vec<u32> {
-    let code: Arc<Code> = code(rows, texts, keep).unwrap_or_else(|error| panic!("{error}"));
-    let mut device = device(&code, Order::Submission);
+fn run(rows: Row, skeletons: &[(&str, &str)], keep: Option<u32>, triangles: &[Triangle]) -> Vec<u32> {
+    let code: Arc<Code> = code(rows, skeletons, keep).unwrap_or_else(|error| panic!("{error}"));
+    let mut device = device(&code, FragmentOrder::Submission);
     draw(&mut device, triangles);
     device.words("seen").unwrap()
 }
@@ -89,15 +89,15 @@ fn every_format_is_read_as_it_was_drawn() {
         run(rows, &[("draw_each", DRAW_EACH), ("read_each", READ_EACH)], None, &quad([2, 5, 1, 4], 0.625, color));
     let floats = |at: usize| -> [f32; 4] { std::array::from_fn(|index| f32::from_bits(seen[at + index])) };
     assert_eq!(seen[..4], [0x8000_0001, 0, 0, 1]);
-    // Attributes are weighed: equal corners, equal bits.
+    // Interpolation between equal corners is exact.
     assert_eq!(floats(4), [0.2, 0.0, 0.0, 1.0]);
     assert_eq!(floats(8), [-0.4, 0.6, 0.0, 1.0]);
     assert_eq!(floats(12), [51.0, 102.0, 153.0, 204.0].map(|byte: f32| byte / 255.0));
     for (seen, exact) in floats(16).into_iter().zip(color) {
-        assert!((seen - 4.0 * exact).abs() < 1.0 / 512.0, "{seen}: the quad's front is seen");
+        assert!((seen - 4.0 * exact).abs() < 1.0 / 512.0, "{seen}: the front of the quad is visible");
     }
     assert_eq!(floats(20), [0.625, 1.0, 1.0, 1.0]);
-    assert_eq!(seen[28..], [3, 0xfedc, 0, 1], "sixteen bits of each");
+    assert_eq!(seen[28..], [3, 0xfedc, 0, 1], "16 bits per channel");
     assert_eq!(floats(24), [SIZE as f32, SIZE as f32, 1.0, 0.0]);
 }
 
@@ -108,7 +108,7 @@ struct Masked {
 }
 
 @fragment
-fn masked(varyings: Varyings, @builtin(sample_mask) covered: u32) -> Masked {
+fn masked(inputs: FragmentInput, @builtin(sample_mask) covered: u32) -> Masked {
     return Masked(covered + 16u, covered & 6u);
 }
 ";
@@ -127,7 +127,8 @@ fn read_samples() {
 fn samples_are_read_one_by_one() {
     let mut pass = Pass::geometry("masked", "masked").target("numbers", Blend::Replace);
     pass.state.depth = depth("tested", Compare::Less, true);
-    pass.state.samples = Some(Samples { count: "k".into(), mask: "pow2(k) - 1".into(), coverage: Coverage::PerSample });
+    pass.state.samples =
+        Some(Samples { count: "capacity".into(), mask: "pow2(capacity) - 1".into(), coverage: Coverage::PerSample });
     let read = Pass::compute("read_samples", "read_samples", "1", "1")
         .uses("numbers", Access::Sampled)
         .uses("tested", Access::Sampled)
@@ -140,7 +141,7 @@ fn samples_are_read_one_by_one() {
         ],
         vec![Step::Pass(pass), Step::Pass(read)],
     );
-    // Of the four samples of pixel (1, 1), at 3/8, 7/8, 1/8 and 5/8 from its left, those left of its middle are 0 and 2.
+    // The four samples of pixel (1, 1) are at 3/8, 7/8, 1/8 and 5/8 from its left: 0 and 2 are left of the centre.
     let left = Triangle { corners: [[1.5, -40.0, 0.25], [-60.0, 1.0, 0.25], [1.5, 42.0, 0.25]], color: [1.0; 4] };
     let seen = run(rows, &[("masked", MASKED), ("read_samples", READ_SAMPLES)], Some(4), &[left]);
     assert_eq!(seen, [0, 0, 21, 0, 256, 256, 64, 256]);
@@ -160,7 +161,7 @@ fn read_stencil() {
 ";
 
 #[test]
-fn a_stencil_is_read_as_whole_numbers() {
+fn a_stencil_is_read_as_integers() {
     let mut pass = Pass::geometry("nothing", "nothing");
     pass.state.stencil = Some(StencilState {
         resource: "routing".to_owned(),
@@ -174,6 +175,6 @@ fn a_stencil_is_read_as_whole_numbers() {
         .uses("seen", Access::Plain);
     let routing = texture("routing", TextureFormat::Depth24PlusStencil8).cleared(0x1234_5603);
     let rows = storage(vec![routing, seen("2")], vec![Step::Pass(pass), Step::Pass(read)]);
-    let texts = [("nothing", NOTHING), ("read_stencil", READ_STENCIL)];
-    assert_eq!(run(rows, &texts, None, &quad([0, 4, 0, 4], 0.5, [1.0; 4])), [77, 3]);
+    let skeletons = [("nothing", NOTHING), ("read_stencil", READ_STENCIL)];
+    assert_eq!(run(rows, &skeletons, None, &quad([0, 4, 0, 4], 0.5, [1.0; 4])), [77, 3]);
 }

@@ -1,23 +1,23 @@
-//! Boxes around objects, for occlusion queries (D13 §3.3): their triangles, their corners as vertices, and which of them no
-//! query can judge.
+//! The boxes around objects that occlusion queries draw (D13 §3.3): their vertices, and the test for boxes that no query can
+//! decide.
 //!
-//! In: the least and the greatest corner. Out: words of vertices and indices of triangles. Nothing is drawn here.
+//! Input: the least and the greatest corner of a box. Output: vertex words and triangle indices. This module draws nothing.
 
-/// The triangles of a box, two for each face. Bits 0, 1 and 2 of a corner's number say whether it is the greater along x, y and z.
+/// The triangles of a box, two per face. Bits 0, 1 and 2 of a corner's number say whether it is the greater along x, y and z.
 pub const BOX_TRIANGLES: [u32; 36] =
     [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
 
-/// The corners of a box.
+/// The number of corners of a box.
 pub const BOX_CORNERS: usize = 8;
 
-/// The eight corners, by their numbers.
+/// Returns the eight corners, indexed by their numbers.
 pub fn box_corners(least: [f32; 3], greatest: [f32; 3]) -> [[f32; 3]; BOX_CORNERS] {
     std::array::from_fn(|corner| {
         std::array::from_fn(|axis| if corner >> axis & 1 == 1 { greatest[axis] } else { least[axis] })
     })
 }
 
-/// The corners as vertices of `stride` words: the position first, all other attributes zero.
+/// Returns the corners as vertices of `stride` words: the position first, all other attributes zero.
 pub fn box_vertices(least: [f32; 3], greatest: [f32; 3], stride: usize) -> Vec<u32> {
     let mut vertices = vec![0; BOX_CORNERS * stride];
     for (vertex, corner) in vertices.chunks_mut(stride.max(3)).zip(box_corners(least, greatest)) {
@@ -26,8 +26,8 @@ pub fn box_vertices(least: [f32; 3], greatest: [f32; 3], stride: usize) -> Vec<u
     vertices
 }
 
-/// Whether a corner, in clip space, lies where the near plane cuts the box: then none of its samples may pass although the
-/// object is visible. A coordinate that is not a number counts as cut.
+/// Whether a corner in clip space is in front of the near plane. Clipping can then remove all samples of the box although the
+/// object is visible. A NaN coordinate counts as clipped.
 pub fn is_cut_by_near_plane(z: f32, w: f32) -> bool {
     !(z >= 0.0 && w > 0.0)
 }

@@ -1,57 +1,57 @@
-//! What can be wrong with a plan's numbers, as values: each says what is wrong and what the way out is.
+//! Errors in the numbers of a plan's frame. Each message says what is wrong and how to fix it.
 
 use std::fmt;
 
 use fragbuf_templates::vocabulary::FormulaError;
 
-/// Why a frame has no numbers.
+/// Why a number of a frame cannot be computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// The plan has a step or a resource that is not run here.
+    /// The plan has a step or a resource that fragbuf's devices do not run.
     Unsupported {
         /// The step or resource.
         what: String,
-        /// The way out.
-        hint: String,
+        /// The suggested fix.
+        help: String,
     },
     /// A formula has no value.
     Formula {
-        /// Whose formula.
+        /// The resource or setting that the formula computes.
         what: String,
-        /// Why.
+        /// The reason.
         error: FormulaError,
     },
-    /// A number is beyond a limit.
+    /// A number exceeds a limit.
     TooLarge {
         /// The resource, or the dimension of the frame.
         what: String,
-        /// What is needed, in the limit's unit.
+        /// The required amount, in the limit's unit.
         needed: u64,
-        /// What there may be.
+        /// The limit.
         limit: u64,
         /// The limit's name.
         limit_name: &'static str,
-        /// The way out.
-        hint: &'static str,
+        /// The suggested fix.
+        help: &'static str,
     },
-    /// A value that the plan does not take.
+    /// A value that the plan does not accept.
     BadValue {
         /// The value's name.
         name: String,
-        /// What it must be.
-        wanted: String,
+        /// The accepted values.
+        expected: String,
     },
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Unsupported { what, hint } => write!(f, "the runtime does not run {what}: {hint}"),
+            Error::Unsupported { what, help } => write!(f, "the runtime does not support {what}: {help}"),
             Error::Formula { what, error } => write!(f, "the size of {what} has no value: {error}"),
-            Error::TooLarge { what, needed, limit, limit_name, hint } => {
-                write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {hint}")
+            Error::TooLarge { what, needed, limit, limit_name, help } => {
+                write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
-            Error::BadValue { name, wanted } => write!(f, "{name} must be {wanted}"),
+            Error::BadValue { name, expected } => write!(f, "{name} must be {expected}"),
         }
     }
 }

@@ -1,39 +1,44 @@
 //! A frame of a plan, for every device that runs one: the cursor that steps through its commands, values of the symbols in
-//! formulas, sizes of buffers, memory for fragments that nobody has counted yet, uniform words, counters.
+//! formulas, sizes of buffers, capacities for uncounted fragments, uniform words, counters.
 //!
-//! In: a plan and the frame's size. Out: turns, numbers and words. No device is named here, and nothing is allocated.
+//! Input: a plan and the frame's size. Output: steps, numbers and words. This crate names no device and allocates nothing on
+//! one.
 
 mod boxes;
 mod counters;
 mod cursor;
 mod error;
-mod looped;
+mod host_step;
+mod loop_report;
+mod loops;
 mod pass_time;
-mod room;
+mod pool_size;
+mod step;
 mod uniforms;
 mod values;
 
 pub use boxes::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
-pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTLY_COVERED, POOL_EXHAUSTED};
-pub use cursor::{Cursor, Question, Run, Span, Turn, most_iterations, most_runs};
+pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
+pub use cursor::Cursor;
 pub use error::Error;
-pub use looped::{LoopEnd, Looped};
+pub use loop_report::{LoopEnd, LoopReport};
+pub use loops::{max_iterations, max_pass_runs};
 pub use pass_time::PassTime;
-pub use room::{Counting, Room, Sizing, bytes, decided, reserve, room_after, values};
-pub use uniforms::{Value, set, zeros};
+pub use pool_size::{
+    PoolSize, Readbacks, Sizing, initial_values, pool_size_after, reserve, resource_bytes, reuse_pool_sizes,
+};
+pub use step::{FrameStep, HostWait, PassRun, WordRange};
+pub use uniforms::{Value, set_uniform, zero_uniforms};
 pub use values::Values;
 
 use fragbuf_codegen::{Plan, ResourceId};
 
-/// The handle of a resource by name, for what comes from outside.
+/// Returns the handle of a resource whose name comes from the caller.
 pub fn resource(plan: &Plan, name: &str) -> Result<ResourceId, Error> {
     plan.resource_id(name).ok_or_else(|| unsupported(format!("`{name}`, which the plan does not have")))
 }
 
-/// A refusal of something that a plan says and no device here does.
+/// Returns the error for a part of a plan that no device of fragbuf supports.
 pub fn unsupported(what: String) -> Error {
-    Error::Unsupported {
-        what,
-        hint: "follow the manifest with an engine of your own, or take another technique".to_owned(),
-    }
+    Error::Unsupported { what, help: "run the manifest with your own engine, or use another technique".to_owned() }
 }

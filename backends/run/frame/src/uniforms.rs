@@ -1,6 +1,6 @@
-//! The description's own uniforms, by name: values in, the words of the uniform buffer out.
+//! Values of the description's uniforms, by name.
 //!
-//! Offsets are the model's ([`UniformBlock`]); nothing here knows a layout rule.
+//! Input: named values. Output: the words of the uniform buffer. The model computes the offsets ([`UniformBlock`]).
 
 use fragbuf_model::{Uniform, UniformBlock, UniformType};
 
@@ -48,23 +48,23 @@ impl Value {
     }
 }
 
-/// The words of the block, all zero.
-pub fn zeros(uniforms: &[Uniform]) -> Vec<u32> {
+/// Returns the words of the block, all zero.
+pub fn zero_uniforms(uniforms: &[Uniform]) -> Vec<u32> {
     vec![0; UniformBlock::of(uniforms).size as usize / 4]
 }
 
-/// Puts one value into the words of the block.
-pub fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
+/// Writes one value into the words of the block.
+pub fn set_uniform(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) -> Result<(), Error> {
     let offsets = UniformBlock::of(uniforms).offsets;
     let found = offsets.into_iter().zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
     let Some((offset, uniform)) = found else {
         let names: Vec<&str> = uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-        let wanted = format!("one of the description's uniforms ({})", names.join(", "));
-        return Err(Error::BadValue { name: format!("uniform `{name}`"), wanted });
+        let expected = format!("one of the description's uniforms ({})", names.join(", "));
+        return Err(Error::BadValue { name: format!("uniform `{name}`"), expected });
     };
     let kind = uniform.kind.value;
     if kind != value.kind() {
-        return Err(Error::BadValue { name: format!("uniform `{name}`"), wanted: kind.keyword().to_owned() });
+        return Err(Error::BadValue { name: format!("uniform `{name}`"), expected: kind.keyword().to_owned() });
     }
     for (word, value) in words.iter_mut().skip(offset as usize / 4).zip(value.words()) {
         *word = value;
@@ -75,31 +75,31 @@ pub fn set(words: &mut [u32], uniforms: &[Uniform], name: &str, value: Value) ->
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    use fragbuf_model::{Origin, Spanned};
+    use fragbuf_model::{SourceSpan, Spanned};
 
     use super::*;
 
     fn uniform(name: &str, kind: UniformType) -> Uniform {
-        let origin = Origin::new("test", 1, 1);
-        Uniform { name: Spanned::new(name.to_owned(), origin.clone()), kind: Spanned::new(kind, origin) }
+        let span = SourceSpan::new("test", 1, 1);
+        Uniform { name: Spanned::new(name.to_owned(), span.clone()), kind: Spanned::new(kind, span) }
     }
 
     #[test]
     fn a_vector_starts_at_its_alignment() {
         let block = [uniform("a", UniformType::F32), uniform("b", UniformType::Vec3), uniform("c", UniformType::U32)];
-        let mut words = zeros(&block);
+        let mut words = zero_uniforms(&block);
         assert_eq!(words.len(), 8);
-        set(&mut words, &block, "b", Value::Vec3([1.0, 2.0, 3.0])).unwrap();
-        set(&mut words, &block, "c", Value::U32(7)).unwrap();
+        set_uniform(&mut words, &block, "b", Value::Vec3([1.0, 2.0, 3.0])).unwrap();
+        set_uniform(&mut words, &block, "c", Value::U32(7)).unwrap();
         assert_eq!(words[4..], [1.0f32.to_bits(), 2.0f32.to_bits(), 3.0f32.to_bits(), 7]);
     }
 
     #[test]
-    fn a_wrong_type_and_an_unknown_name_say_what_is_wanted() {
+    fn errors_name_the_expected_type_and_the_known_uniforms() {
         let block = [uniform("a", UniformType::F32)];
-        let mut words = zeros(&block);
-        let wrong = set(&mut words, &block, "a", Value::U32(1)).unwrap_err();
+        let mut words = zero_uniforms(&block);
+        let wrong = set_uniform(&mut words, &block, "a", Value::U32(1)).unwrap_err();
         assert_eq!(wrong.to_string(), "uniform `a` must be f32");
-        assert!(set(&mut words, &block, "b", Value::U32(1)).unwrap_err().to_string().contains("(a)"));
+        assert!(set_uniform(&mut words, &block, "b", Value::U32(1)).unwrap_err().to_string().contains("(a)"));
     }
 }

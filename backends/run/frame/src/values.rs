@@ -1,5 +1,5 @@
-//! Values of a plan's symbols at one moment: those of generation time come from the plan, the frame's size and k from the
-//! caller, and the rest from host steps or from what the caller reserves.
+//! Values of a plan's symbols at one point of a frame. Values of generation time come from the plan, the frame's size and k from
+//! the caller, and the rest from host steps or from the capacity that the caller reserves.
 
 use std::sync::Arc;
 
@@ -7,74 +7,74 @@ use fragbuf_codegen::{Plan, Quantity, SymbolId, SymbolTable};
 
 use crate::Error;
 
-/// The values at one moment. Rows are those of a slice: formulas and shaders see one slice at a time.
+/// The values at one point of a frame. The height is that of a slice, because formulas and shaders see one slice at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Values {
     table: Arc<SymbolTable>,
-    given: Vec<Assigned>,
-    /// Rows of the whole frame.
+    assignments: Vec<Assignment>,
+    /// The rows of the whole frame.
     height: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Assigned {
-    /// What the plan says.
-    Nothing,
-    Number(u64),
-    /// So many for every pixel of a slice, its padding apart.
+enum Assignment {
+    /// The value in the plan, if it has one.
+    Unset,
+    Constant(u64),
+    /// A number for every pixel of a slice, without its padding.
     PerPixel(u32),
 }
 
 impl Values {
-    /// The values of a frame of this size, in one slice.
+    /// Returns the values of a frame of this size, in one slice.
     pub fn new(plan: &Plan, (width, height): (u32, u32)) -> Self {
-        let given = plan.symbols.iter().map(|_| Assigned::Nothing).collect();
-        let mut values = Values { table: plan.symbols.clone(), given, height };
+        let assignments = plan.symbols.iter().map(|_| Assignment::Unset).collect();
+        let mut values = Values { table: plan.symbols.clone(), assignments, height };
         values.set(SymbolId::WIDTH, width.into());
         values.set(SymbolId::HEIGHT, height.into());
         values
     }
 
-    /// What is fixed once code is made, whatever the frame: k is the greatest that the code serves.
+    /// Returns the values that the code fixes for frames of any size: k is the capacity of the code.
     pub fn of_code(plan: &Plan) -> Self {
-        let given = plan.symbols.iter().map(|_| Assigned::Nothing).collect();
-        let mut values = Values { table: plan.symbols.clone(), given, height: 0 };
+        let assignments = plan.symbols.iter().map(|_| Assignment::Unset).collect();
+        let mut values = Values { table: plan.symbols.clone(), assignments, height: 0 };
         values.set(SymbolId::K, plan.capacity().into());
         values
     }
 
-    /// Gives a symbol a value.
+    /// Sets the value of a symbol.
     pub fn set(&mut self, id: SymbolId, value: u64) {
-        if let Some(given) = self.given.get_mut(id.index()) {
-            *given = Assigned::Number(value);
+        if let Some(assignment) = self.assignments.get_mut(id.index()) {
+            *assignment = Assignment::Constant(value);
         }
     }
 
-    /// Gives a symbol a value for every pixel of a slice, whatever its rows.
+    /// Sets a symbol to `value` times the pixels of a slice, for slices of any height.
     pub fn set_per_pixel(&mut self, id: SymbolId, value: u32) {
-        if let Some(given) = self.given.get_mut(id.index()) {
-            *given = Assigned::PerPixel(value);
+        if let Some(assignment) = self.assignments.get_mut(id.index()) {
+            *assignment = Assignment::PerPixel(value);
         }
     }
 
-    /// The same with another value of a symbol.
+    /// Returns the same values except for one symbol.
     pub fn with(&self, id: SymbolId, value: u64) -> Self {
         let mut values = self.clone();
         values.set(id, value);
         values
     }
 
-    /// The same in an iteration of the innermost loop.
+    /// Returns the values in an iteration of the innermost loop.
     pub fn in_iteration(&self, iteration: u32) -> Self {
         self.with(SymbolId::ITERATION, iteration.into())
     }
 
-    /// The same with slices of so many rows.
+    /// Returns the values for slices of `rows` rows.
     pub fn with_rows(&self, rows: u32) -> Self {
         self.with(SymbolId::HEIGHT, rows.into())
     }
 
-    /// The same for a frame of another size, in one slice.
+    /// Returns the values for a frame of another size, in one slice.
     pub fn resized(&self, width: u32, height: u32) -> Self {
         let mut values = self.with_rows(height);
         values.set(SymbolId::WIDTH, width.into());
@@ -82,36 +82,36 @@ impl Values {
         values
     }
 
-    /// The same for another plan of the same description, such as one of another capacity.
+    /// Returns the values for another plan of the same description, for example one of another capacity.
     pub fn of_plan(&self, plan: &Plan) -> Self {
         Values { table: plan.symbols.clone(), ..self.clone() }
     }
 
-    /// The value of a symbol; `None`: it has none by now.
+    /// Returns the value of a symbol; `None` if it has none yet.
     pub fn get(&self, id: SymbolId) -> Option<u64> {
-        self.table.value(id, &|id| self.given(id)).ok()
+        self.table.value(id, &|id| self.assigned(id)).ok()
     }
 
-    /// The value of a symbol by name, for what comes from outside.
+    /// Returns the value of a symbol whose name comes from the caller.
     pub fn named(&self, name: &str) -> Option<u64> {
         self.get(self.table.find(name)?)
     }
 
-    fn given(&self, id: SymbolId) -> Option<u64> {
-        match self.given.get(id.index())? {
-            Assigned::Nothing => None,
-            Assigned::Number(number) => Some(*number),
-            Assigned::PerPixel(number) => Some(u64::from(*number) * self.pixels()),
+    fn assigned(&self, id: SymbolId) -> Option<u64> {
+        match self.assignments.get(id.index())? {
+            Assignment::Unset => None,
+            Assignment::Constant(number) => Some(*number),
+            Assignment::PerPixel(number) => Some(u64::from(*number) * self.pixels()),
         }
     }
 
-    /// The value of a formula, which is `what`.
+    /// Returns the value of a formula. `what` names it in errors.
     pub fn evaluate(&self, quantity: &Quantity, what: &str) -> Result<u64, Error> {
-        let value = self.table.evaluate(quantity, &|id| self.given(id));
+        let value = self.table.evaluate(quantity, &|id| self.assigned(id));
         value.map_err(|error| Error::Formula { what: what.to_owned(), error })
     }
 
-    /// The same as a word.
+    /// Returns the value of a formula as a 32-bit word. `what` names it in errors.
     pub fn word(&self, quantity: &Quantity, what: &str) -> Result<u32, Error> {
         let needed = self.evaluate(quantity, what)?;
         u32::try_from(needed).map_err(|_| Error::TooLarge {
@@ -119,48 +119,48 @@ impl Values {
             needed,
             limit: u32::MAX.into(),
             limit_name: "a 32-bit word",
-            hint: "take a smaller frame, or split it",
+            help: "use a smaller frame, or split it",
         })
     }
 
-    /// Columns of the frame.
+    /// Returns the columns of the frame.
     pub fn width(&self) -> u32 {
         self.size_of(SymbolId::WIDTH)
     }
 
-    /// Rows of the whole frame.
+    /// Returns the rows of the whole frame.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Rows of a slice.
+    /// Returns the rows of a slice.
     pub fn rows(&self) -> u32 {
         self.size_of(SymbolId::HEIGHT)
     }
 
-    /// Fragments that a pixel keeps; `None` where it keeps all.
+    /// Returns the number of fragments that a pixel keeps; `None` if it keeps all.
     pub fn k(&self) -> Option<u32> {
-        self.given(SymbolId::K).and_then(|k| u32::try_from(k).ok())
+        self.assigned(SymbolId::K).and_then(|k| u32::try_from(k).ok())
     }
 
     fn size_of(&self, id: SymbolId) -> u32 {
-        match self.given.get(id.index()) {
-            Some(Assigned::Number(number)) => u32::try_from(*number).unwrap_or(u32::MAX),
+        match self.assignments.get(id.index()) {
+            Some(Assignment::Constant(number)) => u32::try_from(*number).unwrap_or(u32::MAX),
             _ => 0,
         }
     }
 
-    /// Pixels of a slice, its padding apart.
+    /// Returns the pixels of a slice, without its padding.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width()) * u64::from(self.rows())
     }
 
-    /// Slices of the frame, from the top.
+    /// Returns the number of slices of the frame.
     pub fn slices(&self) -> u32 {
         self.height.div_ceil(self.rows().max(1))
     }
 
-    /// The shaders' uniform block of one slice and iteration: one word per field of the plan.
+    /// Returns the shaders' uniform block of one slice and iteration: one word per field of the plan.
     pub fn frame_words(&self, plan: &Plan, slice: u32, iteration: u32) -> Result<Vec<u32>, Error> {
         let mut values = self.in_iteration(iteration);
         values.set(SymbolId::FIRST_ROW, u64::from(slice) * u64::from(self.rows()));
@@ -171,7 +171,7 @@ impl Values {
                 needed: value,
                 limit: u32::MAX.into(),
                 limit_name: "a word of the frame's uniform buffer",
-                hint: "take a smaller frame, or split it",
+                help: "use a smaller frame, or split it",
             })
         };
         plan.fields.iter().map(word).collect()

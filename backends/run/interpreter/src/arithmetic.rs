@@ -1,9 +1,9 @@
-//! What the operations on single words do, as WGSL defines it.
+//! The operations on single words, as WGSL defines them.
 //!
-//! In: words. Out: a word. Whole numbers wrap, division by zero gives the dividend, shift amounts are taken modulo 32,
-//! conversions saturate at what both types have. Floats are Rust's; where WGSL allows an error, this is the value it is an error of.
+//! Integers wrap, division by zero returns the dividend, shift amounts are taken modulo 32, and conversions saturate at the
+//! limits that both types share. Floats follow Rust; where WGSL allows an error bound, the result is the value it bounds.
 
-use crate::packing::{from_half, to_half};
+use crate::half::{from_half, to_half};
 use crate::scalar::{Binary, Ternary, Unary};
 
 fn float(word: u32) -> f32 {
@@ -74,7 +74,7 @@ pub(crate) fn unary(op: Unary, word: u32) -> u32 {
         }
         Unary::FirstLeadingBitS => first_leading_bit(if signed(word) < 0 { !word } else { word }),
         Unary::FirstLeadingBitU => first_leading_bit(word),
-        // The greatest number that both types have.
+        // The greatest number of both types.
         Unary::FToS => (x.min(2_147_483_520.0) as i32) as u32,
         Unary::FToU => x.min(4_294_967_040.0) as u32,
         Unary::SToF => real(signed(word) as f32),
@@ -90,12 +90,12 @@ fn first_leading_bit(word: u32) -> u32 {
     31u32.wrapping_sub(word.leading_zeros())
 }
 
-/// x = fraction · 2^exponent, with 0.5 ≤ |fraction| < 1; what is zero or not finite stays as it is.
+/// Splits x into fraction · 2^exponent with 0.5 ≤ |fraction| < 1. Zero and non-finite numbers are returned unchanged.
 fn fraction_and_exponent(x: f32) -> (f32, i32) {
     if x == 0.0 || !x.is_finite() {
         return (x, 0);
     }
-    // Subnormals are brought up first, so that the exponent's bits say the exponent.
+    // Subnormals are scaled first: their exponent bits do not contain the exponent.
     let (scaled, shift) = if x.abs() < f32::MIN_POSITIVE { (x * 16_777_216.0, 24) } else { (x, 0) };
     let bits = scaled.to_bits();
     let exponent = ((bits >> 23) & 0xff) as i32 - 126 - shift;
@@ -191,7 +191,7 @@ pub(crate) fn ternary(op: Ternary, a: u32, b: u32, c: u32) -> u32 {
     }
 }
 
-/// WGSL's clamping of a bit field to the word.
+/// Clamps a bit field to the word, as WGSL does.
 pub(crate) fn bit_range(offset: u32, count: u32) -> (u32, u32) {
     let offset = offset.min(32);
     (offset, count.min(32 - offset))

@@ -1,20 +1,21 @@
-//! Which words still matter where a machine can stop, and which instructions can come again.
+//! Liveness of words where a machine can stop, and the instructions in loops.
 //!
-//! In: finished instructions. Out: per stop, the runs of words that are read before they are written on some way on.
-//! Two machines that differ only in other words behave alike, so the states of a search are told apart by these alone.
+//! A word is live if some path reads it before it is written. Machines that differ only in dead words behave alike, so a
+//! search compares only live words.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::operation::{Op, Touch};
+use crate::memory::Atomic;
+use crate::operation::{Op, OperandUse};
 
 /// A set of words.
 #[derive(Clone, PartialEq, Eq)]
-struct Words(Vec<u64>);
+struct WordSet(Vec<u64>);
 
-impl Words {
+impl WordSet {
     fn new(count: usize) -> Self {
-        Words(vec![0; count.div_ceil(64)])
+        WordSet(vec![0; count.div_ceil(64)])
     }
 
     fn insert(&mut self, word: u32) {
@@ -29,12 +30,12 @@ impl Words {
         self.0[word as usize / 64] >> (word % 64) & 1 == 1
     }
 
-    /// Whether anything was new.
-    fn extend(&mut self, other: &Words) -> bool {
+    /// Adds the words of `other`; returns whether the set grew.
+    fn extend(&mut self, other: &WordSet) -> bool {
         let mut grew = false;
-        for (own, more) in self.0.iter_mut().zip(&other.0) {
-            grew |= *more & !*own != 0;
-            *own |= more;
+        for (bits, more) in self.0.iter_mut().zip(&other.0) {
+            grew |= *more & !*bits != 0;
+            *bits |= more;
         }
         grew
     }
@@ -51,40 +52,40 @@ impl Words {
     }
 }
 
-/// What is live.
+/// The result of the analysis.
 pub(crate) struct Liveness {
-    /// Before every stop, words below the constants.
+    /// The live words before every instruction that can stop a machine, constants excluded.
     pub(crate) at_stops: BTreeMap<u32, Vec<Range<u32>>>,
-    /// Atomic operations whose result nobody reads.
+    /// The atomic operations whose result is dead.
     pub(crate) unread: Vec<usize>,
 }
 
-/// Finds it; `words` are the words before the constants, `result` what is read after the end.
+/// Computes liveness. `words` is the number of words before the constants; `result` is live at the end.
 pub(crate) fn liveness(ops: &[Op], words: u32, result: &Range<usize>) -> Liveness {
-    let mut before: Vec<Words> = vec![Words::new(words as usize); ops.len()];
+    let mut before: Vec<WordSet> = vec![WordSet::new(words as usize); ops.len()];
     let mut changed = true;
     while changed {
         changed = false;
         for at in (0..ops.len()).rev() {
-            let mut live = after(ops, at, &before, words, result);
-            step(ops[at], words, &mut live);
+            let mut live = live_after(ops, at, &before, words, result);
+            transfer(ops[at], words, &mut live);
             changed |= before[at].extend(&live);
         }
     }
-    let stops = (0..ops.len()).filter(|at| ops[*at].is_stop());
+    let stops = (0..ops.len()).filter(|at| ops[*at].can_stop());
     let unread = (0..ops.len()).filter(|at| {
         let Op::Atomic { to, words: width, .. } = ops[*at] else { return false };
-        let live = after(ops, *at, &before, words, result);
+        let live = live_after(ops, *at, &before, words, result);
         (to..=to + u32::from(width)).all(|word| word >= words || !live.contains(word)) || {
-            let exchanges = matches!(ops[*at], Op::Atomic { function: crate::memory::Atomic::CompareExchange, .. });
+            let exchanges = matches!(ops[*at], Op::Atomic { function: Atomic::CompareExchange, .. });
             !exchanges && (to..to + u32::from(width)).all(|word| !live.contains(word))
         }
     });
     Liveness { unread: unread.collect(), at_stops: stops.map(|at| (at as u32, before[at].ranges(words))).collect() }
 }
 
-fn after(ops: &[Op], at: usize, before: &[Words], words: u32, result: &Range<usize>) -> Words {
-    let mut live = Words::new(words as usize);
+fn live_after(ops: &[Op], at: usize, before: &[WordSet], words: u32, result: &Range<usize>) -> WordSet {
+    let mut live = WordSet::new(words as usize);
     for next in ops[at].successors(at).into_iter().flatten() {
         live.extend(&before[next]);
     }
@@ -94,37 +95,37 @@ fn after(ops: &[Op], at: usize, before: &[Words], words: u32, result: &Range<usi
     live
 }
 
-/// From what is live after an instruction to what is live before it.
-fn step(mut op: Op, words: u32, live: &mut Words) {
+/// Changes the words that are live after an instruction to those that are live before it.
+fn transfer(mut op: Op, words: u32, live: &mut WordSet) {
     if op.is_pure() && !writes_any(&mut op, words, live) {
         return;
     }
     let mut read: Vec<u32> = Vec::new();
-    op.touches(&mut |touch, first, count| {
+    op.visit_operands(&mut |touch, first, count| {
         let range = *first..*first + count;
         match touch {
-            Touch::Write => range.filter(|word| *word < words).for_each(|word| live.remove(word)),
-            Touch::Read => read.extend(range.filter(|word| *word < words)),
-            // What is not written stays as it was.
-            Touch::WriteSome => {}
+            OperandUse::Write => range.filter(|word| *word < words).for_each(|word| live.remove(word)),
+            OperandUse::Read => read.extend(range.filter(|word| *word < words)),
+            // The other words keep their values.
+            OperandUse::WriteSome => {}
         }
     });
     read.into_iter().for_each(|word| live.insert(word));
 }
 
-/// Whether the instruction writes a word that matters.
-fn writes_any(op: &mut Op, words: u32, live: &Words) -> bool {
+/// Returns whether the instruction writes a live word.
+fn writes_any(op: &mut Op, words: u32, live: &WordSet) -> bool {
     let mut found = false;
-    op.touches(&mut |touch, first, count| {
-        if touch != Touch::Read {
+    op.visit_operands(&mut |touch, first, count| {
+        if touch != OperandUse::Read {
             found |= (*first..*first + count).any(|word| word < words && live.contains(word));
         }
     });
     found
 }
 
-/// Whether each instruction lies between a jump backwards and where it goes.
-pub(crate) fn loops(ops: &[Op]) -> Vec<bool> {
+/// Returns, per instruction, whether it is between a backward jump and its target.
+pub(crate) fn in_loops(ops: &[Op]) -> Vec<bool> {
     let mut inside = vec![false; ops.len()];
     for (at, op) in ops.iter().enumerate() {
         if let Op::Jump { to } = op

@@ -1,66 +1,65 @@
-//! One invocation: a place in the program and its words. The dispatch loop is here.
+//! The machine: one invocation of a program, with the interpreter loop.
 //!
-//! In: replies of [`Shared`]. Out: an [`Exit`]. A machine never allocates while it runs, and always comes back: jumps
-//! backwards are limited.
+//! A machine does not allocate while it runs. It always returns, because the number of backward jumps is limited.
 
 use crate::arithmetic::{binary, ternary, unary};
-use crate::memory::{Access, Atomic, Event, Operation, Place, Reply, Shared};
-use crate::operation::{NOWHERE, Op};
-use crate::program::Program;
+use crate::bytecode::Bytecode;
+use crate::memory::{Access, Atomic, Event, Operation, Reply, SharedMemory, WordAddress};
+use crate::operation::{OUT_OF_BOUNDS, Op};
 
-/// Why a machine came back.
+/// The reason why a machine returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// The end of the program; the result stands in [`Machine::result`].
+    /// The program ended; [`Machine::result`] returns its result.
     Ended,
-    /// The fragment was discarded.
+    /// The shader discarded the fragment.
     Discarded,
-    /// It stands before this.
+    /// Memory stopped the machine before this event.
     Stopped(Event),
-    /// More jumps backwards than a program should need: it goes round for ever.
+    /// The machine reached the limit of backward jumps: the program does not terminate.
     Endless,
 }
 
-/// An index out of bounds. WGSL allows an implementation to read or write anything of the same buffer there; here a read
-/// gives 0 and a write does nothing.
+/// An access with an index out of bounds. WGSL allows it to read or write any word of the same buffer; here a read returns
+/// 0 and a write does nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// The instruction, for [`Program::trace`].
+pub struct OutOfBoundsAccess {
+    /// The instruction, for [`Bytecode::trace`].
     pub at: u32,
 }
 
-/// Jumps backwards that a machine may take in one run.
-const JUMPS: u32 = 1 << 24;
+/// The limit of backward jumps of one run.
+const BACKWARD_JUMP_LIMIT: u32 = 1 << 24;
 
 /// One invocation of a program.
 #[derive(Clone, Debug)]
 pub struct Machine<'p> {
-    program: &'p Program,
+    program: &'p Bytecode,
     words: Vec<u32>,
     at: u32,
-    /// Whether this is a helper invocation: what the marker says.
+    /// Whether this is a helper invocation, as the marker reports it.
     pub is_helper: bool,
-    /// What went out of bounds since somebody last emptied this; one entry per run at most.
-    pub fault: Option<Fault>,
+    /// The first access out of bounds since the caller last took this.
+    pub out_of_bounds: Option<OutOfBoundsAccess>,
 }
 
 impl<'p> Machine<'p> {
-    /// A machine before the first instruction, inputs at zero.
-    pub fn new(program: &'p Program) -> Self {
-        Machine { program, words: program.image.clone(), at: 0, is_helper: false, fault: None }
+    /// Creates a machine at the first instruction, with zero inputs.
+    pub fn new(program: &'p Bytecode) -> Self {
+        Machine { program, words: program.initial_words.clone(), at: 0, is_helper: false, out_of_bounds: None }
     }
 
-    /// Its program.
-    pub fn program(&self) -> &'p Program {
+    /// Returns the program.
+    pub fn program(&self) -> &'p Bytecode {
         self.program
     }
 
-    /// The next instruction.
+    /// Returns the index of the next instruction.
     pub fn at(&self) -> u32 {
         self.at
     }
 
-    /// Puts words into the input of this number; what is too long is cut.
+    /// Writes words into the input with this number; ignores words beyond its length.
     pub fn set_input(&mut self, input: usize, words: &[u32]) {
         if let Some(input) = self.program.inputs.get(input) {
             for (to, from) in self.words[input.words.clone()].iter_mut().zip(words) {
@@ -69,30 +68,30 @@ impl<'p> Machine<'p> {
         }
     }
 
-    /// The result of a program that has ended: dense words.
+    /// Returns the result of a program that has ended, densely packed.
     pub fn result(&self) -> &[u32] {
         &self.words[self.program.result.clone()]
     }
 
-    /// Goes back to the first instruction; inputs keep their words.
+    /// Returns to the first instruction; inputs keep their words.
     pub fn restart(&mut self) {
-        // Only private variables are read before the program writes them; nothing in it writes inputs or constants.
+        // The program reads only private variables before it writes them, and never writes inputs or constants.
         let privates = self.program.privates;
-        self.words[..privates].copy_from_slice(&self.program.image[..privates]);
+        self.words[..privates].copy_from_slice(&self.program.initial_words[..privates]);
         self.at = 0;
     }
 
-    /// A word of the machine, for inputs and outputs by their ranges.
+    /// Returns words of the machine, such as those of an output.
     pub fn words(&self, range: std::ops::Range<usize>) -> &[u32] {
         &self.words[range]
     }
 
-    /// Words of an input, to be written.
+    /// Returns words of the machine to write, such as those of an input.
     pub fn words_mut(&mut self, range: std::ops::Range<usize>) -> &mut [u32] {
         &mut self.words[range]
     }
 
-    /// Writes down where a stopped machine stands and every word that still matters: equal machines write equal words.
+    /// Appends the state of a stopped machine: its position and its live words. Equal machines append equal words.
     pub fn save(&self, out: &mut Vec<u32>) {
         out.push(self.at);
         if let Some(ranges) = self.program.live.get(&self.at) {
@@ -102,7 +101,7 @@ impl<'p> Machine<'p> {
         }
     }
 
-    /// Puts the machine where `save` found it.
+    /// Restores the state that `save` appended.
     pub fn load(&mut self, saved: &[u32]) {
         let Some((at, mut rest)) = saved.split_first() else { return };
         self.at = *at;
@@ -115,10 +114,10 @@ impl<'p> Machine<'p> {
         }
     }
 
-    /// Runs until the end or until `shared` stops it.
-    pub fn run<S: Shared>(&mut self, shared: &mut S) -> Exit {
+    /// Runs the program until it ends or `shared` stops it.
+    pub fn run<S: SharedMemory>(&mut self, shared: &mut S) -> Exit {
         let program = self.program;
-        let mut jumps = JUMPS;
+        let mut jumps = BACKWARD_JUMP_LIMIT;
         loop {
             let at = self.at as usize;
             let words = &mut self.words;
@@ -137,8 +136,8 @@ impl<'p> Machine<'p> {
                 Op::Ternary { op, to, a, b, c } => read!(to) = ternary(op, read!(a), read!(b), read!(c)),
                 Op::Wide { op, to, a, b } => {
                     let (left, right, result) = op.widths();
-                    let value = op.apply(joined(words, a, left), joined(words, b, right));
-                    split(words, to, result, value);
+                    let value = op.apply(read_words(words, a, left), read_words(words, b, right));
+                    write_words(words, to, result, value);
                 }
                 Op::Pack { op, to, a } => {
                     read!(to) = op.apply(&words[a as usize..(a + op.components()) as usize]);
@@ -166,11 +165,11 @@ impl<'p> Machine<'p> {
                     }
                 }
                 Op::Index { to, base, index, stride, bound } => {
-                    read!(to) = place(read!(base), read!(index), stride, bound);
+                    read!(to) = index_address(read!(base), read!(index), stride, bound);
                 }
                 Op::IndexRuntime { to, base, index, stride, buffer } => {
                     let bound = shared.length(buffer).saturating_sub(read!(base)) / stride.max(1);
-                    read!(to) = place(read!(base), read!(index), stride, bound);
+                    read!(to) = index_address(read!(base), read!(index), stride, bound);
                 }
                 Op::Length { to, buffer, offset, stride } => {
                     read!(to) = shared.length(buffer).saturating_sub(offset) / stride.max(1);
@@ -182,7 +181,7 @@ impl<'p> Machine<'p> {
                     }
                     _ => {
                         words[to as usize..(to + count) as usize].fill(0);
-                        self.fault.get_or_insert(Fault { at: at as u32 });
+                        self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                     }
                 },
                 Op::StoreLocal { variable, length, address, from, count } => match read!(address) {
@@ -190,13 +189,13 @@ impl<'p> Machine<'p> {
                         words.copy_within(from as usize..(from + count) as usize, (variable + address) as usize);
                     }
                     _ => {
-                        self.fault.get_or_insert(Fault { at: at as u32 });
+                        self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                     }
                 },
-                Op::Texel { to, texture, place, count } => {
-                    let place = [read!(place), read!(place + 1), read!(place + 2)];
-                    let texel = shared.texel(texture, place).unwrap_or_else(|| {
-                        self.fault.get_or_insert(Fault { at: at as u32 });
+                Op::Texel { to, texture, coordinates, count } => {
+                    let coordinates = [read!(coordinates), read!(coordinates + 1), read!(coordinates + 2)];
+                    let texel = shared.texel(texture, coordinates).unwrap_or_else(|| {
+                        self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                         [0; 4]
                     });
                     words[to as usize..(to + count) as usize].copy_from_slice(&texel[..count as usize]);
@@ -204,19 +203,20 @@ impl<'p> Machine<'p> {
                 Op::Extent { to, texture } => {
                     words[to as usize..to as usize + 3].copy_from_slice(&shared.extent(texture));
                 }
-                Op::Constant { to, buffer, address, offset } => match inside(shared, buffer, read!(address), offset, 1)
-                {
-                    Some(place) => read!(to) = shared.constant(place),
-                    None => {
-                        read!(to) = 0;
-                        self.fault.get_or_insert(Fault { at: at as u32 });
+                Op::Constant { to, buffer, address, offset } => {
+                    match checked_address(shared, buffer, read!(address), offset, 1) {
+                        Some(address) => read!(to) = shared.constant(address),
+                        None => {
+                            read!(to) = 0;
+                            self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
+                        }
                     }
-                },
+                }
                 Op::Load { to, buffer, address, offset, words: size, is_atomic } => {
-                    let value = match inside(shared, buffer, read!(address), offset, size) {
-                        Some(place) => {
+                    let value = match checked_address(shared, buffer, read!(address), offset, size) {
+                        Some(address) => {
                             let access = Access {
-                                place,
+                                address,
                                 operation: Operation::Load,
                                 words: size,
                                 is_atomic,
@@ -229,18 +229,18 @@ impl<'p> Machine<'p> {
                             }
                         }
                         None => {
-                            self.fault.get_or_insert(Fault { at: at as u32 });
+                            self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                             0
                         }
                     };
-                    split(words, to, size.into(), value);
+                    write_words(words, to, size.into(), value);
                 }
                 Op::Store { from, buffer, address, offset, words: size, is_atomic } => {
-                    match inside(shared, buffer, read!(address), offset, size) {
-                        Some(place) => {
-                            let value = joined(words, from, size.into());
+                    match checked_address(shared, buffer, read!(address), offset, size) {
+                        Some(address) => {
+                            let value = read_words(words, from, size.into());
                             let access = Access {
-                                place,
+                                address,
                                 operation: Operation::Store,
                                 words: size,
                                 is_atomic,
@@ -252,38 +252,38 @@ impl<'p> Machine<'p> {
                             }
                         }
                         None => {
-                            self.fault.get_or_insert(Fault { at: at as u32 });
+                            self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                         }
                     }
                 }
                 Op::Atomic { function, words: size, buffer, to, address, value, expected } => {
-                    let operand = joined(words, value, size.into());
+                    let operand = read_words(words, value, size.into());
                     let exchanges = function == Atomic::CompareExchange;
-                    let wanted = if exchanges { joined(words, expected, size.into()) } else { 0 };
-                    let (old, met) = match inside(shared, buffer, read!(address), 0, size) {
-                        Some(place) => {
+                    let expected_value = if exchanges { read_words(words, expected, size.into()) } else { 0 };
+                    let (old, exchanged) = match checked_address(shared, buffer, read!(address), 0, size) {
+                        Some(address) => {
                             let operation = Operation::Atomic(function);
                             let access = Access {
-                                place,
+                                address,
                                 operation,
                                 words: size,
                                 is_atomic: true,
                                 value: operand,
-                                expected: wanted,
+                                expected: expected_value,
                             };
                             match shared.event(&Event::Access(access)) {
-                                Reply::Done(old) => (old, old == wanted),
+                                Reply::Done(old) => (old, old == expected_value),
                                 Reply::Stop => return Exit::Stopped(Event::Access(access)),
                             }
                         }
                         None => {
-                            self.fault.get_or_insert(Fault { at: at as u32 });
+                            self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at: at as u32 });
                             (0, false)
                         }
                     };
-                    split(words, to, size.into(), old);
+                    write_words(words, to, size.into(), old);
                     if exchanges {
-                        read!(to + u32::from(size)) = u32::from(met);
+                        read!(to + u32::from(size)) = u32::from(exchanged);
                     }
                 }
                 Op::Fence | Op::Barrier | Op::CriticalBegin | Op::CriticalEnd => {
@@ -306,7 +306,7 @@ impl<'p> Machine<'p> {
     }
 }
 
-fn joined(words: &[u32], at: u32, width: u32) -> u64 {
+fn read_words(words: &[u32], at: u32, width: u32) -> u64 {
     match width {
         0 => 0,
         1 => u64::from(words[at as usize]),
@@ -314,22 +314,28 @@ fn joined(words: &[u32], at: u32, width: u32) -> u64 {
     }
 }
 
-fn split(words: &mut [u32], at: u32, width: u32, value: u64) {
+fn write_words(words: &mut [u32], at: u32, width: u32, value: u64) {
     words[at as usize] = value as u32;
     if width == 2 {
         words[at as usize + 1] = (value >> 32) as u32;
     }
 }
 
-fn place(base: u32, index: u32, stride: u32, bound: u32) -> u32 {
-    if base == NOWHERE || index >= bound { NOWHERE } else { base + index * stride }
+fn index_address(base: u32, index: u32, stride: u32, bound: u32) -> u32 {
+    if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { base + index * stride }
 }
 
-/// The place at `address + offset`, if the buffer has all its words.
-fn inside<S: Shared>(shared: &S, buffer: u16, address: u32, offset: u32, words: u8) -> Option<Place> {
-    if address == NOWHERE {
+/// Returns the address `address + offset` if all `words` words are inside the buffer.
+fn checked_address<S: SharedMemory>(
+    shared: &S,
+    buffer: u16,
+    address: u32,
+    offset: u32,
+    words: u8,
+) -> Option<WordAddress> {
+    if address == OUT_OF_BOUNDS {
         return None;
     }
     let word = address.checked_add(offset)?;
-    (word.checked_add(words.into())? <= shared.length(buffer)).then_some(Place { buffer, word })
+    (word.checked_add(words.into())? <= shared.length(buffer)).then_some(WordAddress { buffer, word })
 }

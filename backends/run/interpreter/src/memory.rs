@@ -1,28 +1,28 @@
-//! What invocations share, seen from one of them: events go out, replies come back.
+//! Shared memory as one invocation accesses it: it sends events and receives replies.
 //!
-//! The model of memory is whoever implements [`Shared`]; [`Sequential`] is the plainest, where everything happens at once.
+//! A memory model implements [`SharedMemory`]. [`Sequential`] is the simplest: every access takes effect at once.
 
-/// A word of a buffer.
+/// The address of a word in a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Place {
-    /// The program's number of the buffer.
+pub struct WordAddress {
+    /// The number of the buffer in the program.
     pub buffer: u16,
-    /// The word, from 0.
+    /// The index of the word.
     pub word: u32,
 }
 
-/// What is done to a place.
+/// The operation of an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// Read.
+    /// A read.
     Load,
-    /// Write.
+    /// A write.
     Store,
-    /// Read and write as one.
+    /// An atomic read and write.
     Atomic(Atomic),
 }
 
-/// What an atomic operation writes, from the old value and the operand.
+/// The function of an atomic operation: it computes the new value from the old one and the operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "WGSL's own names")]
 pub enum Atomic {
@@ -42,27 +42,27 @@ pub enum Atomic {
 /// One access to shared memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Access {
-    /// Where; the first word of two where `words` is 2.
-    pub place: Place,
-    /// What.
+    /// The address of the first word.
+    pub address: WordAddress,
+    /// The operation.
     pub operation: Operation,
-    /// Words, 1 or 2.
+    /// The width in words: 1 or 2.
     pub words: u8,
-    /// Whether the place is declared atomic. A plain access that meets another is a data race.
+    /// Whether the word is declared atomic. A concurrent plain access is a data race.
     pub is_atomic: bool,
-    /// What is written, or the operand.
+    /// The value to write, or the operand.
     pub value: u64,
-    /// What the old value must be, for a compare-exchange.
+    /// The expected old value of a compare-exchange.
     pub expected: u64,
 }
 
 impl Access {
-    /// Whether it can change memory.
+    /// Returns whether the access can change memory.
     pub fn writes(&self) -> bool {
         self.operation != Operation::Load
     }
 
-    /// What stands there afterwards, if `old` stood there before.
+    /// Returns the new value of the word if its old value is `old`.
     pub fn new_value(&self, old: u64) -> u64 {
         let mask = if self.words == 1 { u64::from(u32::MAX) } else { u64::MAX };
         let signed = |value: u64| if self.words == 1 { i64::from(value as u32 as i32) } else { value as i64 };
@@ -88,81 +88,80 @@ impl Access {
     }
 }
 
-/// Something that other invocations can notice, about to happen.
+/// An operation that other invocations can observe, before it takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// An access to memory that can be written.
+    /// An access to writable memory.
     Access(Access),
     /// A memory fence.
     Fence,
-    /// Every invocation of the workgroup must arrive.
+    /// A workgroup barrier.
     Barrier,
-    /// The interlock begins.
+    /// The beginning of the interlock.
     CriticalBegin,
-    /// The interlock ends.
+    /// The end of the interlock.
     CriticalEnd,
 }
 
 /// The answer to an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// It has happened; the old value, for a load or an atomic operation.
+    /// The operation has taken effect. A load or an atomic operation returns the old value.
     Done(u64),
-    /// Not yet: the machine stops before it.
+    /// The machine stops before the operation.
     Stop,
 }
 
-/// Memory as one invocation sees it.
-pub trait Shared {
-    /// Words of a buffer.
+/// Memory as seen by one invocation.
+pub trait SharedMemory {
+    /// Returns the length of a buffer in words.
     fn length(&self, buffer: u16) -> u32;
-    /// A word of a buffer that this program never writes.
-    fn constant(&self, place: Place) -> u32;
-    /// The four numbers of a texel: column, row, and sample or level. `None`: there is no such texel.
-    fn texel(&self, _texture: u16, _place: [u32; 3]) -> Option<[u32; 4]> {
+    /// Returns a word of a buffer that the program does not write.
+    fn constant(&self, address: WordAddress) -> u32;
+    /// Returns the four channels of the texel at a column, row, and sample or level. `None`: out of bounds.
+    fn texel(&self, _texture: u16, _coordinates: [u32; 3]) -> Option<[u32; 4]> {
         None
     }
-    /// Columns, rows and samples of a texture.
+    /// Returns the columns, rows and samples of a texture.
     fn extent(&self, _texture: u16) -> [u32; 3] {
         [0; 3]
     }
-    /// Something is about to happen.
+    /// Performs an operation, or stops the machine before it.
     fn event(&mut self, event: &Event) -> Reply;
 }
 
-/// Memory where everything happens at once, in the order in which it is asked for: one slice per buffer of the program.
-/// Barriers stop.
+/// Sequentially consistent memory: every access takes effect at once. Machines stop at barriers.
 pub struct Sequential<'a> {
-    /// The buffers, by the program's numbers.
+    /// The buffers, by their numbers in the program.
     pub buffers: &'a mut [Vec<u32>],
 }
 
 impl Sequential<'_> {
-    fn read(&self, place: Place, words: u8) -> u64 {
-        let buffer = &self.buffers[usize::from(place.buffer)];
-        let word = |offset: u32| u64::from(buffer.get((place.word + offset) as usize).copied().unwrap_or(0));
+    fn read(&self, address: WordAddress, words: u8) -> u64 {
+        let buffer = &self.buffers[usize::from(address.buffer)];
+        let word = |offset: u32| u64::from(buffer.get((address.word + offset) as usize).copied().unwrap_or(0));
         if words == 1 { word(0) } else { word(0) | word(1) << 32 }
     }
 }
 
-impl Shared for Sequential<'_> {
+impl SharedMemory for Sequential<'_> {
     fn length(&self, buffer: u16) -> u32 {
         self.buffers[usize::from(buffer)].len() as u32
     }
 
-    fn constant(&self, place: Place) -> u32 {
-        self.read(place, 1) as u32
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.read(address, 1) as u32
     }
 
     fn event(&mut self, event: &Event) -> Reply {
         match event {
             Event::Access(access) => {
-                let old = self.read(access.place, access.words);
+                let old = self.read(access.address, access.words);
                 let new = access.new_value(old);
                 if access.writes() {
-                    let buffer = &mut self.buffers[usize::from(access.place.buffer)];
+                    let buffer = &mut self.buffers[usize::from(access.address.buffer)];
                     for offset in 0..u32::from(access.words) {
-                        if let Some(word) = buffer.get_mut((access.place.word + offset) as usize) {
+                        if let Some(word) = buffer.get_mut((access.address.word + offset) as usize) {
                             *word = (new >> (32 * offset)) as u32;
                         }
                     }

@@ -1,26 +1,26 @@
-//! The instructions: what they do to the words of an invocation, and which words they read and write.
+//! The instructions of a program, and the words that each reads and writes.
 //!
-//! Operands are numbers of words. Numbers from [`CONSTANT`] on are constants until the program is finished, then the words
-//! after the last frame. Nothing is executed here.
+//! Operands are word numbers. During compilation, numbers from [`CONSTANT`] are constants; the finished program stores them
+//! after the temporaries.
 
 use crate::memory::Atomic;
 use crate::packing::{Pack, Unpack};
 use crate::scalar::{Binary, Ternary, Unary};
 use crate::wide::Wide;
 
-/// The number of a word.
+/// The number of a word of a machine.
 pub(crate) type Word = u32;
 
-/// Numbers from here on are constants of a program that is being made.
+/// The first word number of constants during compilation.
 pub(crate) const CONSTANT: Word = 1 << 30;
 
-/// An address that no buffer and no array has: an index went out of bounds on the way to it.
-pub(crate) const NOWHERE: u32 = u32::MAX;
+/// The address that results from an index out of bounds. No buffer and no array contains it.
+pub(crate) const OUT_OF_BOUNDS: u32 = u32::MAX;
 
 /// One instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Op {
-    /// `count` words.
+    /// Copies `count` words.
     Copy {
         to: Word,
         from: Word,
@@ -44,7 +44,7 @@ pub(crate) enum Op {
         b: Word,
         c: Word,
     },
-    /// Numbers of 64 bits; widths are the operation's.
+    /// An operation on 64-bit integers; the operation defines the widths.
     Wide {
         op: Wide,
         to: Word,
@@ -68,7 +68,7 @@ pub(crate) enum Op {
         condition: Word,
         to: u32,
     },
-    /// The address `base + index * stride`, `NOWHERE` unless `index < bound`.
+    /// Computes the address `base + index * stride`; `OUT_OF_BOUNDS` unless `index < bound`.
     Index {
         to: Word,
         base: Word,
@@ -76,7 +76,7 @@ pub(crate) enum Op {
         stride: u32,
         bound: u32,
     },
-    /// The same, where the bound is what the buffer holds after `base` words.
+    /// As `Index`; the bound is the number of elements in the buffer after `base` words.
     IndexRuntime {
         to: Word,
         base: Word,
@@ -84,14 +84,14 @@ pub(crate) enum Op {
         stride: u32,
         buffer: u16,
     },
-    /// Elements of `stride` words that the buffer holds after `offset` words.
+    /// Computes the number of elements of `stride` words in the buffer after `offset` words.
     Length {
         to: Word,
         buffer: u16,
         offset: u32,
         stride: u32,
     },
-    /// Words of a variable of this invocation: `variable` has `length` words, `address` counts from its first.
+    /// Loads words of a variable: `variable` is its first word, `length` its length, `address` is relative to it.
     LoadLocal {
         to: Word,
         variable: Word,
@@ -106,19 +106,19 @@ pub(crate) enum Op {
         from: Word,
         count: u32,
     },
-    /// The first `count` numbers of a texel; `place` has column, row, and sample or level.
+    /// Loads the first `count` channels of a texel; `coordinates` are column, row, and sample or level.
     Texel {
         to: Word,
         texture: u16,
-        place: Word,
+        coordinates: Word,
         count: u32,
     },
-    /// Columns, rows and samples of a texture.
+    /// Loads the columns, rows and samples of a texture.
     Extent {
         to: Word,
         texture: u16,
     },
-    /// A word that nothing in the program writes.
+    /// Loads a word of a buffer that the program does not write.
     Constant {
         to: Word,
         buffer: u16,
@@ -141,7 +141,7 @@ pub(crate) enum Op {
         words: u8,
         is_atomic: bool,
     },
-    /// `expected` is read by a compare-exchange alone, which writes whether it exchanged after the old value.
+    /// Only a compare-exchange reads `expected`; after the old value it writes whether it exchanged.
     Atomic {
         function: Atomic,
         words: u8,
@@ -162,19 +162,19 @@ pub(crate) enum Op {
     End,
 }
 
-/// How an instruction touches a run of words.
+/// The use of an operand: a range of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Touch {
+pub(crate) enum OperandUse {
     Read,
     Write,
-    /// Some of them, nobody knows which.
+    /// Writes an unknown subset of the words.
     WriteSome,
 }
 
 impl Op {
-    /// Every run of words that the instruction touches: how, the first word, how many.
-    pub(crate) fn touches(&mut self, visit: &mut dyn FnMut(Touch, &mut Word, u32)) {
-        use Touch::{Read, Write, WriteSome};
+    /// Calls `visit` for every operand with its use, first word and length.
+    pub(crate) fn visit_operands(&mut self, visit: &mut dyn FnMut(OperandUse, &mut Word, u32)) {
+        use OperandUse::{Read, Write, WriteSome};
         match self {
             Op::Copy { to, from, count } => {
                 visit(Read, from, *count);
@@ -215,8 +215,8 @@ impl Op {
                 visit(Read, index, 1);
                 visit(Write, to, 1);
             }
-            Op::Texel { to, place, count, .. } => {
-                visit(Read, place, 3);
+            Op::Texel { to, coordinates, count, .. } => {
+                visit(Read, coordinates, 3);
                 visit(Write, to, *count);
             }
             Op::Extent { to, .. } => visit(Write, to, 3),
@@ -258,14 +258,14 @@ impl Op {
         }
     }
 
-    /// Whether all that it does is to write words.
+    /// Returns whether writing words is the only effect.
     pub(crate) fn is_pure(&self) -> bool {
         let flows = matches!(self, Op::Jump { .. } | Op::JumpUnless { .. } | Op::Discard | Op::End);
-        !flows && !self.is_stop()
+        !flows && !self.can_stop()
     }
 
-    /// Where a machine can stop.
-    pub(crate) fn is_stop(&self) -> bool {
+    /// Returns whether a machine can stop at the instruction.
+    pub(crate) fn can_stop(&self) -> bool {
         matches!(
             self,
             Op::Load { .. }
@@ -278,7 +278,7 @@ impl Op {
         )
     }
 
-    /// Where the program may go on after the instruction at `at`.
+    /// Returns the possible successors of the instruction at `at`.
     pub(crate) fn successors(&self, at: usize) -> [Option<usize>; 2] {
         match self {
             Op::Jump { to } => [Some(*to as usize), None],

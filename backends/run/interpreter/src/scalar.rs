@@ -1,6 +1,6 @@
-//! The operations on single 32-bit words, by name. `arithmetic` says what they do.
+//! The names of the operations on single 32-bit words; `arithmetic` implements them.
 
-/// From one word. `F` floats, `S` signed, `U` unsigned; `To` conversions of value.
+/// An operation on one word. Suffixes: `F` float, `S` signed, `U` unsigned; `XToY` converts a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unary {
     Negate,
@@ -57,7 +57,7 @@ pub(crate) enum Unary {
     IsInf,
 }
 
-/// From two words.
+/// An operation on two words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Binary {
     Add,
@@ -102,10 +102,10 @@ pub(crate) enum Binary {
     Dot4U,
 }
 
-/// From three words.
+/// An operation on three words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ternary {
-    /// `a` decides: `b` if it is true, else `c`.
+    /// `b` if `a` is true, else `c`.
     Select,
     FusedMultiplyAdd,
     Mix,

@@ -1,8 +1,6 @@
-//! The operations on whole numbers of 64 bits, in two words with the lower first.
-//!
-//! In: one or two words an operand. Out: one or two words. They behave as those of 32 bits do.
+//! The operations on 64-bit integers, stored as two words, the lower first. They behave like those on 32 bits.
 
-/// `N` is a narrow operand: one word.
+/// An operation on 64-bit integers. Suffix `N`: the second operand is narrow, one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wide {
     Add,
@@ -41,7 +39,7 @@ pub(crate) enum Wide {
 }
 
 impl Wide {
-    /// Words of both operands and of the result; 0: there is no second operand.
+    /// Returns the widths of both operands and the result in words; 0: no second operand.
     pub(crate) fn widths(self) -> (u32, u32, u32) {
         match self {
             Wide::ShiftLeftN | Wide::ShiftRightSN | Wide::ShiftRightUN => (2, 1, 2),

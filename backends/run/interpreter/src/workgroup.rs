@@ -1,30 +1,29 @@
-//! Compute shaders: every workgroup of a dispatch, one after the other, or any one of them.
+//! Runs compute shaders: a whole dispatch sequentially, or one workgroup.
 //!
-//! In: a program, its buffers, the number of workgroups. Out: the buffers as the dispatch leaves them. Inside a workgroup
-//! the invocations run one after the other from barrier to barrier.
+//! The invocations of a workgroup run one after the other, from barrier to barrier.
 
 use naga::BuiltIn;
 
-use crate::machine::{Exit, Fault, Machine};
-use crate::memory::{Event, Place, Reply, Sequential, Shared};
-use crate::program::{Program, Space};
+use crate::bytecode::{Bytecode, Space};
+use crate::machine::{Exit, Machine, OutOfBoundsAccess};
+use crate::memory::{Event, Reply, Sequential, SharedMemory, WordAddress};
 
-/// How a dispatch ended.
+/// The end of a dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dispatch {
+pub enum DispatchEnd {
     /// All invocations ended.
     Ended,
-    /// An invocation goes round for ever.
+    /// An invocation reached the limit of backward jumps.
     Endless,
-    /// Some invocations of a workgroup wait at a barrier that others never reach.
+    /// Some invocations of a workgroup wait at a barrier that the others do not reach.
     DivergentBarrier,
-    /// An index went out of bounds; the dispatch ran on.
-    Fault(Fault),
+    /// The dispatch ended after an access out of bounds.
+    OutOfBounds(OutOfBoundsAccess),
 }
 
-/// Dispatches `groups` workgroups, one after the other.
-pub fn dispatch(program: &Program, groups: [u32; 3], buffers: &mut [Vec<u32>]) -> Dispatch {
-    let mut worst = Dispatch::Ended;
+/// Runs `groups` workgroups, one after the other.
+pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) -> DispatchEnd {
+    let mut outcome = DispatchEnd::Ended;
     for z in 0..groups[2] {
         for y in 0..groups[1] {
             for x in 0..groups[0] {
@@ -35,90 +34,95 @@ pub fn dispatch(program: &Program, groups: [u32; 3], buffers: &mut [Vec<u32>]) -
                     }
                 }
                 match workgroup(program, [x, y, z], groups, &mut Sequential { buffers: &mut *buffers }) {
-                    Dispatch::Ended => {}
-                    Dispatch::Fault(fault) => worst = Dispatch::Fault(fault),
+                    DispatchEnd::Ended => {}
+                    DispatchEnd::OutOfBounds(access) => outcome = DispatchEnd::OutOfBounds(access),
                     other => return other,
                 }
             }
         }
     }
-    worst
+    outcome
 }
 
-/// Runs one of `groups` workgroups. The memory of the workgroup is zero in `shared`, which stops at barriers.
-pub fn workgroup<S: Shared>(program: &Program, group: [u32; 3], groups: [u32; 3], shared: &mut S) -> Dispatch {
+/// Runs one of `groups` workgroups. In `shared`, workgroup memory is zero, and machines stop at barriers.
+pub fn workgroup<S: SharedMemory>(
+    program: &Bytecode,
+    group: [u32; 3],
+    groups: [u32; 3],
+    shared: &mut S,
+) -> DispatchEnd {
     let size = program.workgroup_size;
     let total = size[0] * size[1] * size[2];
     if !program.has_barriers() {
         let mut machine = Machine::new(program);
-        return alone(&mut machine, (group, groups), 0..total, shared);
+        return run_without_barriers(&mut machine, (group, groups), 0..total, shared);
     }
     let mut machines: Vec<Machine<'_>> = (0..total).map(|_| Machine::new(program)).collect();
     for (index, machine) in (0..).zip(&mut machines) {
-        number(machine, index, group, groups);
+        set_invocation_ids(machine, index, group, groups);
     }
     let mut is_first = true;
-    let mut worst = Dispatch::Ended;
+    let mut outcome = DispatchEnd::Ended;
     let mut ended = vec![false; machines.len()];
     loop {
         let mut waiting = 0;
         for (machine, ended) in machines.iter_mut().zip(&mut ended).filter(|(_, ended)| !**ended) {
-            match machine.run(&mut Passing { shared, has_passed: is_first }) {
+            match machine.run(&mut BarrierSegment { shared, has_passed: is_first }) {
                 Exit::Stopped(_) => waiting += 1,
                 Exit::Ended | Exit::Discarded => *ended = true,
-                Exit::Endless => return Dispatch::Endless,
+                Exit::Endless => return DispatchEnd::Endless,
             }
-            if let Some(fault) = machine.fault.take() {
-                worst = Dispatch::Fault(fault);
+            if let Some(access) = machine.out_of_bounds.take() {
+                outcome = DispatchEnd::OutOfBounds(access);
             }
         }
         is_first = false;
         match waiting {
-            0 => return worst,
-            waiting if waiting < machines.len() => return Dispatch::DivergentBarrier,
+            0 => return outcome,
+            waiting if waiting < machines.len() => return DispatchEnd::DivergentBarrier,
             _ => {}
         }
     }
 }
 
-/// Invocations that never wait for each other, by one machine.
-fn alone<S: Shared>(
+/// Runs the invocations of a workgroup without barriers on one machine.
+fn run_without_barriers<S: SharedMemory>(
     machine: &mut Machine<'_>,
     (group, groups): ([u32; 3], [u32; 3]),
     indices: std::ops::Range<u32>,
     shared: &mut S,
-) -> Dispatch {
-    let mut worst = Dispatch::Ended;
+) -> DispatchEnd {
+    let mut outcome = DispatchEnd::Ended;
     for index in indices {
         machine.restart();
-        number(machine, index, group, groups);
+        set_invocation_ids(machine, index, group, groups);
         if machine.run(shared) == Exit::Endless {
-            return Dispatch::Endless;
+            return DispatchEnd::Endless;
         }
-        if let Some(fault) = machine.fault.take() {
-            worst = Dispatch::Fault(fault);
+        if let Some(access) = machine.out_of_bounds.take() {
+            outcome = DispatchEnd::OutOfBounds(access);
         }
     }
-    worst
+    outcome
 }
 
-/// Memory at once, past the barrier that the machine stands at and up to the next.
-struct Passing<'a, S> {
+/// Memory for the segment from the barrier at which the machine stopped to the next barrier.
+struct BarrierSegment<'a, S> {
     shared: &'a mut S,
     has_passed: bool,
 }
 
-impl<S: Shared> Shared for Passing<'_, S> {
+impl<S: SharedMemory> SharedMemory for BarrierSegment<'_, S> {
     fn length(&self, buffer: u16) -> u32 {
         self.shared.length(buffer)
     }
 
-    fn constant(&self, place: Place) -> u32 {
-        self.shared.constant(place)
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.shared.constant(address)
     }
 
-    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
-        self.shared.texel(texture, place)
+    fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]> {
+        self.shared.texel(texture, coordinates)
     }
 
     fn extent(&self, texture: u16) -> [u32; 3] {
@@ -134,8 +138,8 @@ impl<S: Shared> Shared for Passing<'_, S> {
     }
 }
 
-/// Tells an invocation who it is.
-fn number(machine: &mut Machine<'_>, index: u32, group: [u32; 3], groups: [u32; 3]) {
+/// Sets the ids of an invocation.
+fn set_invocation_ids(machine: &mut Machine<'_>, index: u32, group: [u32; 3], groups: [u32; 3]) {
     let program = machine.program();
     let size = program.workgroup_size;
     let local = [index % size[0], index / size[0] % size[1], index / (size[0] * size[1])];

@@ -1,41 +1,47 @@
-//! The same shaders on a device and here: every word that they leave behind.
+//! Runs the same shaders on a device and in the interpreter and compares every word of their buffers.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use fragbuf_interpreter::{Dispatch, Options, Program, dispatch};
+use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::wgpu::util::DeviceExt;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-/// How far words may be apart.
+/// The allowed difference between two words.
 #[derive(Clone, Copy, PartialEq)]
-enum Judge {
-    Bits,
-    /// As floats, by this part of the larger one's size.
-    Floats(f32),
+enum Tolerance {
+    Exact,
+    /// As floats, relative to the larger magnitude.
+    Relative(f32),
 }
 
-/// Words of a buffer whose length the shader does not say.
+/// The length of a runtime-sized buffer in words.
 const LENGTH: usize = 4096;
 
-const CORPUS: [(&str, &str, Judge, [u32; 3]); 7] = [
-    ("whole_numbers", include_str!("corpus/whole_numbers.wgsl"), Judge::Bits, [1, 1, 1]),
-    ("floats", include_str!("corpus/floats.wgsl"), Judge::Bits, [1, 1, 1]),
-    ("functions_of_floats", include_str!("corpus/functions_of_floats.wgsl"), Judge::Floats(1.0 / 2048.0), [1, 1, 1]),
-    ("memory", include_str!("corpus/memory.wgsl"), Judge::Bits, [1, 1, 1]),
-    ("atomics", include_str!("corpus/atomics.wgsl"), Judge::Bits, [1, 1, 1]),
-    ("workgroups", include_str!("corpus/workgroups.wgsl"), Judge::Bits, [2, 3, 1]),
-    ("wide_numbers", include_str!("corpus/wide_numbers.wgsl"), Judge::Bits, [1, 1, 1]),
+const CORPUS: [(&str, &str, Tolerance, [u32; 3]); 7] = [
+    ("whole_numbers", include_str!("corpus/whole_numbers.wgsl"), Tolerance::Exact, [1, 1, 1]),
+    ("floats", include_str!("corpus/floats.wgsl"), Tolerance::Exact, [1, 1, 1]),
+    (
+        "functions_of_floats",
+        include_str!("corpus/functions_of_floats.wgsl"),
+        Tolerance::Relative(1.0 / 2048.0),
+        [1, 1, 1],
+    ),
+    ("memory", include_str!("corpus/memory.wgsl"), Tolerance::Exact, [1, 1, 1]),
+    ("atomics", include_str!("corpus/atomics.wgsl"), Tolerance::Exact, [1, 1, 1]),
+    ("workgroups", include_str!("corpus/workgroups.wgsl"), Tolerance::Exact, [2, 3, 1]),
+    ("wide_numbers", include_str!("corpus/wide_numbers.wgsl"), Tolerance::Exact, [1, 1, 1]),
 ];
 
-fn parsed(text: &str) -> (naga::Module, ModuleInfo) {
-    let module = naga::front::wgsl::parse_str(text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(text)));
+fn parsed(source: &str) -> (naga::Module, ModuleInfo) {
+    let module =
+        naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
     (module, info)
 }
 
-/// Numbers with everything in them: small, large, zero, sign bits.
+/// Returns seeded numbers of all sizes, with zero and sign bits.
 fn seeded(length: usize) -> Vec<u32> {
     let mut state = 0x2545_f491u32;
     let mut next = || {
@@ -48,8 +54,8 @@ fn seeded(length: usize) -> Vec<u32> {
     (0..length).map(|at| edge.get(at).copied().unwrap_or_else(|| next() >> (next() % 32))).collect()
 }
 
-/// What each buffer of the program holds before: inputs are seeded, results are zero.
-fn before(program: &Program) -> Vec<Vec<u32>> {
+/// Returns the initial words of each buffer: inputs are seeded, results are zero.
+fn initial(program: &Bytecode) -> Vec<Vec<u32>> {
     let words = |buffer: &fragbuf_interpreter::Buffer| {
         if buffer.words == 0 || !buffer.name.contains("fixed") { LENGTH } else { buffer.words as usize }
     };
@@ -60,32 +66,32 @@ fn before(program: &Program) -> Vec<Vec<u32>> {
     program.buffers.iter().map(filled).collect()
 }
 
-fn interpreted(text: &str, groups: [u32; 3]) -> (Program, Vec<Vec<u32>>) {
-    let (module, info) = parsed(text);
-    let program = Program::entry_point(&module, &info, "main", &Options::default()).unwrap();
-    let mut buffers = before(&program);
+fn interpreted(source: &str, groups: [u32; 3]) -> (Bytecode, Vec<Vec<u32>>) {
+    let (module, info) = parsed(source);
+    let program = Bytecode::entry_point(&module, &info, "main", &Options::default()).unwrap();
+    let mut buffers = initial(&program);
     let end = dispatch(&program, groups, &mut buffers);
-    if let Dispatch::Fault(fault) = end {
-        let lines: Vec<u32> = program.trace(fault.at).iter().map(|span| span.location(text).line_number).collect();
-        panic!("out of bounds at lines {lines:?} of\n{text}");
+    if let DispatchEnd::OutOfBounds(access) = end {
+        let lines: Vec<u32> = program.trace(access.at).iter().map(|span| span.location(source).line_number).collect();
+        panic!("out of bounds at lines {lines:?} of\n{source}");
     }
-    assert_eq!(end, Dispatch::Ended);
+    assert_eq!(end, DispatchEnd::Ended);
     (program, buffers)
 }
 
-/// What a device makes of `before`, in the program's order of buffers.
+/// Runs the shader on a device; returns the words of the buffers in the order of the program.
 fn on_device(
     headless: &Headless,
-    text: &str,
+    shader: &str,
     entry: &str,
-    program: &Program,
+    program: &Bytecode,
     groups: [u32; 3],
-    before: &[Vec<u32>],
+    initial: &[Vec<u32>],
 ) -> Vec<Vec<u32>> {
     let device = &headless.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
-        source: wgpu::ShaderSource::Wgsl(text.into()),
+        source: wgpu::ShaderSource::Wgsl(shader.into()),
     });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: None,
@@ -100,7 +106,7 @@ fn on_device(
     let buffers: Vec<(Option<u32>, wgpu::Buffer)> = program
         .buffers
         .iter()
-        .zip(before)
+        .zip(initial)
         .map(|(buffer, words)| {
             let contents = bytes(words);
             let init = wgpu::util::BufferInitDescriptor { label: None, contents: &contents, usage: storage };
@@ -148,67 +154,76 @@ fn on_device(
 fn a_device_leaves_the_same_words() {
     let features = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
     let headless = Headless::open(&Choice::Cpu, features).unwrap();
-    let mut faults = Vec::new();
-    for (name, text, judge, groups) in CORPUS {
-        let (program, ours) = interpreted(text, groups);
-        let theirs = on_device(&headless, text, "main", &program, groups, &before(&program));
+    let mut differences = Vec::new();
+    for (name, source, tolerance, groups) in CORPUS {
+        let (program, ours) = interpreted(source, groups);
+        let theirs = on_device(&headless, source, "main", &program, groups, &initial(&program));
         for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.iter().zip(&theirs)) {
             if buffer.binding.is_none() {
                 continue;
             }
-            for (at, (own, other)) in ours.iter().zip(theirs).enumerate().filter(|(_, (a, b))| !agree(**a, **b, judge))
+            for (at, (ours, theirs)) in
+                ours.iter().zip(theirs).enumerate().filter(|(_, (a, b))| !agree(**a, **b, tolerance))
             {
-                let floats = (f32::from_bits(*own), f32::from_bits(*other));
-                faults.push(format!("{name}: {}[{at}]: {own:#x} here, {other:#x} there ({floats:?})", buffer.name));
+                let floats = (f32::from_bits(*ours), f32::from_bits(*theirs));
+                differences.push(format!(
+                    "{name}: {}[{at}]: interpreter {ours:#x}, device {theirs:#x} ({floats:?})",
+                    buffer.name
+                ));
             }
         }
         assert!(ours.iter().flatten().any(|word| *word != 0), "{name} writes nothing");
     }
-    assert!(faults.is_empty(), "{} words:\n{}", faults.len(), faults.join("\n"));
+    assert!(differences.is_empty(), "{} words differ:\n{}", differences.len(), differences.join("\n"));
 }
 
-fn agree(own: u32, other: u32, judge: Judge) -> bool {
-    match judge {
-        Judge::Floats(part) => {
-            let (own, other) = (f32::from_bits(own), f32::from_bits(other));
-            (own.is_nan() && other.is_nan()) || (own - other).abs() <= part * own.abs().max(other.abs()).max(1.0)
+fn agree(ours: u32, theirs: u32, tolerance: Tolerance) -> bool {
+    match tolerance {
+        Tolerance::Relative(part) => {
+            let (ours, theirs) = (f32::from_bits(ours), f32::from_bits(theirs));
+            (ours.is_nan() && theirs.is_nan()) || (ours - theirs).abs() <= part * ours.abs().max(theirs.abs()).max(1.0)
         }
-        Judge::Bits => own == other,
+        Tolerance::Exact => ours == theirs,
     }
 }
 
-/// The printer's corpus, one shader per node: what is not run is named.
+/// Compiles the corpus of the GLSL printer, one shader per IR node, and lists the unsupported constructs.
 #[test]
-fn every_other_node_is_refused_by_name() {
+fn unsupported_nodes_are_named() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../emit/glsl/tests/corpus");
-    let mut refused = Vec::new();
+    let mut unsupported = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        let text = std::fs::read_to_string(&path).unwrap();
+        let source = std::fs::read_to_string(&path).unwrap();
         let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities: Capabilities::all() };
-        let module = naga::front::wgsl::Frontend::new_with_options(options).parse(&text).unwrap();
+        let module = naga::front::wgsl::Frontend::new_with_options(options).parse(&source).unwrap();
         let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
         for entry in &module.entry_points {
-            if let Err(faults) = Program::entry_point(&module, &info, &entry.name, &Options::default()) {
-                let what: std::collections::BTreeSet<String> = faults.into_iter().map(|fault| fault.what).collect();
+            if let Err(errors) = Bytecode::entry_point(&module, &info, &entry.name, &Options::default()) {
+                let constructs: std::collections::BTreeSet<String> =
+                    errors.into_iter().map(|error| error.what).collect();
                 let file = path.file_stem().unwrap().to_string_lossy().into_owned();
-                refused.push(format!("{file} {}: {}", entry.name, what.into_iter().collect::<Vec<_>>().join("; ")));
+                unsupported.push(format!(
+                    "{file} {}: {}",
+                    entry.name,
+                    constructs.into_iter().collect::<Vec<_>>().join("; ")
+                ));
             }
         }
     }
-    refused.sort();
-    // Flat textures are read texel by texel; nothing is sampled or written.
-    let shapes = "a texture that is not flat; a variable that was refused; layers of textures; samplers";
+    unsupported.sort();
+    // 2D textures are read texel by texel; sampling and writing are unsupported.
+    let shapes = "a texture that is not 2D; an unsupported variable; layers of textures; samplers";
     let known = [
         "fragment_io early: derivatives".to_owned(),
         format!("texture_shapes main: {shapes}; writing textures"),
         format!("textures main: {shapes}; storage and external textures; writing textures"),
     ];
-    assert_eq!(refused, known);
+    assert_eq!(unsupported, known);
 }
 
-/// Frames of fragbuf's own linked passes, by the names of their snapshots, and what follows size and first row in the frame's uniform
-/// buffer: entries, or room. Fragments go in one after the other.
+/// Frames of linked passes from fragbuf's snapshots, by technique: the word after size and first row in the uniform buffer
+/// of the frame (k or the pool capacity), and the passes. The fragments are stored one after the other.
 const FRAMES: [(&str, u32, &[&str]); 4] = [
     ("kplus_array", 8, &["reset", "store", "resolve"]),
     ("kb", 8, &["reset", "store", "resolve"]),
@@ -216,7 +231,7 @@ const FRAMES: [(&str, u32, &[&str]); 4] = [
     ("ab_sb", 300, &["count", "scan_blocks", "scan_sums", "scan_add", "store", "resolve"]),
 ];
 
-/// What stands in for the rasteriser: the same fragments, from one invocation.
+/// Replaces the rasteriser: one invocation emits the same fragments.
 const DRAWN: &str = "
 @compute @workgroup_size(1)
 fn wrapped() {
@@ -228,7 +243,7 @@ fn wrapped() {
 }
 ";
 
-/// `pass/resolve.wgsl` without the target, for sorts that are finished once all is gathered.
+/// `pass/resolve.wgsl` without the colour target, for sorts that gather all layers first.
 const RESOLVED: &str = "
 @group(0) @binding(20) var<storage, read_write> shown: array<vec4<f32>>;
 @compute @workgroup_size(1)
@@ -255,28 +270,33 @@ fn a_device_leaves_the_same_words_after_every_pass_of_a_frame() {
                 env!("CARGO_MANIFEST_DIR")
             );
             let snapshot = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-            let text = snapshot.splitn(3, "---\n").nth(2).unwrap();
-            let (text, entry, groups) = match *pass {
-                "count" | "store" => {
-                    (format!("{text}{}", DRAWN.replace("FUNCTION", &format!("{pass}_fragment"))), "wrapped", [1, 1, 1])
-                }
-                "resolve" => (format!("{text}{RESOLVED}"), "wrapped", [5, 4, 1]),
-                other => (text.to_owned(), other, [1, 1, 1]),
+            let source = snapshot.splitn(3, "---\n").nth(2).unwrap();
+            let (source, entry, groups) = match *pass {
+                "count" | "store" => (
+                    format!("{source}{}", DRAWN.replace("FUNCTION", &format!("{pass}_fragment"))),
+                    "wrapped",
+                    [1, 1, 1],
+                ),
+                "resolve" => (format!("{source}{RESOLVED}"), "wrapped", [5, 4, 1]),
+                other => (source.to_owned(), other, [1, 1, 1]),
             };
-            let (module, info) = parsed(&text);
-            let program = Program::entry_point(&module, &info, entry, &Options::default()).unwrap();
-            let home = |buffer: &fragbuf_interpreter::Buffer| buffer.binding.map(|(_, binding)| binding);
+            let (module, info) = parsed(&source);
+            let program = Bytecode::entry_point(&module, &info, entry, &Options::default()).unwrap();
+            let binding_of = |buffer: &fragbuf_interpreter::Buffer| buffer.binding.map(|(_, binding)| binding);
             let mut ours: Vec<Vec<u32>> = program
                 .buffers
                 .iter()
-                .map(|buffer| home(buffer).and_then(|at| memory.get(&at).cloned()).unwrap_or_else(|| vec![0; LENGTH]))
+                .map(|buffer| {
+                    binding_of(buffer).and_then(|at| memory.get(&at).cloned()).unwrap_or_else(|| vec![0; LENGTH])
+                })
                 .collect();
-            let theirs = on_device(&headless, &text, entry, &program, groups, &ours);
-            assert_eq!(dispatch(&program, groups, &mut ours), Dispatch::Ended, "{technique} {pass}");
+            let theirs = on_device(&headless, &source, entry, &program, groups, &ours);
+            assert_eq!(dispatch(&program, groups, &mut ours), DispatchEnd::Ended, "{technique} {pass}");
             for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.into_iter().zip(theirs)) {
-                let Some(at) = home(buffer) else { continue };
-                let judge = if buffer.name == "shown" { Judge::Floats(1.0 / 4096.0) } else { Judge::Bits };
-                let differ = ours.iter().zip(&theirs).position(|(own, other)| !agree(*own, *other, judge));
+                let Some(at) = binding_of(buffer) else { continue };
+                let tolerance =
+                    if buffer.name == "shown" { Tolerance::Relative(1.0 / 4096.0) } else { Tolerance::Exact };
+                let differ = ours.iter().zip(&theirs).position(|(ours, theirs)| !agree(*ours, *theirs, tolerance));
                 assert_eq!(differ, None, "{technique} {pass}: a word of {}", buffer.name);
                 memory.insert(at, ours);
             }

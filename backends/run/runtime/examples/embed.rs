@@ -1,17 +1,17 @@
-//! A host that owns its device, its encoder and the order of its passes: it draws a chequered floor of its own, lets
-//! fragbuf put translucent sheets over it, and draws a white frame on top. Everything goes into one picture, `embed.ppm`.
+//! A host that owns its device, its encoder and the order of its passes. It draws a chequered floor, records fragbuf's translucent
+//! sheets over it, and draws a white border on top. The image is `embed.ppm`.
 //!
 //! ```text
 //! cargo run -p fragbuf-runtime --example embed
 //! ```
 //!
-//! What is fragbuf's is in `main`, twenty lines; the rest is the host's own.
+//! The calls of fragbuf are in `main`, in about twenty lines; the other functions belong to the host.
 
-use fragbuf_targets::{Request, generate, target};
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, Origin, check};
+use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
 use fragbuf_runtime::{Call, Output, Recorded, Renderer, Settings, Shaders, block_on};
+use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
 
 const SIZE: u32 = 512;
@@ -23,17 +23,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let border = host_pipeline(&device, "border");
     let sheets = host_sheets(&device, &queue);
 
-    // Once: a technique becomes a plan and its shaders, and these a renderer on the host's device.
+    // Once: compile a technique to a plan and shaders, and create a renderer on the host's device.
     let registry = Registry::builtin();
-    let variant =
-        check(&Draft::from_technique("ab_sb", &Origin::new("embed", 1, 1)), &registry).map_err(|e| e.to_string())?;
+    let variant = check(&Draft::from_technique("ab_sb", &SourceSpan::new("embed", 1, 1)), &registry)
+        .map_err(|e| e.to_string())?;
     let request = Request { targets: &[target("wgsl").ok_or("wgsl")?], form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(&variant, &request, &registry).map_err(|faults| faults.to_string())?;
+    let generation = generate(&variant, &request, &registry).map_err(|diagnostics| diagnostics.to_string())?;
     let shaders = Shaders::from_generation(&generation, "wgsl", 0)?;
     let settings = Settings::new(BLENDED, SIZE, SIZE);
     let mut renderer = block_on(&device, Renderer::new(&device, &queue, &shaders, &settings))??;
 
-    // Each frame: the host's passes and fragbuf's in the host's encoder, in the host's order.
+    // Each frame: record the host's passes and fragbuf's into the host's encoder, in the host's order.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     host_pass(&mut encoder, &screen, &floor, wgpu::LoadOp::Clear(wgpu::Color::BLACK));
     let mut frame = renderer.begin()?;
@@ -42,11 +42,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pass.set_vertex_buffer(0, sheets.slice(..));
         pass.draw(0..9, 0..1);
     };
-    while let Recorded::Cut(cut) = frame.record(&renderer, &mut encoder, &output, &mut draw)? {
+    while let Recorded::Suspended(suspended) = frame.record(&renderer, &mut encoder, &output, &mut draw)? {
         let next = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         queue.submit([std::mem::replace(&mut encoder, next).finish()]);
-        // A host that must not block keeps the cut and comes back when `cut.is_ready()`, or awaits.
-        frame = block_on(&device, cut.resume(&mut renderer))??;
+        // A host that must not block polls `suspended.is_ready()`, or awaits.
+        frame = block_on(&device, suspended.resume(&mut renderer))??;
     }
     host_pass(&mut encoder, &screen, &border, wgpu::LoadOp::Load);
     queue.submit([encoder.finish()]);
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// One pass of the host's own over the whole screen.
+/// Records a pass of the host over the whole screen.
 fn host_pass(
     encoder: &mut wgpu::CommandEncoder,
     screen: &Offscreen,
@@ -72,7 +72,7 @@ fn host_pass(
     pass.draw(0..3, 0..1);
 }
 
-/// A pipeline with a fragment shader of the host's own.
+/// Creates a pipeline with a fragment shader of the host.
 fn host_pipeline(device: &wgpu::Device, entry_point: &str) -> wgpu::RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(HOST_SHADERS.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
@@ -112,7 +112,7 @@ const HOST_SHADERS: &str = "
     return vec4<f32>(1.0);
 }";
 
-/// Three triangles that cut through each other, position and colour.
+/// Creates a vertex buffer with three intersecting triangles: position and colour.
 fn host_sheets(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::Buffer {
     let colors = [[0.9, 0.1, 0.1, 0.5], [0.1, 0.8, 0.2, 0.5], [0.1, 0.2, 0.9, 0.5]];
     let mut bytes: Vec<u8> = Vec::new();
@@ -131,7 +131,7 @@ fn host_sheets(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::Buffer {
     buffer
 }
 
-/// The picture as a portable pixmap, sRGB-encoded.
+/// Writes the image as a portable pixmap, sRGB-encoded.
 fn host_save(colors: &[[f32; 4]]) -> std::io::Result<()> {
     let mut file = format!("P6 {SIZE} {SIZE} 255\n").into_bytes();
     let encoded =

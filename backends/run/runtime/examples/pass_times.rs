@@ -1,16 +1,16 @@
-//! Milliseconds of each pass for a technique, on quads over the whole frame in an order that is neither near to far nor
-//! far to near: the median of eleven frames after two that warm up.
+//! Prints the milliseconds of each pass of a technique: the median of eleven frames after two warm-up frames. The scene is layers
+//! over the whole frame, in an order that is not sorted by depth.
 //!
 //! ```text
 //! cargo run -p fragbuf-runtime --example pass_times -- kplus_array wgsl 512 32 cpu
 //! ```
-#![allow(clippy::print_stdout, reason = "the figures are its output")]
+#![allow(clippy::print_stdout, reason = "the times are its output")]
 
-use fragbuf_targets::{Request, generate, target};
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, Origin, check};
+use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen};
-use fragbuf_runtime::{Output, Renderer, Room, Settings, Shaders, block_on};
+use fragbuf_runtime::{Output, PoolSize, Renderer, Settings, Shaders, block_on};
+use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,19 +20,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (size, layers): (u32, u32) = (size.parse()?, layers.parse()?);
     let registry = Registry::builtin();
-    let draft = Draft::from_technique(key, &Origin::new("arguments", 1, 1));
-    let variant = check(&draft, &registry).map_err(|faults| faults.to_string())?;
+    let draft = Draft::from_technique(key, &SourceSpan::new("arguments", 1, 1));
+    let variant = check(&draft, &registry).map_err(|diagnostics| diagnostics.to_string())?;
     let request =
         Request { targets: &[target(language).ok_or("no such target")?], form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(&variant, &request, &registry).map_err(|faults| faults.to_string())?;
+    let generation = generate(&variant, &request, &registry).map_err(|diagnostics| diagnostics.to_string())?;
     let shaders = Shaders::from_generation(&generation, language, 0)?;
 
-    let stage = Headless::open(&adapter.parse()?, shaders.features())?;
-    let Headless { device, queue, info, .. } = &stage;
+    let headless = Headless::open(&adapter.parse()?, shaders.features())?;
+    let Headless { device, queue, info, .. } = &headless;
     let settings = Settings { timestamps: true, ..Settings::new(BLENDED, size, size) };
     let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
-    if renderer.symbol("fragments").is_some_and(|room| room > 0) {
-        block_on(device, renderer.reserve(Room::Fragments(size * size * layers)))??;
+    if renderer.symbol("fragments").is_some_and(|fragments| fragments > 0) {
+        block_on(device, renderer.reserve(PoolSize::Fragments(size * size * layers)))??;
     }
     let screen = Offscreen::new(device, BLENDED, size, size)?;
     let vertices = sheets(device, queue, layers);
@@ -62,15 +62,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         times.sort_by(f64::total_cmp);
         println!("  {name:12} {:9.3} ms", times.get(times.len() / 2).unwrap_or(&0.0));
     }
-    println!("  {} bytes, {lost} fragments not kept", renderer.allocated_bytes());
+    println!("  {} bytes, {lost} fragments lost", renderer.allocated_bytes());
     Ok(())
 }
 
-/// One triangle per layer over the whole frame.
+/// Creates a vertex buffer with one triangle per layer over the whole frame.
 fn sheets(device: &wgpu::Device, queue: &wgpu::Queue, layers: u32) -> wgpu::Buffer {
     let mut bytes: Vec<u8> = Vec::new();
     for layer in 0..layers {
-        // The golden ratio scatters the depths evenly.
+        // The golden ratio distributes the depths evenly.
         let depth = (0.618_034 * f64::from(layer)).fract() as f32;
         for [x, y] in [[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]] {
             bytes

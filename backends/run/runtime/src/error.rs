@@ -1,122 +1,124 @@
-//! What can go wrong between a plan and its pixels, as values: each says what is wrong and what the way out is.
+//! Errors of the runtime. Each message says what is wrong and how to fix it.
 
 use std::fmt;
 
 use fragbuf_templates::vocabulary::FormulaError;
 
-/// Why the runtime cannot go on. Whatever failed has changed nothing: buffers, sizes and k are as before.
+/// Why a call failed. A failed call changes nothing: buffers, sizes and k stay as before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// The plan has a step or a resource that this runtime does not run.
+    /// The plan has a step or a resource that the runtime does not support.
     Unsupported {
         /// The step or resource.
         what: String,
-        /// The way out.
-        hint: String,
+        /// The suggested fix.
+        help: String,
     },
     /// A formula has no value.
     Formula {
-        /// Whose formula.
+        /// The resource or setting that the formula computes.
         what: String,
-        /// Why.
+        /// The reason.
         error: FormulaError,
     },
-    /// A size is beyond a limit of the device.
+    /// A size exceeds a limit of the device.
     TooLarge {
         /// The resource, or the dimension of the frame.
         what: String,
-        /// What is needed, in the limit's unit.
+        /// The required amount, in the limit's unit.
         needed: u64,
-        /// What the device allows.
+        /// The device's limit.
         limit: u64,
         /// wgpu's name for the limit.
         limit_name: &'static str,
-        /// The way out.
-        hint: &'static str,
+        /// The suggested fix.
+        help: &'static str,
     },
     /// The device lacks features that the shaders need.
     MissingFeatures(wgpu::Features),
     /// There is not enough memory.
     OutOfMemory {
-        /// What was being made.
+        /// The object.
         what: String,
         /// Its size in bytes, as far as it is known.
         bytes: u64,
     },
-    /// wgpu refused something: the caller's settings and the plan do not fit, or the fault is ours.
+    /// wgpu rejected a call: the caller's settings do not fit the plan, or fragbuf has a defect.
     Validation {
-        /// What was being made.
+        /// The object, or the commands.
         what: String,
-        /// wgpu's words.
+        /// wgpu's message.
         message: String,
     },
     /// The driver failed.
     Internal {
-        /// What was being made.
+        /// The object, or the commands.
         what: String,
-        /// wgpu's words.
+        /// wgpu's message.
         message: String,
     },
-    /// What was to be read back never came: the device was lost, or its buffer destroyed.
-    Lost,
-    /// Nothing that was recorded was submitted, so that there is nothing to wait for.
+    /// A readback did not complete: the device was lost, or its buffer was destroyed.
+    DeviceLost,
+    /// The recorded commands were not submitted, so there is nothing to wait for.
     NotSubmitted,
-    /// The frame began before another frame, a new size or a new k took its place.
+    /// A later frame, a resize or a new k has replaced the frame.
     StaleFrame,
-    /// A value that the plan does not take.
+    /// A value that the plan does not accept.
     BadValue {
         /// The value's name.
         name: String,
-        /// What it must be.
-        wanted: String,
+        /// The accepted values.
+        expected: String,
     },
-    /// The shaders have no entry point where the plan needs one.
+    /// The shaders lack an entry point that the plan needs.
     MissingCode {
         /// The pass.
         pass: String,
         /// The stage.
         stage: &'static str,
     },
-    /// No adapter of that name, or none at all.
+    /// No adapter matches, or there is none.
     NoAdapter {
-        /// What was asked for.
-        wanted: String,
-        /// What there is.
-        found: Vec<String>,
+        /// The requested adapter.
+        requested: String,
+        /// The names of the available adapters.
+        available: Vec<String>,
     },
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Unsupported { what, hint } => write!(f, "the runtime does not run {what}: {hint}"),
+            Error::Unsupported { what, help } => write!(f, "the runtime does not support {what}: {help}"),
             Error::Formula { what, error } => write!(f, "the size of {what} has no value: {error}"),
-            Error::TooLarge { what, needed, limit, limit_name, hint } => {
-                write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {hint}")
+            Error::TooLarge { what, needed, limit, limit_name, help } => {
+                write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
             Error::MissingFeatures(features) => {
-                write!(f, "the device lacks {features:?}: request them, or take shaders of the target `wgsl`")
+                write!(f, "the device lacks {features:?}: request them, or use shaders of the target `wgsl`")
             }
             Error::OutOfMemory { what, bytes } => {
-                write!(f, "out of memory at {what} ({bytes} bytes): take a smaller frame, or keep less")
+                write!(f, "out of memory allocating {what} ({bytes} bytes): use a smaller frame or keep fewer fragments")
             }
-            Error::Validation { what, message } => write!(f, "wgpu refuses {what}: {message}"),
-            Error::Internal { what, message } => write!(f, "the driver failed at {what}: {message}"),
-            Error::Lost => f.write_str("a readback never came: the device is lost; make a new one and a new renderer"),
-            Error::NotSubmitted => f.write_str("nothing to wait for: submit what was recorded first"),
-            Error::StaleFrame => f.write_str("this frame is over: another frame, a new size or a new k took its place"),
-            Error::BadValue { name, wanted } => write!(f, "{name} must be {wanted}"),
+            Error::Validation { what, message } => write!(f, "wgpu rejects {what}: {message}"),
+            Error::Internal { what, message } => write!(f, "driver error in {what}: {message}"),
+            Error::DeviceLost => f.write_str(
+                "a readback did not complete: the device is lost or the buffer was destroyed; create a new device and renderer",
+            ),
+            Error::NotSubmitted => f.write_str("nothing to wait for: submit the recorded commands first"),
+            Error::StaleFrame => f.write_str("stale frame: a later frame, a resize or a new k replaced it"),
+            Error::BadValue { name, expected } => write!(f, "{name} must be {expected}"),
             Error::MissingCode { pass, stage } => {
                 write!(f, "the shaders have no {stage} entry point for pass `{pass}`")
             }
-            Error::NoAdapter { wanted, found } if found.is_empty() => {
+            Error::NoAdapter { requested, available } if available.is_empty() => {
                 write!(
                     f,
-                    "no adapter at all (wanted: {wanted}): install a driver; mesa-vulkan-drivers has one for the CPU"
+                    "no adapter found (requested: {requested}): install a driver; mesa-vulkan-drivers has one for the CPU"
                 )
             }
-            Error::NoAdapter { wanted, found } => {
-                write!(f, "no adapter is {wanted}; there are: {}", found.join(", "))
+            Error::NoAdapter { requested, available } => {
+                write!(f, "no adapter is {requested}; available: {}", available.join(", "))
             }
         }
     }
@@ -127,12 +129,12 @@ impl std::error::Error for Error {}
 impl From<fragbuf_frame::Error> for Error {
     fn from(error: fragbuf_frame::Error) -> Self {
         match error {
-            fragbuf_frame::Error::Unsupported { what, hint } => Error::Unsupported { what, hint },
+            fragbuf_frame::Error::Unsupported { what, help } => Error::Unsupported { what, help },
             fragbuf_frame::Error::Formula { what, error } => Error::Formula { what, error },
-            fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, hint } => {
-                Error::TooLarge { what, needed, limit, limit_name, hint }
+            fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, help } => {
+                Error::TooLarge { what, needed, limit, limit_name, help }
             }
-            fragbuf_frame::Error::BadValue { name, wanted } => Error::BadValue { name, wanted },
+            fragbuf_frame::Error::BadValue { name, expected } => Error::BadValue { name, expected },
         }
     }
 }

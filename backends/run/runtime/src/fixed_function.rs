@@ -1,15 +1,15 @@
-//! What a pass's pipeline has around its shaders: targets, depth and stencil tests, samples.
+//! The fixed-function state of a pass's pipeline: targets, depth and stencil tests, samples.
 //!
-//! In: the state of a pass and the plan's textures. Out: wgpu's descriptors. Nothing here knows what the state is for.
+//! Input: the state of a pass and the plan's textures. Output: wgpu's descriptors. This module is independent of the technique.
 
 use fragbuf_codegen::{Plan, PlannedPass, SymbolId};
-use fragbuf_frame::Values;
 use fragbuf_templates::vocabulary::{
-    Blend, Compare, Element, Pass, StencilOperation, StencilState, Target, TextureFormat,
+    Blend, ColorTarget, Compare, Element, Pass, StencilOperation, StencilState, TextureFormat,
 };
 
 use crate::Error;
-use crate::pipeline::no_target;
+use crate::placeholder::placeholder_target;
+use crate::samples::multisample;
 use crate::texture::{OUTPUT, texture_format};
 
 /// The state of one pipeline.
@@ -19,19 +19,19 @@ pub(crate) struct FixedFunction {
     pub(crate) multisample: wgpu::MultisampleState,
 }
 
-/// The states of a pass: one, or one for each round where its sample mask changes with the round.
+/// Returns the states of a pass: one, or one for each iteration if its sample mask depends on the iteration.
 pub(crate) fn fixed_functions(
     plan: &Plan,
     pass: &PlannedPass,
     output: wgpu::TextureFormat,
-    rounds: u32,
+    iterations: u32,
 ) -> Result<Vec<FixedFunction>, Error> {
     let changes = pass.samples.as_ref().is_some_and(|[_, mask]| mask.mentions(SymbolId::ITERATION));
-    let states = (0..if changes { rounds } else { 1 }).map(|round| {
+    let states = (0..if changes { iterations } else { 1 }).map(|iteration| {
         Ok(FixedFunction {
             targets: targets(plan, pass, output),
             depth_stencil: depth_stencil(plan, pass),
-            multisample: multisample(plan, pass, round)?,
+            multisample: multisample(plan, pass, iteration)?,
         })
     });
     states.collect()
@@ -40,9 +40,9 @@ pub(crate) fn fixed_functions(
 fn targets(plan: &Plan, pass: &Pass, output: wgpu::TextureFormat) -> Vec<Option<wgpu::ColorTargetState>> {
     let state = &pass.state;
     if state.targets.is_empty() && state.depth.is_none() && state.stencil.is_none() {
-        return vec![Some(no_target())];
+        return vec![Some(placeholder_target())];
     }
-    let target = |target: &Target| {
+    let target = |target: &ColorTarget| {
         let format = match target.resource.as_str() {
             OUTPUT => output,
             name => texture_format(format_of(plan, name)?),
@@ -76,28 +76,11 @@ fn stencil_state(state: &StencilState) -> wgpu::StencilState {
     let face = wgpu::StencilFaceState {
         compare: compare(state.compare),
         fail_op: operation(state.fail),
-        // A fragment that only depth turns away leaves the stencil as it is.
+        // A fragment that only the depth test rejects does not change the stencil.
         depth_fail_op: wgpu::StencilOperation::Keep,
         pass_op: operation(state.pass),
     };
     wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
-}
-
-/// Samples of a pixel in a pass.
-pub(crate) fn sample_count(plan: &Plan, pass: &PlannedPass) -> Result<u32, Error> {
-    let Some([count, _]) = &pass.samples else { return Ok(1) };
-    Ok(Values::of_code(plan).word(count, "the samples of a pass")?)
-}
-
-/// The samples of a pass in one iteration of a loop.
-pub(crate) fn multisample(plan: &Plan, pass: &PlannedPass, iteration: u32) -> Result<wgpu::MultisampleState, Error> {
-    let Some([count, mask]) = &pass.samples else { return Ok(wgpu::MultisampleState::default()) };
-    let code = Values::of_code(plan).in_iteration(iteration);
-    Ok(wgpu::MultisampleState {
-        count: code.word(count, "the samples of a pass")?,
-        mask: code.word(mask, "the sample mask of a pass")?.into(),
-        alpha_to_coverage_enabled: false,
-    })
 }
 
 fn compare(compare: Compare) -> wgpu::CompareFunction {

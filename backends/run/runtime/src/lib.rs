@@ -1,27 +1,31 @@
-//! Runs plans on wgpu. The caller owns device, queue, encoder and draws; the plan says what is done with them.
+//! Runs plans on wgpu. The caller owns the device, the queue, the encoder and the draws; the plan gives the passes.
 //!
 //! ```text
 //! Program ─► Shaders ─┐
 //! Settings ───────────┴─► Renderer ──begin──► Frame ──record──► commands in the caller's encoder
-//!                                               ▲                 │ cut: the host must read
-//!                                               └──resume── Cut ◄─┘
+//!                                               ▲                 │ suspended: the host must read
+//!                                               └──resume── SuspendedFrame ◄─┘
 //! ```
 //!
-//! `examples/embed.rs` is a host that owns its device and the order of its passes. Whole frames, where blocking is
-//! possible, are [`Renderer::render`]. Frames beyond a limit are made of slices ([`Settings::slice`]); a k beyond the
-//! capacity of the pipelines takes others ([`Buckets`]).
+//! `examples/embed.rs` is a host that owns its device and the order of its passes. [`Renderer::render`] renders whole frames
+//! where blocking is possible. Frames beyond a device limit are drawn in slices ([`Settings::slice`]). A k beyond the capacity
+//! of the pipelines needs other pipelines ([`Buckets`]).
 //!
-//! Nothing here knows a technique by name, and nothing blocks, apart from [`Renderer::render`], [`block_on`] and
-//! [`headless`]. Failures are values of [`Error`]; what failed has changed nothing.
+//! This crate contains no technique's name. Only [`Renderer::render`], [`block_on`] and [`headless`] block. Failures are
+//! values of [`Error`]; a failed call changes nothing.
 
 mod attachments;
+mod bind_groups;
 mod blocking;
-mod blocks;
-mod brought;
 mod buckets;
+mod draw;
 mod error;
+mod error_scope;
+mod external;
 mod fixed_function;
 mod frame;
+mod frame_blocks;
+mod frame_resources;
 pub mod headless;
 mod layout;
 mod memory;
@@ -29,27 +33,30 @@ mod objects;
 mod pattern;
 mod pipeline;
 mod pipelines;
+mod placeholder;
 mod queries;
 mod readback;
-mod refusals;
+mod recording;
 mod renderer;
 mod results;
-mod room;
-mod scope;
+mod samples;
+mod segment;
 mod settings;
 mod shaders;
-mod sized;
+mod slice_rows;
 mod texture;
 mod timing;
+mod uniform_buffers;
+mod unsupported;
 mod vertices;
-mod walk;
 mod words;
 
 pub use blocking::block_on;
 pub use buckets::Buckets;
+pub use draw::{Call, Draw, Output};
 pub use error::Error;
-pub use fragbuf_frame::{Counter, Counters, LoopEnd, Looped, PassTime, Room, Sizing, Value};
-pub use frame::{Call, Cut, Draw, Frame, Output, Recorded};
+pub use fragbuf_frame::{Counter, Counters, LoopEnd, LoopReport, PassTime, PoolSize, Sizing, Value};
+pub use frame::{Frame, Recorded, SuspendedFrame};
 pub use objects::ObjectBox;
 pub use pipelines::Pipelines;
 pub use readback::Pending;

@@ -1,41 +1,41 @@
-//! The memory of a frame: a buffer or a texture per resource, all of them or none. Buffers have as many bytes as the plan's
-//! formula says; textures are as large as the frame, whatever its slices. Textures that the caller brings are held, not made.
+//! The memory of a frame: a buffer or a texture per resource, allocated all together or not at all. A buffer has the bytes of the
+//! plan's formula. A texture has the size of the frame, independent of slices. The caller supplies external textures.
 
-use fragbuf_codegen::{Plan, Planned};
-use fragbuf_frame::{Values, bytes};
+use fragbuf_codegen::{Plan, PlannedResource};
+use fragbuf_frame::{Values, resource_bytes};
 use fragbuf_templates::vocabulary::{Access, Element};
 
 use crate::Error;
-use crate::scope::scoped;
+use crate::error_scope::in_error_scope;
 use crate::texture::{create_texture, texture_bytes};
 
 /// The buffers and textures of a plan's resources at one size.
 #[derive(Clone)]
 pub(crate) struct Memory {
     /// One per resource.
-    held: Vec<Held>,
+    allocations: Vec<Allocation>,
 }
 
 #[derive(Clone)]
-struct Held {
-    memory: Kind,
-    /// 0: the buffer only stands in for an empty resource, because nothing empty can be bound.
+struct Allocation {
+    object: DeviceObject,
+    /// 0: the buffer is a placeholder for an empty resource, because WebGPU cannot bind an empty buffer.
     size: u64,
 }
 
 #[derive(Clone)]
-enum Kind {
+enum DeviceObject {
     Buffer(wgpu::Buffer),
     Texture(wgpu::Texture),
-    /// What is bound in the place of a texture that the caller has not brought yet.
-    Missing(wgpu::Texture),
+    /// A placeholder for an external texture that the caller has not set yet.
+    MissingTexture(wgpu::Texture),
 }
 
-/// Bytes of a buffer that stands in for an empty resource.
+/// The bytes of a placeholder for an empty resource.
 const PLACEHOLDER: u64 = 16;
 
 impl Memory {
-    /// Memory for `values`. What has the right size already is taken over from `old`.
+    /// Allocates memory for `values`. Objects of the right size come from `old`.
     pub(crate) async fn allocate(
         device: &wgpu::Device,
         plan: &Plan,
@@ -43,111 +43,111 @@ impl Memory {
         old: Option<&Memory>,
     ) -> Result<Self, Error> {
         let sizes = checked_sizes(plan, values, &device.limits())?;
-        let mut held = Vec::with_capacity(sizes.len());
+        let mut allocations = Vec::with_capacity(sizes.len());
         for (index, (size, planned)) in sizes.into_iter().zip(&plan.resources).enumerate() {
-            let old = old.and_then(|old| old.held.get(index));
-            held.push(hold(device, plan, planned, (values, size), old).await?);
+            let old = old.and_then(|old| old.allocations.get(index));
+            allocations.push(allocate(device, plan, planned, (values, size), old).await?);
         }
-        Ok(Memory { held })
+        Ok(Memory { allocations })
     }
 
-    /// What to bind for a resource that is no texture.
+    /// Returns the buffer to bind for a resource that is no texture. It is a placeholder if the resource is empty.
+    pub(crate) fn buffer_to_bind(&self, index: usize) -> Option<&wgpu::Buffer> {
+        match &self.allocations.get(index)?.object {
+            DeviceObject::Buffer(buffer) => Some(buffer),
+            DeviceObject::Texture(_) | DeviceObject::MissingTexture(_) => None,
+        }
+    }
+
+    /// Returns the buffer of a resource that is not empty.
     pub(crate) fn buffer(&self, index: usize) -> Option<&wgpu::Buffer> {
-        match &self.held.get(index)?.memory {
-            Kind::Buffer(buffer) => Some(buffer),
-            Kind::Texture(_) | Kind::Missing(_) => None,
-        }
+        self.allocations.get(index).filter(|allocation| allocation.size > 0)?;
+        self.buffer_to_bind(index)
     }
 
-    /// The buffer of a resource that is not empty.
-    pub(crate) fn filled(&self, index: usize) -> Option<&wgpu::Buffer> {
-        self.held.get(index).filter(|held| held.size > 0)?;
-        self.buffer(index)
-    }
-
-    /// The texture of a resource that is one, once the caller has brought it if that is the caller's to do.
+    /// Returns the texture of a resource; `None` for a buffer, and for an external texture that the caller has not set.
     pub(crate) fn texture(&self, index: usize) -> Option<&wgpu::Texture> {
-        match &self.held.get(index)?.memory {
-            Kind::Texture(texture) => Some(texture),
-            Kind::Buffer(_) | Kind::Missing(_) => None,
+        match &self.allocations.get(index)?.object {
+            DeviceObject::Texture(texture) => Some(texture),
+            DeviceObject::Buffer(_) | DeviceObject::MissingTexture(_) => None,
         }
     }
 
-    /// What to bind for a resource that is a texture.
-    pub(crate) fn bound_texture(&self, index: usize) -> Option<&wgpu::Texture> {
-        match &self.held.get(index)?.memory {
-            Kind::Texture(texture) | Kind::Missing(texture) => Some(texture),
-            Kind::Buffer(_) => None,
+    /// Returns the texture to bind for a resource that is a texture. It is a placeholder if the caller has not set one.
+    pub(crate) fn texture_to_bind(&self, index: usize) -> Option<&wgpu::Texture> {
+        match &self.allocations.get(index)?.object {
+            DeviceObject::Texture(texture) | DeviceObject::MissingTexture(texture) => Some(texture),
+            DeviceObject::Buffer(_) => None,
         }
     }
 
-    /// Takes a texture of the caller's, which fits.
-    pub(crate) fn bring(&mut self, index: usize, texture: &wgpu::Texture) {
-        if let Some(held) = self.held.get_mut(index) {
-            held.memory = Kind::Texture(texture.clone());
+    /// Sets an external texture, whose properties have been checked.
+    pub(crate) fn set_texture(&mut self, index: usize, texture: &wgpu::Texture) {
+        if let Some(allocation) = self.allocations.get_mut(index) {
+            allocation.object = DeviceObject::Texture(texture.clone());
         }
     }
 
-    /// The number of a resource that the caller has not brought yet.
-    pub(crate) fn missing(&self) -> Option<usize> {
-        self.held.iter().position(|held| matches!(held.memory, Kind::Missing(_)))
+    /// Returns the number of an external texture that the caller has not set.
+    pub(crate) fn missing_texture(&self) -> Option<usize> {
+        self.allocations.iter().position(|allocation| matches!(allocation.object, DeviceObject::MissingTexture(_)))
     }
 
-    /// Bytes of all buffers as they are, those apart that stand in for empty resources, and of all textures as the plan
-    /// counts them, but for what the caller brings.
+    /// Returns the bytes of all buffers without placeholders, as wgpu reports them, and of all textures but external ones, by
+    /// the plan's formulas.
     pub(crate) fn bytes(&self) -> u64 {
-        let bytes = |held: &Held| match &held.memory {
-            Kind::Buffer(buffer) => buffer.size(),
-            Kind::Texture(_) | Kind::Missing(_) => held.size,
+        let bytes = |allocation: &Allocation| match &allocation.object {
+            DeviceObject::Buffer(buffer) => buffer.size(),
+            DeviceObject::Texture(_) | DeviceObject::MissingTexture(_) => allocation.size,
         };
-        self.held.iter().filter(|held| held.size > 0).map(bytes).sum()
+        self.allocations.iter().filter(|allocation| allocation.size > 0).map(bytes).sum()
     }
 }
 
-async fn hold(
+async fn allocate(
     device: &wgpu::Device,
     plan: &Plan,
-    planned: &Planned,
+    planned: &PlannedResource,
     (values, size): (&Values, u64),
-    old: Option<&Held>,
-) -> Result<Held, Error> {
+    old: Option<&Allocation>,
+) -> Result<Allocation, Error> {
     let what = format!("`{}`", planned.resource.name);
     if let Element::Texture(format) = planned.resource.element {
-        let brought = planned.is_brought();
-        let size = if brought { 0 } else { texture_bytes(planned, values)? };
+        let is_external = planned.is_external();
+        let size = if is_external { 0 } else { texture_bytes(planned, values)? };
         let frame = (values.width(), values.height());
         let same = |texture: &wgpu::Texture| (texture.width(), texture.height()) == frame;
-        let memory = match old.map(|old| &old.memory) {
-            Some(Kind::Texture(texture)) if same(texture) => Kind::Texture(texture.clone()),
-            _ if brought => {
+        let object = match old.map(|old| &old.object) {
+            Some(DeviceObject::Texture(texture)) if same(texture) => DeviceObject::Texture(texture.clone()),
+            _ if is_external => {
                 let make = || create_texture(device, plan, planned, format, (1, 1));
-                Kind::Missing(scoped(device, &what, size, make).await??)
+                DeviceObject::MissingTexture(in_error_scope(device, &what, size, make).await??)
             }
             _ => {
                 let make = || create_texture(device, plan, planned, format, frame);
-                Kind::Texture(scoped(device, &what, size, make).await??)
+                DeviceObject::Texture(in_error_scope(device, &what, size, make).await??)
             }
         };
-        return Ok(Held { memory, size });
+        return Ok(Allocation { object, size });
     }
-    let memory = match old.filter(|held| held.size == size).map(|held| &held.memory) {
-        Some(kept @ Kind::Buffer(_)) => kept.clone(),
+    let object = match old.filter(|old| old.size == size).map(|old| &old.object) {
+        Some(kept @ DeviceObject::Buffer(_)) => kept.clone(),
         _ => {
             let size = if size == 0 { PLACEHOLDER } else { size };
-            let make = || create(device, &planned.resource.name, size, is_indirect(plan, planned));
-            Kind::Buffer(scoped(device, &what, size, make).await?)
+            let make = || create_buffer(device, &planned.resource.name, size, is_indirect(plan, planned));
+            DeviceObject::Buffer(in_error_scope(device, &what, size, make).await?)
         }
     };
-    Ok(Held { memory, size })
+    Ok(Allocation { object, size })
 }
 
-/// Whether a pass takes the arguments of its draw or dispatch from a resource.
-fn is_indirect(plan: &Plan, planned: &Planned) -> bool {
+/// Whether a pass reads the arguments of its draw or dispatch from a resource.
+fn is_indirect(plan: &Plan, planned: &PlannedResource) -> bool {
     let mut uses = plan.passes.iter().flat_map(|pass| &pass.uses);
     uses.any(|usage| usage.resource == planned.resource.name && usage.access == Access::Indirect)
 }
 
-fn create(device: &wgpu::Device, name: &str, size: u64, is_indirect: bool) -> wgpu::Buffer {
+fn create_buffer(device: &wgpu::Device, name: &str, size: u64, is_indirect: bool) -> wgpu::Buffer {
     let mut usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
     if is_indirect {
         usage |= wgpu::BufferUsages::INDIRECT;
@@ -155,9 +155,9 @@ fn create(device: &wgpu::Device, name: &str, size: u64, is_indirect: bool) -> wg
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
 }
 
-/// Bytes of every resource, each within the limits. Textures have limits of their own.
+/// Returns the bytes of every resource. Fails if a buffer exceeds a limit; textures have other limits.
 pub(crate) fn checked_sizes(plan: &Plan, values: &Values, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
-    let sizes = bytes(plan, values)?.into_iter().zip(&plan.resources);
+    let sizes = resource_bytes(plan, values)?.into_iter().zip(&plan.resources);
     let checked = sizes.map(|((name, bytes), planned)| match planned.resource.element {
         Element::Texture(_) => Ok(bytes),
         _ => check(limits, name, bytes).map(|()| bytes),
@@ -177,6 +177,6 @@ fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {
         needed,
         limit,
         limit_name,
-        hint: "take a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
+        help: "use a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
     })
 }

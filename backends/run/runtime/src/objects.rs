@@ -1,20 +1,21 @@
-//! The caller's objects, by the boxes around them (D13 §3.3): geometry for a query of each, and which boxes no query can
-//! judge.
+//! The boxes around the caller's objects (D13 §3.3), which occlusion queries draw, and the test for boxes that no query can
+//! decide.
 //!
-//! In: boxes in the space of vertex positions. Out: a vertex buffer, laid out as the vertex stage's own inputs, and indices.
+//! Input: boxes in the space of vertex positions. Output: a vertex buffer in the layout of the vertex stage's inputs, and
+//! indices.
 
 use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
 
-use crate::Error;
+use crate::error_scope::in_error_scope;
 use crate::words::to_bytes;
-use crate::{VertexInputs, scope::scoped};
+use crate::{Error, VertexInputs};
 
 /// A box around an object: its least and its greatest corner, in the space of vertex positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectBox {
     /// The least coordinates.
     pub least: [f32; 3],
-    /// The greatest.
+    /// The greatest coordinates.
     pub greatest: [f32; 3],
 }
 
@@ -26,8 +27,8 @@ pub(crate) struct Objects {
 }
 
 impl ObjectBox {
-    /// Whether the box reaches to where the near plane cuts it away, so that none of its samples may pass although the object
-    /// is seen. `camera` holds columns.
+    /// Whether the near plane clips the box, so that possibly none of its samples passes although the object is visible.
+    /// `camera` is in column order.
     pub(crate) fn crosses_near_plane(&self, camera: &[f32; 16]) -> bool {
         box_corners(self.least, self.greatest).into_iter().any(|[x, y, z]| {
             let row = |row: usize| camera[row] * x + camera[4 + row] * y + camera[8 + row] * z + camera[12 + row];
@@ -59,7 +60,7 @@ impl Objects {
             queue.write_buffer(&indices, 0, &to_bytes(&BOX_TRIANGLES));
             Objects { boxes: boxes.to_vec(), vertices, indices }
         };
-        scoped(device, "the boxes of objects", bytes, make).await
+        in_error_scope(device, "the boxes of objects", bytes, make).await
     }
 
     pub(crate) fn boxes(&self) -> &[ObjectBox] {

@@ -1,14 +1,14 @@
-//! Clears to something else than zero, by copies from a buffer full of the word: WebGPU has no other.
+//! Clears buffers to words other than zero, by copies from a buffer filled with the word: WebGPU clears only to zero.
 
 use fragbuf_codegen::{Action, Plan};
 use fragbuf_templates::vocabulary::Element;
 
 use crate::words;
 
-/// Bytes that one copy of a pattern clears.
+/// The bytes that one copy of a pattern clears.
 pub(crate) const PATTERN: u64 = 1 << 16;
 
-/// A buffer full of each word that some step clears a buffer to, zero apart.
+/// Creates a filled buffer for each word other than zero that a step clears a buffer to.
 pub(crate) fn patterns(device: &wgpu::Device, plan: &Plan) -> Vec<(u32, wgpu::Buffer)> {
     let mut patterns: Vec<(u32, wgpu::Buffer)> = Vec::new();
     for command in &plan.frame.commands {

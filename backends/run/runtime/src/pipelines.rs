@@ -1,116 +1,116 @@
-//! What a plan needs on one device whatever the size of its frames: pipelines, layouts, buffers full of a word to clear
-//! with. Made once, shared by every renderer of the same shaders.
+//! The device objects of a plan that do not depend on the size of its frames: pipelines, layouts, and buffers with clear words.
+//! They are created once and shared by every renderer of the same shaders.
 
 use std::sync::Arc;
 
 use fragbuf_codegen::{PassId, Plan, PlannedPass, ResourceId};
-use fragbuf_frame::{most_iterations, most_runs, unsupported};
+use fragbuf_frame::{max_iterations, max_pass_runs, unsupported as unsupported_plan};
 use fragbuf_templates::vocabulary::Objects;
 
-use crate::layout::{Slot, bind_group_layout, check, slots};
+use crate::error_scope::in_error_scope;
+use crate::layout::{Binding, bind_group_layout, bindings, check};
 use crate::pattern::patterns;
-use crate::pipeline::{Maker, Pipeline};
-use crate::scope::scoped;
-use crate::{Error, Settings, Shaders, VertexInputs, refusals};
+use crate::pipeline::{Pipeline, PipelineBuilder};
+use crate::{Error, Settings, Shaders, VertexInputs, unsupported};
 
-/// The pipelines of one plan on one device. Cloning it is cheap.
+/// The pipelines of one plan on one device. Cloning is cheap.
 #[derive(Clone)]
-pub struct Pipelines(pub(crate) Arc<Made>);
+pub struct Pipelines(pub(crate) Arc<PipelineSet>);
 
-pub(crate) struct Made {
+/// The shared content of [`Pipelines`].
+pub(crate) struct PipelineSet {
     pub(crate) plan: Plan,
     pub(crate) group: u32,
-    /// The most iterations of any loop.
-    pub(crate) iterations: u32,
-    /// Runs of passes in a slice at most.
-    pub(crate) most_runs: u64,
-    pub(crate) passes: Vec<Prepared>,
-    /// Words of 64 KiB each, for clears to something else than zero.
+    /// The greatest iteration limit of any loop.
+    pub(crate) max_iterations: u32,
+    /// The greatest number of pass runs in a slice.
+    pub(crate) max_pass_runs: u64,
+    pub(crate) passes: Vec<PreparedPass>,
+    /// Buffers of 64 KiB filled with a word, for clears to words other than zero.
     pub(crate) patterns: Vec<(u32, wgpu::Buffer)>,
     pub(crate) inputs: VertexInputs,
 }
 
-impl Made {
-    /// Occlusion queries that a frame needs with so many objects: one for each pass whose samples a loop waits for, and
-    /// behind them one for each object, where boxes are drawn.
+impl PipelineSet {
+    /// Returns the number of occlusion queries in a frame with `objects` objects: one for each pass whose samples a loop waits
+    /// for, then one for each object if a pass draws boxes.
     pub(crate) fn queries(&self, objects: u32) -> u32 {
         let has_boxes = self.passes.iter().any(|prepared| prepared.pass.objects == Objects::Boxes);
-        self.awaited() + if has_boxes { objects.max(1) } else { 0 }
+        self.loop_queries() + if has_boxes { objects.max(1) } else { 0 }
     }
 
-    /// Passes whose samples a loop waits for; the query of the first object has this number.
-    pub(crate) fn awaited(&self) -> u32 {
+    /// Returns the number of passes whose samples a loop waits for. The query of the first object has this number.
+    pub(crate) fn loop_queries(&self) -> u32 {
         self.passes.iter().filter(|prepared| prepared.query.is_some()).count() as u32
     }
 }
 
-/// A pass and what it runs with.
-pub(crate) struct Prepared {
+/// A pass and its device objects.
+pub(crate) struct PreparedPass {
     pub(crate) pass: PlannedPass,
-    /// The exchanges of the frame that it uses resources of, by their numbers.
+    /// The numbers of the frame's exchanges whose resources it uses.
     pub(crate) exchanges: Vec<usize>,
-    /// The number of its query, where a loop waits for its samples.
+    /// The number of its query if a loop waits for its samples.
     pub(crate) query: Option<u32>,
-    pub(crate) slots: Vec<Slot>,
+    pub(crate) bindings: Vec<Binding>,
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) pipeline: Pipeline,
 }
 
 impl Pipelines {
-    /// Makes the pipelines of `shaders`. Of the settings only target, checks, interlock, vertices and
-    /// primitive matter. Fails where the
-    /// plan has a step that the runtime does not run, and where the device lacks a feature.
+    /// Creates the pipelines of `shaders`. The relevant settings are target, checks, interlock, vertices and primitive. Fails if
+    /// the plan has an unsupported step, and if the device lacks a feature.
     pub async fn new(device: &wgpu::Device, shaders: &Shaders, settings: &Settings) -> Result<Self, Error> {
         let plan = shaders.plan.clone();
-        refusals::check(&plan)?;
-        let iterations = most_iterations(&plan)?;
+        unsupported::check(&plan)?;
+        let max_iterations = max_iterations(&plan)?;
         let missing = shaders.features() - device.features();
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
         }
         shaders.check_interlock(settings.interlock)?;
         let inputs = VertexInputs::of(&plan);
-        let own = settings.vertices.clone();
-        let vertices = own.unwrap_or_else(|| vec![inputs.interleaved()]);
+        let vertices = settings.vertices.clone().unwrap_or_else(|| vec![inputs.interleaved()]);
         let interleaved = inputs.interleaved();
-        let maker = Maker { device, shaders, settings, vertices: &vertices, interleaved, rounds: iterations };
+        let builder = PipelineBuilder { device, shaders, settings, vertices: &vertices, interleaved, max_iterations };
         let mut passes = Vec::new();
         let mut queries = 0..;
         for (number, pass) in plan.passes.iter().enumerate() {
-            let slots = slots(&plan, pass);
-            check(device, pass, &slots)?;
-            let what = format!("the bind group layout of pass `{}`", pass.anchor);
-            let layout = scoped(device, &what, 0, || bind_group_layout(device, pass, &slots)).await?;
-            let pipeline = maker.make(pass, &layout).await?;
+            let bindings = bindings(&plan, pass);
+            check(device, pass, &bindings)?;
+            let what = format!("the bind group layout of pass `{}`", pass.name);
+            let layout = in_error_scope(device, &what, 0, || bind_group_layout(device, pass, &bindings)).await?;
+            let pipeline = builder.build(pass, &layout).await?;
             let exchanges = exchanges(&plan, pass)?;
             if pass.objects == Objects::Boxes && matches!(pipeline, Pipeline::Caller) {
-                return Err(unsupported(format!("pass `{}`: boxes of objects in module form", pass.anchor)).into());
+                return Err(unsupported_plan(format!("pass `{}`: boxes of objects in module form", pass.name)).into());
             }
             let query = if plan.frame.waits_for_samples(PassId(number)) { queries.next() } else { None };
-            passes.push(Prepared { pass: pass.clone(), exchanges, query, slots, layout, pipeline });
+            passes.push(PreparedPass { pass: pass.clone(), exchanges, query, bindings, layout, pipeline });
         }
-        let patterns = scoped(device, "the buffers to clear with", 0, || patterns(device, &plan)).await?;
-        let (group, most_runs) = (shaders.group, most_runs(&plan)?);
-        Ok(Pipelines(Arc::new(Made { plan, group, iterations, most_runs, passes, patterns, inputs })))
+        let patterns = in_error_scope(device, "the buffers with clear words", 0, || patterns(device, &plan)).await?;
+        let (group, max_pass_runs) = (shaders.group, max_pass_runs(&plan)?);
+        let set = PipelineSet { plan, group, max_iterations, max_pass_runs, passes, patterns, inputs };
+        Ok(Pipelines(Arc::new(set)))
     }
 
-    /// The greatest k that they serve; 0 where every fragment is kept.
+    /// Returns the greatest k that these pipelines support; 0 if they keep every fragment.
     pub fn capacity(&self) -> u32 {
         self.0.plan.capacity()
     }
 }
 
-/// Exchanges that one pass may use resources of: a bind group is made for every way to flip them.
-const MOST_EXCHANGES: usize = 6;
+/// The limit on exchanges whose resources one pass may use: it needs a bind group for every combination of them.
+const MAX_EXCHANGES: usize = 6;
 
-/// The exchanges that a pass uses resources of.
+/// Returns the numbers of the exchanges whose resources a pass uses.
 fn exchanges(plan: &Plan, pass: &PlannedPass) -> Result<Vec<usize>, Error> {
-    let uses = |pair: &[ResourceId; 2]| pair.iter().any(|id| pass.touches(&plan.resources[id.0].resource.name));
+    let uses = |pair: &[ResourceId; 2]| pair.iter().any(|id| pass.accesses(&plan.resources[id.0].resource.name));
     let pairs = plan.frame.exchanges.iter().enumerate();
     let used: Vec<usize> = pairs.filter(|(_, pair)| uses(pair)).map(|(number, _)| number).collect();
-    if used.len() > MOST_EXCHANGES {
-        let what = format!("pass `{}`: {} exchanged pairs of resources", pass.anchor, used.len());
-        return Err(unsupported(what).into());
+    if used.len() > MAX_EXCHANGES {
+        let what = format!("pass `{}`: {} exchanged pairs of resources", pass.name, used.len());
+        return Err(unsupported_plan(what).into());
     }
     Ok(used)
 }

@@ -1,23 +1,23 @@
 //! Occlusion queries: whether a sample passed in a pass that a loop waits for, or in the box of an object.
 //!
-//! In: the number of objects. Out: a query for each, and where they are resolved to. Nothing here waits.
+//! Input: the number of queries. Output: the queries and the buffer for their results. This module does not wait.
 
 use std::ops::Range;
 
-use crate::scope::scoped;
+use crate::error_scope::in_error_scope;
 use crate::{Error, Pending};
 
-/// Queries, and the buffer that they are resolved to.
+/// Queries, and the buffer for their results.
 pub(crate) struct Queries {
     pub(crate) set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
 }
 
-/// Bytes of an answer.
-const ANSWER: u64 = 8;
+/// The bytes of a result.
+const RESULT_BYTES: u64 = 8;
 
 impl Queries {
-    /// So many queries; `None`: no query is needed.
+    /// Creates `count` queries; `None` for 0.
     pub(crate) async fn new(device: &wgpu::Device, count: u32) -> Result<Option<Self>, Error> {
         if count == 0 {
             return Ok(None);
@@ -28,7 +28,7 @@ impl Queries {
                 needed: count.into(),
                 limit: wgpu::QUERY_SET_MAX_QUERIES.into(),
                 limit_name: "QUERY_SET_MAX_QUERIES",
-                hint: "put several things into one object",
+                help: "group several meshes into one object",
             });
         }
         let make = || {
@@ -39,23 +39,23 @@ impl Queries {
             });
             let resolved = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("fragbuf occlusion"),
-                size: u64::from(count) * ANSWER,
+                size: u64::from(count) * RESULT_BYTES,
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
             Queries { set, resolved }
         };
-        scoped(device, "the occlusion queries", u64::from(count) * ANSWER, make).await.map(Some)
+        in_error_scope(device, "the occlusion queries", u64::from(count) * RESULT_BYTES, make).await.map(Some)
     }
 
-    /// Records the readback of some queries, all of which have been asked: one word each, 0 where no sample passed.
+    /// Records the readback of queries that have run: one word each, 0 if no sample passed.
     pub(crate) fn read(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         queries: Range<u32>,
     ) -> Pending<Vec<u32>> {
-        let bytes = u64::from(queries.end - queries.start) * ANSWER;
+        let bytes = u64::from(queries.end - queries.start) * RESULT_BYTES;
         encoder.resolve_query_set(&self.set, queries, &self.resolved, 0);
         Pending::record(device, encoder, &self.resolved, 0, bytes, |words| {
             words.chunks_exact(2).map(|halves| u32::from(halves[0] | halves[1] != 0)).collect()

@@ -1,5 +1,5 @@
-//! Words on their way from the device to the host. A [`Pending`] is a future that is ready some time after what was
-//! recorded has been submitted; where blocking is possible, [`Pending::wait`] blocks.
+//! Readbacks of words from the device. A [`Pending`] is a future that becomes ready after the recorded commands are submitted.
+//! Where blocking is possible, [`Pending::wait`] blocks.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
 
 use crate::Error;
-use crate::scope::is_lost;
+use crate::error_scope::is_lost;
 use crate::words::from_bytes;
 
-/// Something that will have been read back.
+/// A readback that has been recorded.
 pub struct Pending<T> {
     buffer: wgpu::Buffer,
     state: Arc<Mutex<State>>,
@@ -43,7 +43,7 @@ impl<T> Pending<T> {
         });
         let state = Arc::new(Mutex::new(State::default()));
         if is_lost(device) {
-            // Nothing is recorded: submitting it would fail, and for a reason that is not the reason.
+            // A copy on a lost device fails with a misleading message when it is submitted.
             lock(&state).mapped = Some(Err(wgpu::BufferAsyncError));
             return Pending { buffer, state, decode: None };
         }
@@ -59,18 +59,18 @@ impl<T> Pending<T> {
         Pending { buffer, state, decode: Some(Box::new(decode)) }
     }
 
-    /// Whether it has arrived: awaiting it will not wait.
+    /// Whether the words are available, so that awaiting them does not wait.
     pub fn is_ready(&self) -> bool {
         lock(&self.state).mapped.is_some()
     }
 
-    /// Blocks until it has arrived. Not for browsers: there, await it.
+    /// Blocks until the words are available. Browsers cannot block: await the future there.
     pub fn wait(self, device: &wgpu::Device) -> Result<T, Error> {
         crate::block_on(device, self)?
     }
 
     fn words(&self) -> Result<Vec<u32>, Error> {
-        let view = self.buffer.get_mapped_range(..).map_err(|_| Error::Lost)?;
+        let view = self.buffer.get_mapped_range(..).map_err(|_| Error::DeviceLost)?;
         let words = from_bytes(&view);
         drop(view);
         self.buffer.unmap();
@@ -88,20 +88,20 @@ impl<T> Future for Pending<T> {
                 state.waker = Some(context.waker().clone());
                 Poll::Pending
             }
-            Some(Err(_)) => Poll::Ready(Err(Error::Lost)),
+            Some(Err(_)) => Poll::Ready(Err(Error::DeviceLost)),
             Some(Ok(())) => {
                 drop(state);
                 let words = self.words();
                 Poll::Ready(match self.decode.take() {
                     Some(decode) => words.map(decode),
-                    None => Err(Error::Lost),
+                    None => Err(Error::DeviceLost),
                 })
             }
         }
     }
 }
 
-/// A callback that panicked leaves nothing half written.
+/// Locks the state. A poisoned lock is accepted, because a panicking callback leaves the state complete.
 fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }

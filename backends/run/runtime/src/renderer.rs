@@ -1,53 +1,56 @@
-//! A plan, ready to run: pipelines, buffers of the right size, bind groups.
+//! A plan with everything that it needs to run: pipelines, buffers of the right size, bind groups.
 //!
-//! In: a device, a queue, shaders and settings. Out: frames to record ([`Renderer::begin`]), and what they kept, counted
-//! and took. Nothing here submits anything, apart from [`Renderer::render`].
+//! Input: a device, a queue, shaders and settings. Output: frames to record ([`Renderer::begin`]), and the kept fragments, counters
+//! and times of a frame. Only [`Renderer::render`] submits commands.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use fragbuf_codegen::{Plan, SymbolId};
-use fragbuf_frame::{Counting, Values, decided, reserve, room_after, set, values, zeros};
+use fragbuf_frame::{
+    Readbacks, Values, initial_values, pool_size_after, reserve, reuse_pool_sizes, set_uniform, zero_uniforms,
+};
 
-use crate::blocks::{Blocks, IDENTITY};
-use crate::brought::{accept, missing};
-use crate::fixed_function::multisample;
+use crate::error_scope::in_error_scope;
+use crate::external::accept;
+use crate::frame_resources::{DeviceObjects, FrameResources, Timestamps};
 use crate::objects::Objects;
-use crate::pipeline::no_target;
-use crate::pipelines::Made;
+use crate::pipelines::PipelineSet;
+use crate::placeholder::placeholder_target;
 use crate::queries::Queries;
-use crate::room::rows;
-use crate::scope::{is_lost, scoped};
-use crate::sized::{Fixed, Sized, Timed};
+use crate::samples::multisample;
+use crate::segment::FrameInputs;
+use crate::slice_rows::rows;
+use crate::uniform_buffers::{IDENTITY, UniformBuffers};
 use crate::words::to_bytes;
-use crate::{Error, Frame, ObjectBox, Pipelines, Room, Settings, Shaders, Value, VertexInputs};
+use crate::{Error, ObjectBox, Pipelines, PoolSize, Settings, Shaders, Value, VertexInputs};
 
 /// Runs one plan on one device.
 pub struct Renderer {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     pub(crate) pipelines: Pipelines,
-    /// Whether host steps are carried out; else what they set has been reserved.
-    pub(crate) counting: Counting,
-    pub(crate) sized: Sized,
+    pub(crate) readbacks: Readbacks,
+    pub(crate) resources: FrameResources,
+    /// The number of the current frame: a frame with another number is stale.
     pub(crate) frame_id: u64,
-    /// Rows of a slice as the caller wants them.
+    /// The rows of a slice that the caller requests.
     slice: Option<u32>,
-    timed: Timed,
-    blocks: Blocks,
+    timestamps: Timestamps,
+    uniform_buffers: UniformBuffers,
     uniforms: Vec<u32>,
     k: Option<u32>,
     camera: Mutex<[f32; 16]>,
-    /// The exchanges of the plan that the last frame has left flipped.
+    /// The exchanges that the last frame left flipped.
     flipped: AtomicU32,
     pub(crate) queries: Option<Queries>,
-    /// The caller's objects; `None`: the scene is one, and always drawn.
+    /// The caller's objects; `None`: the scene is one object, which is always drawn.
     pub(crate) objects: Option<Objects>,
 }
 
 impl Renderer {
-    /// Makes pipelines and buffers. Fails where the plan has a step that the runtime does not run, where the device lacks
-    /// a feature, a limit or memory, and where no one says how many fragments there may be.
+    /// Creates pipelines and buffers. Fails if the plan has an unsupported step, if the device lacks a feature, exceeds a limit or
+    /// is out of memory, and if [`Sizing::Exact`](crate::Sizing::Exact) has no host step that counts the fragments.
     pub async fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -58,35 +61,35 @@ impl Renderer {
         Renderer::with(device, queue, &pipelines, settings).await
     }
 
-    /// Makes buffers for pipelines that there are already. They must be of the same device, and of settings that differ in
-    /// sizes alone.
+    /// Creates buffers for existing pipelines. These must be of the same device, and of settings that differ only in sizes.
     pub async fn with(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         pipelines: &Pipelines,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let made = &pipelines.0;
-        let timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let timed = if timed { Timed::Yes } else { Timed::No };
-        let (values, counting) = values(&made.plan, (settings.width, settings.height), settings.sizing)?;
-        let values = values.with_rows(rows(&made.plan, &values, settings.slice, &device.limits())?);
+        let set = &pipelines.0;
+        let is_timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let timestamps = if is_timed { Timestamps::Enabled } else { Timestamps::Disabled };
+        let (values, readbacks) = initial_values(&set.plan, (settings.width, settings.height), settings.sizing)?;
+        let values = values.with_rows(rows(&set.plan, &values, settings.slice, &device.limits())?);
         let k = values.k();
-        let uniforms = zeros(&made.plan.variant.uniforms);
-        let blocks = scoped(device, "the uniform buffers", 0, || Blocks::new(device, &uniforms)).await?;
-        let fixed = Fixed { device, queue, made, blocks: &blocks, timed };
-        let sized = Sized::new(&fixed, values, None).await?;
-        let queries = Queries::new(device, made.queries(0)).await?;
+        let uniforms = zero_uniforms(&set.plan.variant.uniforms);
+        let make = || UniformBuffers::new(device, &uniforms);
+        let uniform_buffers = in_error_scope(device, "the uniform buffers", 0, make).await?;
+        let objects = DeviceObjects { device, queue, pipelines: set, uniforms: &uniform_buffers, timestamps };
+        let resources = FrameResources::new(&objects, values, None).await?;
+        let queries = Queries::new(device, set.queries(0)).await?;
         let renderer = Renderer {
             device: device.clone(),
             queue: queue.clone(),
             pipelines: pipelines.clone(),
-            counting,
-            sized,
+            readbacks,
+            resources,
             frame_id: 0,
             slice: settings.slice,
-            timed,
-            blocks,
+            timestamps,
+            uniform_buffers,
             uniforms,
             k,
             camera: Mutex::new(IDENTITY),
@@ -99,52 +102,35 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// Starts a frame; one that was not finished is over. Submit what was recorded of a frame before the next begins: uniform
-    /// buffers are written ahead of the next submission. Fails where a texture is missing that the caller brings.
-    pub fn begin(&mut self) -> Result<Frame, Error> {
-        if is_lost(&self.device) {
-            return Err(Error::Lost);
-        }
-        if let Some(number) = self.sized.memory.missing() {
-            return Err(missing(self.plan().resources.get(number).map_or("", |planned| &planned.resource.name)));
-        }
-        self.write_frame()?;
-        self.frame_id += 1;
-        Ok(Frame::new(self))
-    }
-
-    /// Resizes the frame to `width` × `height` pixels. On an error the old size stays.
+    /// Resizes the frame to `width` × `height` pixels. An error keeps the old size.
     pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        self.resized(self.sized.values.resized(width, height)).await
+        self.resize_to(self.resources.values.resized(width, height)).await
     }
 
-    /// Keeps `k` fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers are
-    /// reallocated only for more than there ever was room for.
+    /// Sets the number of fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers
+    /// are reallocated only for a greater k than ever before.
     pub async fn set_k(&mut self, k: u32) -> Result<(), Error> {
         let name = || "k".to_owned();
-        let Some(room) = self.sized.values.k() else {
-            return Err(Error::BadValue {
-                name: name(),
-                wanted: "left alone: this plan keeps every fragment".to_owned(),
-            });
+        let Some(allocated) = self.resources.values.k() else {
+            return Err(Error::BadValue { name: name(), expected: "unset: this plan keeps every fragment".to_owned() });
         };
         let (least, most) = self.plan().symbols.get(SymbolId::K).range;
         if !(least..=most).contains(&k.into()) {
-            return Err(Error::BadValue { name: name(), wanted: format!("from {least} to the capacity, {most}") });
+            return Err(Error::BadValue { name: name(), expected: format!("from {least} to the capacity, {most}") });
         }
-        if k > room {
-            self.resized(self.sized.values.with(SymbolId::K, k.into())).await?;
+        if k > allocated {
+            self.resize_to(self.resources.values.with(SymbolId::K, k.into())).await?;
         }
         self.frame_id += 1;
         self.k = Some(k);
         Ok(())
     }
 
-    /// Serves another k with other pipelines of the same description, of a capacity of at least `k`. Camera and uniforms
-    /// stay, and so does everything on an error.
-    pub(crate) async fn switch(&mut self, pipelines: &Pipelines, k: u32) -> Result<(), Error> {
+    /// Switches to other pipelines of the same description, with a capacity of at least `k`. Camera and uniforms stay. An error
+    /// changes nothing.
+    pub(crate) async fn switch_pipelines(&mut self, pipelines: &Pipelines, k: u32) -> Result<(), Error> {
         let before = std::mem::replace(&mut self.pipelines, pipelines.clone());
-        let values = self.sized.values.of_plan(self.plan()).with(SymbolId::K, k.into());
+        let values = self.resources.values.of_plan(self.plan()).with(SymbolId::K, k.into());
         let fits = rows(self.plan(), &values, self.slice, &self.device.limits());
         let replaced = match fits {
             Ok(rows) => self.replace(values.with_rows(rows)).await,
@@ -158,33 +144,33 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes room, where the plan needs it, and no host step does from now on.
-    pub async fn reserve(&mut self, room: Room) -> Result<(), Error> {
-        let mut values = self.sized.values.clone();
-        reserve(self.plan(), &mut values, room)?;
-        self.resized(values).await?;
-        self.counting = Counting::Reserved;
+    /// Reserves memory for fragments if the plan needs it. From then on host steps are skipped.
+    pub async fn reserve(&mut self, size: PoolSize) -> Result<(), Error> {
+        let mut values = self.resources.values.clone();
+        reserve(self.plan(), &mut values, size)?;
+        self.resize_to(values).await?;
+        self.readbacks = Readbacks::Disabled;
         Ok(())
     }
 
-    /// Room, in fragments, after a frame that lost `short` of them for want of it: exactly enough where a pool was too small,
-    /// twice as much where every pixel has slots of its own and only the deepest ran out.
-    pub fn room_after(&self, short: u32) -> u64 {
-        room_after(self.plan(), &self.sized.values, short)
+    /// Returns the capacity to reserve, in fragments, after a frame that lost `short` fragments to overflow. For a pool that is
+    /// exactly enough. Where every pixel has its own slots it is twice the capacity, because only the deepest pixels overflowed.
+    pub fn pool_size_after(&self, short: u32) -> u64 {
+        pool_size_after(self.plan(), &self.resources.values, short)
     }
 
-    /// The view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
+    /// Sets the view-projection matrix, column by column: from positions to clip space, z from 0 to 1.
     pub fn set_camera(&self, view_projection: &[f32; 16]) {
         *self.camera.lock().unwrap_or_else(PoisonError::into_inner) = *view_projection;
-        self.queue.write_buffer(&self.blocks.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
+        self.queue.write_buffer(&self.uniform_buffers.camera, 0, &to_bytes(&view_projection.map(f32::to_bits)));
     }
 
-    /// The boxes of the caller's objects, for passes that draw them or those that are still seen ([`Call::objects`]): in the
-    /// order of the numbers by which draws are asked for them. None: the scene is one object, and always drawn.
+    /// Sets the boxes of the caller's objects, for passes that draw boxes or visible objects. The index of a box is the object's
+    /// number in [`Call::objects`](crate::Call::objects). Without boxes the scene is one object, which is always drawn.
     pub async fn set_objects(&mut self, boxes: &[ObjectBox]) -> Result<(), Error> {
         let count = u32::try_from(boxes.len()).unwrap_or(u32::MAX);
-        let queries = Queries::new(&self.device, self.made().queries(count)).await?;
-        let inputs = &self.made().inputs;
+        let queries = Queries::new(&self.device, self.pipeline_set().queries(count)).await?;
+        let inputs = &self.pipeline_set().inputs;
         self.objects = match boxes.is_empty() {
             true => None,
             false => Some(Objects::new(&self.device, &self.queue, inputs, boxes).await?),
@@ -194,116 +180,117 @@ impl Renderer {
         Ok(())
     }
 
-    /// One of the description's own uniforms, from the next submission on.
+    /// Sets one of the description's uniforms, from the next submission on.
     pub fn set_uniform(&mut self, name: &str, value: Value) -> Result<(), Error> {
-        set(&mut self.uniforms, &self.pipelines.0.plan.variant.uniforms, name, value)?;
+        set_uniform(&mut self.uniforms, &self.pipelines.0.plan.variant.uniforms, name, value)?;
         self.write_uniforms();
         Ok(())
     }
 
-    /// Brings a texture that the plan has and does not make (`init: host` in the manifest), filled: of the plan's format and of
-    /// the whole frame's size, whatever its slices, with the usages that the plan's passes need. It is only read, from the next
-    /// frame on, until another takes its place or the frame gets another size.
+    /// Sets an external texture (`init: external` in the manifest) with its content. It needs the plan's format, the size of the
+    /// whole frame and the usages of the plan's passes. It is only read, from the next frame on, until another call replaces it
+    /// or the frame is resized.
     pub async fn set_texture(&mut self, name: &str, texture: &wgpu::Texture) -> Result<(), Error> {
-        let number = accept(self.plan(), &self.sized.values, name, texture)?;
-        let mut memory = self.sized.memory.clone();
-        memory.bring(number, texture);
-        let fixed = self.fixed();
+        let number = accept(self.plan(), &self.resources.values, name, texture)?;
+        let mut memory = self.resources.memory.clone();
+        memory.set_texture(number, texture);
+        let objects = self.device_objects();
         let what = format!("the bind groups with `{name}`");
-        let bound = scoped(&self.device, &what, 0, || self.sized.bound(&fixed, &memory)).await?;
-        self.sized.groups = bound;
-        self.sized.memory = memory;
+        let make = || self.resources.bind_groups(&objects, &memory);
+        self.resources.groups = in_error_scope(&self.device, &what, 0, make).await?;
+        self.resources.memory = memory;
         self.frame_id += 1;
         Ok(())
     }
 
-    /// Slices that the frame is made of, one after the other.
+    /// Returns the number of slices of the frame.
     pub fn slices(&self) -> u32 {
-        self.sized.values.slices()
+        self.resources.values.slices()
     }
 
-    /// Bytes of all buffers of the plan's resources, as wgpu has them: what the plan's formulas say for a slice, for the
-    /// greatest k so far and for the room there is ([`Renderer::symbol`]).
+    /// Returns the allocated bytes of the plan's resources: those of the plan's formulas for a slice, the greatest k so far and
+    /// the current capacity ([`Renderer::symbol`]).
     pub fn allocated_bytes(&self) -> u64 {
-        self.sized.memory.bytes()
+        self.resources.memory.bytes()
     }
 
-    /// The value of a symbol of the plan's formulas that the buffers were sized with; `height` is that of a slice.
+    /// Returns the value of a symbol for which the buffers are sized; `height` is that of a slice.
     pub fn symbol(&self, name: &str) -> Option<u64> {
-        self.sized.values.named(name)
+        self.resources.values.named(name)
     }
 
-    /// The greatest k that needs no new pipelines.
+    /// Returns the greatest k that needs no other pipelines.
     pub fn capacity(&self) -> u32 {
         self.pipelines.capacity()
     }
 
-    /// Fragments that a pixel keeps; `None`: all.
+    /// Returns the number of fragments that a pixel keeps; `None`: all.
     pub fn k(&self) -> Option<u32> {
         self.k
     }
 
-    /// The device that it was made on.
+    /// Returns the device of this renderer.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// What is run.
+    /// Returns the plan.
     pub fn plan(&self) -> &Plan {
-        &self.made().plan
+        &self.pipeline_set().plan
     }
 
-    /// What a vertex of a geometry pass carries.
+    /// Returns the inputs of a vertex of a geometry pass.
     pub fn vertex_inputs(&self) -> &VertexInputs {
-        &self.made().inputs
+        &self.pipeline_set().inputs
     }
 
-    /// The bind group layout of the pass `anchor`, for a pipeline of the caller's own around its shader functions.
-    pub fn bind_group_layout(&self, anchor: &str) -> Option<&wgpu::BindGroupLayout> {
-        self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor).map(|prepared| &prepared.layout)
+    /// Returns the bind group layout of the pass `name`, for a pipeline that the caller builds around its shader functions.
+    pub fn bind_group_layout(&self, name: &str) -> Option<&wgpu::BindGroupLayout> {
+        self.pipeline_set().passes.iter().find(|prepared| prepared.pass.name == name).map(|prepared| &prepared.layout)
     }
 
-    /// The samples that a pipeline of the caller's own must have in the pass `anchor`; one where the plan says nothing, or has
-    /// no such pass.
-    pub fn multisample(&self, anchor: &str) -> wgpu::MultisampleState {
-        let pass = self.made().passes.iter().find(|prepared| prepared.pass.anchor == anchor);
+    /// Returns the multisample state that a pipeline of the caller needs in the pass `name`: one sample if the plan gives none, or
+    /// has no such pass.
+    pub fn multisample(&self, name: &str) -> wgpu::MultisampleState {
+        let pass = self.pipeline_set().passes.iter().find(|prepared| prepared.pass.name == name);
         let samples = pass.and_then(|prepared| multisample(self.plan(), &prepared.pass, 0).ok());
         samples.unwrap_or_default()
     }
 
-    /// The colour target that a pipeline of the caller's own must have in a geometry pass: nothing is written to it.
+    /// Returns the colour target that a pipeline of the caller needs in a geometry pass. Nothing is written to it.
     pub fn geometry_target() -> wgpu::ColorTargetState {
-        no_target()
+        placeholder_target()
     }
 
-    /// The exchanges that the last frame has left flipped.
+    /// Returns the exchanges that the last frame left flipped.
     pub(crate) fn flipped(&self) -> u32 {
         self.flipped.load(Ordering::Relaxed)
     }
 
-    /// Notes the exchanges that a frame leaves flipped.
-    pub(crate) fn leave_flipped(&self, flipped: u32) {
+    /// Stores the exchanges that a frame leaves flipped.
+    pub(crate) fn store_flipped(&self, flipped: u32) {
         self.flipped.store(flipped, Ordering::Relaxed);
     }
 
-    /// Whether a query can judge an object at all: its box does not cross the near plane.
+    /// Whether the box of an object crosses the near plane, so that no query can decide whether the object is visible.
     pub(crate) fn crosses_near_plane(&self, object: &ObjectBox) -> bool {
         object.crosses_near_plane(&self.camera.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    pub(crate) fn made(&self) -> &Made {
+    /// Returns the pipelines and their plan.
+    pub(crate) fn pipeline_set(&self) -> &PipelineSet {
         &self.pipelines.0
     }
 
-    /// Gives the frame the size of `values` and slices that fit, or leaves everything as it is.
-    async fn resized(&mut self, values: Values) -> Result<(), Error> {
+    /// Resizes the frame to `values`, in slices that fit. An error changes nothing.
+    async fn resize_to(&mut self, values: Values) -> Result<(), Error> {
         let rows = rows(self.plan(), &values, self.slice, &self.device.limits())?;
         self.reallocate(values.with_rows(rows)).await
     }
 
-    /// Gives the buffers the sizes of `values`, or leaves everything as it is.
-    pub(crate) async fn reallocate(&mut self, values: Values) -> Result<(), Error> {
-        if values != self.sized.values {
+    /// Reallocates the buffers for `values`. An error changes nothing.
+    async fn reallocate(&mut self, values: Values) -> Result<(), Error> {
+        if values != self.resources.values {
             self.replace(values).await?;
         }
         self.frame_id += 1;
@@ -311,47 +298,65 @@ impl Renderer {
     }
 
     async fn replace(&mut self, values: Values) -> Result<(), Error> {
-        self.sized = Sized::new(&self.fixed(), values, Some(&self.sized)).await?;
+        self.resources = FrameResources::new(&self.device_objects(), values, Some(&self.resources)).await?;
         self.frame_id += 1;
         Ok(())
     }
 
-    fn fixed(&self) -> Fixed<'_> {
-        Fixed { device: &self.device, queue: &self.queue, made: self.made(), blocks: &self.blocks, timed: self.timed }
+    fn device_objects(&self) -> DeviceObjects<'_> {
+        DeviceObjects {
+            device: &self.device,
+            queue: &self.queue,
+            pipelines: self.pipeline_set(),
+            uniforms: &self.uniform_buffers,
+            timestamps: self.timestamps,
+        }
     }
 
-    /// Writes the uniform buffers of the slices, ahead of the next submission.
-    pub(crate) fn write_frame(&self) -> Result<(), Error> {
-        let live = self.live();
-        let words = |slice, iteration| Ok(live.frame_words(self.plan(), slice, iteration)?);
-        let bytes = self.sized.frames.bytes(self.slices(), &words)?;
-        self.queue.write_buffer(&self.sized.frames.buffer, 0, &bytes);
+    /// Returns the inputs of a frame's steps.
+    pub(crate) fn frame_inputs(&self) -> FrameInputs<'_> {
+        FrameInputs {
+            plan: self.plan(),
+            values: self.current_values(),
+            memory: &self.resources.memory,
+            readbacks: self.readbacks,
+            flipped: self.flipped(),
+            max_workgroups: self.device.limits().max_compute_workgroups_per_dimension,
+        }
+    }
+
+    /// Writes the uniform blocks of the slices, ahead of the next submission.
+    pub(crate) fn write_frame_blocks(&self) -> Result<(), Error> {
+        let values = self.current_values();
+        let words = |slice, iteration| Ok(values.frame_words(self.plan(), slice, iteration)?);
+        let bytes = self.resources.frame_blocks.bytes(self.slices(), &words)?;
+        self.queue.write_buffer(&self.resources.frame_blocks.buffer, 0, &bytes);
         Ok(())
     }
 
-    /// Takes over the values that a host step has decided: for any k there is memory, anything else is memory that is made.
-    pub(crate) async fn decide(&mut self, mut values: Values) -> Result<(), Error> {
-        decided(self.plan(), &self.sized.values, &mut values);
+    /// Applies the values that a host step has set. The buffers already fit any k; for other values they are reallocated.
+    pub(crate) async fn apply_decision(&mut self, mut values: Values) -> Result<(), Error> {
+        reuse_pool_sizes(self.plan(), &self.resources.values, &mut values);
         let k = values.k();
-        if let Some(sized) = self.sized.values.k() {
-            values.set(SymbolId::K, sized.into());
+        if let Some(allocated) = self.resources.values.k() {
+            values.set(SymbolId::K, allocated.into());
         }
         self.reallocate(values).await?;
         self.k = k;
-        self.write_frame()
+        self.write_frame_blocks()
     }
 
-    /// What the buffers were sized with, for the k of the frames from now on.
-    pub(crate) fn live(&self) -> Values {
+    /// Returns the values for which the buffers are sized, with the current k.
+    pub(crate) fn current_values(&self) -> Values {
         match self.k {
-            Some(k) => self.sized.values.with(SymbolId::K, k.into()),
-            None => self.sized.values.clone(),
+            Some(k) => self.resources.values.with(SymbolId::K, k.into()),
+            None => self.resources.values.clone(),
         }
     }
 
     fn write_uniforms(&self) {
         if !self.uniforms.is_empty() {
-            self.queue.write_buffer(&self.blocks.own, 0, &to_bytes(&self.uniforms));
+            self.queue.write_buffer(&self.uniform_buffers.description, 0, &to_bytes(&self.uniforms));
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What a frame has left: counters, times of passes, words of resources. Everything is read back by commands in the caller's
-//! encoder, behind those of the frame.
+//! The results of a frame: counters, times of passes, words of resources. The commands that read them back follow those of the
+//! frame in the caller's encoder.
 
 use fragbuf_codegen::ResourceId;
 use fragbuf_frame::COUNTERS_RESOURCE;
@@ -8,34 +8,34 @@ use crate::texture::read_texture;
 use crate::{Counters, PassTime, Pending, Renderer};
 
 impl Renderer {
-    /// Records the readback of what the frame counted, over all slices. `None`: the plan counts nothing.
+    /// Records the readback of the frame's counters, over all slices. Returns `None` if the plan has no counters.
     pub fn counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Counters>> {
-        self.counted(encoder, |words| Counters::sum(&words))
+        self.read_counters(encoder, |words| Counters::sum(&words))
     }
 
-    /// Records the readback of what each slice of the frame counted. `None`: the plan counts nothing.
+    /// Records the readback of the counters of each slice. Returns `None` if the plan has no counters.
     pub fn slice_counters(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<Counters>>> {
-        self.counted(encoder, |words| Counters::each(&words))
+        self.read_counters(encoder, |words| Counters::per_slice(&words))
     }
 
-    fn counted<T>(
+    fn read_counters<T>(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         decode: impl FnOnce(Vec<u32>) -> T + Send + 'static,
     ) -> Option<Pending<T>> {
-        let buffer = self.sized.tally.as_ref().or_else(|| self.buffer(COUNTERS_RESOURCE))?;
+        let buffer = self.resources.slice_counters.as_ref().or_else(|| self.buffer(COUNTERS_RESOURCE))?;
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), decode))
     }
 
-    /// Records the readback of the time that each pass of the finished frame took. `None`: passes are not timed.
+    /// Records the readback of the time of each pass of the finished frame. Returns `None` if passes are not timed.
     pub fn pass_times(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<PassTime>>> {
-        self.sized.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
+        self.resources.timing.as_ref().map(|timing| timing.read(&self.device, encoder))
     }
 
-    /// Records the readback of a resource, all its words: of a buffer those of the last slice; of a texture row after row,
-    /// where only the last slice has left anything.
-    /// `None`: the plan does not have it, it is empty, or it is a texture that cannot be copied, because it has several
-    /// samples or a stencil, or was brought by the caller without the usage `COPY_SRC`.
+    /// Records the readback of all words of a resource. A buffer has the words of the last slice. A texture is read row by row,
+    /// and only the rows of the last slice are defined. Returns `None` if the plan has no such resource, if it is empty, or if
+    /// it is a texture that cannot be copied: one with several samples or a stencil, or an external one without the usage
+    /// `COPY_SRC`.
     pub fn words(&self, resource: &str, encoder: &mut wgpu::CommandEncoder) -> Option<Pending<Vec<u32>>> {
         if let Some(texture) = self.texture(resource) {
             return read_texture(&self.device, encoder, texture);
@@ -44,17 +44,17 @@ impl Renderer {
         Some(Pending::record(&self.device, encoder, buffer, 0, buffer.size(), |words| words))
     }
 
-    /// The texture of a resource. `None`: the plan does not have it, it is a buffer, or the caller has not brought it.
+    /// Returns the texture of a resource; `None` for an unknown name, a buffer, and an external texture that is not set.
     pub fn texture(&self, resource: &str) -> Option<&wgpu::Texture> {
-        self.sized.memory.texture(self.physical(resource)?.0)
+        self.resources.memory.texture(self.physical(resource)?.0)
     }
 
-    /// The buffer of a resource. `None`: the plan does not have it, or it is empty.
+    /// Returns the buffer of a resource; `None` for an unknown name and an empty resource.
     pub fn buffer(&self, resource: &str) -> Option<&wgpu::Buffer> {
-        self.sized.memory.filled(self.physical(resource)?.0)
+        self.resources.memory.buffer(self.physical(resource)?.0)
     }
 
-    /// What a resource stands for after the last frame.
+    /// Returns the physical resource of a name after the last frame.
     fn physical(&self, resource: &str) -> Option<ResourceId> {
         Some(self.plan().frame.physical(self.plan().resource_id(resource)?, self.flipped()))
     }

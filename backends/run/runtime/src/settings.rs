@@ -1,8 +1,8 @@
-//! What a caller decides about a renderer.
+//! The settings of a renderer.
 
 use fragbuf_frame::Sizing;
 
-/// What a caller decides. [`Settings::new`] has the usual choices; every field may be changed.
+/// The settings of a renderer. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The format of the view that frames are resolved into. It must be blendable.
@@ -11,27 +11,27 @@ pub struct Settings {
     pub width: u32,
     /// Height of the frame, in pixels.
     pub height: u32,
-    /// How much room is made for fragments whose number no one knows beforehand.
+    /// How memory is sized for fragments whose number is unknown in advance.
     pub sizing: Sizing,
-    /// Rows that are drawn at once; the frame is made of so many slices, one after the other, each of which draws the
-    /// whole scene. `None`: as many as the device's limits allow, which is the whole frame unless a buffer is too large.
+    /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole scene. `None`: as many rows as the
+    /// device's limits allow, which is the whole frame unless a buffer is too large.
     pub slice: Option<u32>,
-    /// Whether shaders check bounds and bound loops at run time.
+    /// Whether shaders check array bounds and limit loops at run time.
     pub checks: Checks,
-    /// Whether the device has interlock: what [`crate::headless::open_device`] said, or [`Interlock::Absent`].
+    /// Whether the device has interlock, as [`crate::headless::open_device`] returns it; otherwise [`Interlock::Absent`].
     pub interlock: Interlock,
-    /// The vertex buffers of geometry passes; `None`: one, interleaved, as [`crate::VertexInputs`] says.
+    /// The vertex buffers of geometry passes; `None`: one interleaved buffer as in [`crate::VertexInputs`].
     pub vertices: Option<Vec<VertexBuffer>>,
-    /// How geometry is put together, culled and filled.
+    /// How primitives are assembled, culled and filled.
     pub primitive: wgpu::PrimitiveState,
     /// Whether passes are timed, where the device has `TIMESTAMP_QUERY`.
     pub timestamps: bool,
 }
 
-/// Whether shaders check bounds and bound loops at run time.
+/// Whether shaders check array bounds and limit loops at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Checks {
-    /// Only where the description has functions or files of its own: all other code comes from tested templates.
+    /// Only if the description has user functions or user files. All other code comes from tested templates.
     Auto,
     /// Always.
     On,
@@ -39,29 +39,29 @@ pub enum Checks {
     Off,
 }
 
-/// Whether a device has fragment shader interlock (`VK_EXT_fragment_shader_interlock`). wgpu cannot be asked.
+/// Whether a device has fragment shader interlock (`VK_EXT_fragment_shader_interlock`). wgpu has no query for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interlock {
-    /// The device was made without it.
+    /// The device was created without it.
     Absent,
-    /// The device was made with it, and its `fragmentShaderPixelInterlock` is on.
+    /// The device was created with it, and with `fragmentShaderPixelInterlock` enabled.
     Enabled,
 }
 
-/// One vertex buffer of the caller's own layout.
+/// One vertex buffer of a layout that the caller chooses.
 #[derive(Clone, Debug)]
 pub struct VertexBuffer {
-    /// Bytes from one vertex to the next.
+    /// The bytes from one vertex to the next.
     pub stride: u64,
-    /// Whether it advances by vertex or by instance.
+    /// Whether it advances per vertex or per instance.
     pub step_mode: wgpu::VertexStepMode,
-    /// Where the inputs lie in it.
+    /// The positions of the inputs in it.
     pub attributes: Vec<wgpu::VertexAttribute>,
 }
 
 impl Settings {
-    /// A frame of `width` × `height` pixels resolved into a view of format `target`: automatic sizing and checks, no
-    /// interlock, no timestamps, interleaved vertices, triangle lists, nothing culled.
+    /// Returns the defaults for a frame of `width` × `height` pixels in a view of format `target`: automatic sizing and checks,
+    /// no interlock, no timestamps, interleaved vertices, triangle lists, no face culling.
     pub fn new(target: wgpu::TextureFormat, width: u32, height: u32) -> Self {
         Settings {
             target,

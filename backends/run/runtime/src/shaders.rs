@@ -1,27 +1,27 @@
-//! The code of every pass of one plan, in a form that wgpu takes: linked WGSL, or SPIR-V that is passed through.
+//! The code of every pass of one plan, in a form that wgpu accepts: linked WGSL, or SPIR-V that is passed through.
 //!
-//! In: a linked program, or the files of one target. Out: modules by pass and stage, and the features that they need.
-//! Nothing is compiled here.
+//! Input: a linked program, or the files of one target. Output: modules by pass and stage, and the features that they need. This
+//! module compiles nothing.
 
-use fragbuf_targets::{Generation, target};
 use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
-use fragbuf_templates::vocabulary::{Access, Capability};
+use fragbuf_targets::{Generation, target};
+use fragbuf_templates::vocabulary::{Access, Feature};
 
-use crate::fixed_function::sample_count;
-use crate::refusals::check;
+use crate::samples::sample_count;
+use crate::unsupported::check;
 use crate::words::from_bytes;
 use crate::{Error, Interlock};
 
 /// The code of one plan.
 #[derive(Clone, Debug)]
 pub struct Shaders {
-    /// What the code does.
+    /// The plan that the code implements.
     pub plan: Plan,
-    /// The bind group that everything is declared in.
+    /// The bind group of all declarations.
     pub group: u32,
-    /// What the code may use.
+    /// The language features that the code may use.
     pub profile: Profile,
-    /// At least one per pass. A geometry pass without any is the caller's: its draw function sets the pipeline.
+    /// At least one per pass. In a geometry pass without a module, the caller's draw function sets the pipeline.
     pub modules: Vec<Module>,
 }
 
@@ -41,15 +41,15 @@ pub struct Module {
 pub enum Code {
     /// WGSL, parsed and validated by wgpu.
     Wgsl(String),
-    /// SPIR-V words, given to the driver as they are. Clip space is WGSL's: y up, z from 0 to 1.
+    /// SPIR-V words, passed to the driver unchanged. Clip space is as in WGSL: y up, z from 0 to 1.
     SpirV(Vec<u32>),
 }
 
 impl Shaders {
-    /// The WGSL of `plan`, linked.
+    /// Returns the linked WGSL of `plan`.
     pub fn from_program(plan: &Plan, program: &Program) -> Self {
         let modules = program.passes.iter().map(|pass| Module {
-            pass: pass.anchor.clone(),
+            pass: pass.name.clone(),
             entry_points: pass.entry_points.clone(),
             code: Code::Wgsl(pass.text.clone()),
         });
@@ -61,11 +61,11 @@ impl Shaders {
         }
     }
 
-    /// The files of one target, generated with bind group `group`. Targets in WGSL and SPIR-V can be run.
+    /// Returns the files of one target, generated with bind group `group`. The target's language must be WGSL or SPIR-V.
     pub fn from_generation(generation: &Generation, target_name: &str, group: u32) -> Result<Self, Error> {
         let not_generated = || Error::Unsupported {
             what: format!("target `{target_name}` of this generation"),
-            hint: "it was not asked for, or refused: see `refusals`".to_owned(),
+            help: "it was not requested, or it is unsupported: see `Generation::unsupported`".to_owned(),
         };
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target_name));
         let plan = planned.ok_or_else(not_generated)?.plan.clone();
@@ -84,8 +84,8 @@ impl Shaders {
         Ok(Shaders { plan, group, profile, modules })
     }
 
-    /// What the device must have for these shaders. Storage written by fragment shaders is a matter of the adapter:
-    /// `DownlevelFlags::FRAGMENT_WRITABLE_STORAGE`.
+    /// Returns the features that the device needs for these shaders. The adapter also needs
+    /// `DownlevelFlags::FRAGMENT_WRITABLE_STORAGE`, which is no feature.
     pub fn features(&self) -> wgpu::Features {
         let mut features = wgpu::Features::empty();
         let passed_through = self.modules.iter().any(|module| matches!(module.code, Code::SpirV(_)));
@@ -97,33 +97,33 @@ impl Shaders {
             features |= wgpu::Features::MEMORY_DECORATION_COHERENT;
         }
         for count in passes.iter().filter_map(|pass| sample_count(&self.plan, pass).ok()) {
-            // One and four are what every device has.
+            // Every device supports 1 and 4 samples.
             if count != 1 && count != 4 {
                 features |= wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
             }
         }
-        for capability in &self.plan.requires {
-            features |= match capability {
-                Capability::U64Atomics => wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS,
-                Capability::EarlyDepth => wgpu::Features::SHADER_EARLY_DEPTH_TEST,
+        for feature in &self.plan.requires {
+            features |= match feature {
+                Feature::U64Atomics => wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS,
+                Feature::EarlyDepth => wgpu::Features::SHADER_EARLY_DEPTH_TEST,
                 _ => wgpu::Features::empty(),
             };
         }
         features
     }
 
-    /// Whether the runtime runs such plans on some device: `Err` names the step or the resource that it does not know.
+    /// Checks that the runtime supports the plan on some device. An error names the unsupported step or resource.
     pub fn check(&self) -> Result<(), Error> {
         check(&self.plan)
     }
 
-    /// Whether a device with or without interlock runs these shaders. wgpu has no feature for it.
+    /// Checks that a device with or without interlock can run these shaders. wgpu has no feature for interlock.
     pub fn check_interlock(&self, device: Interlock) -> Result<(), Error> {
-        if device == Interlock::Absent && self.plan.requires.contains(&Capability::Interlock) {
+        if device == Interlock::Absent && self.plan.requires.contains(&Feature::Interlock) {
             return Err(Error::Unsupported {
-                what: "fragment shader interlock, on a device made without it,".to_owned(),
-                hint: "make the device by `headless::open_device` where the driver has \
-                       `VK_EXT_fragment_shader_interlock` and say so in `Settings::interlock`, or write \
+                what: "fragment shader interlock on a device that was created without it".to_owned(),
+                help: "create the device with `headless::open_device` if the driver has \
+                       `VK_EXT_fragment_shader_interlock` and set `Settings::interlock`, or write \
                        `sync: interlock else spin_lock`"
                     .to_owned(),
             });
@@ -131,12 +131,11 @@ impl Shaders {
         Ok(())
     }
 
-    /// Whether functions of the description's author are in the code, from the description or from files that it names:
-    /// they run with wgpu's runtime checks.
+    /// Whether the code contains user functions, from the description or from user files. They run with wgpu's runtime checks.
     pub(crate) fn has_user_functions(&self) -> bool {
         let variant = &self.plan.variant;
         let closures = variant.criterion.is_some() || variant.resolve.is_some() || !variant.constraints.is_empty();
-        closures || !variant.helpers.is_empty() || self.plan.selection.own_files().next().is_some()
+        closures || !variant.helpers.is_empty() || self.plan.selection.user_files().next().is_some()
     }
 }
 
@@ -150,13 +149,14 @@ fn stage_of(name: &str) -> Option<Stage> {
 }
 
 fn code(path: &str, bytes: &[u8]) -> Result<Code, Error> {
-    let text = std::str::from_utf8(bytes);
-    match (path.rsplit('.').next(), text) {
-        (Some("wgsl"), Ok(text)) => Ok(Code::Wgsl(text.to_owned())),
+    let source = std::str::from_utf8(bytes);
+    match (path.rsplit('.').next(), source) {
+        (Some("wgsl"), Ok(source)) => Ok(Code::Wgsl(source.to_owned())),
         (Some("spv"), _) => Ok(Code::SpirV(from_bytes(bytes))),
         _ => Err(Error::Unsupported {
             what: format!("`{path}`"),
-            hint: "wgpu takes WGSL and SPIR-V; compile GLSL to SPIR-V first and fill in `Shaders::modules`".to_owned(),
+            help: "wgpu accepts WGSL and SPIR-V; compile GLSL to SPIR-V first and fill in `Shaders::modules`"
+                .to_owned(),
         }),
     }
 }

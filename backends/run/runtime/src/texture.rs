@@ -1,15 +1,15 @@
-//! Textures of a plan on wgpu: formats, sizes, samples, and what a word of the plan is in a load operation.
+//! The textures of a plan on wgpu: formats, sizes, samples, and clear values from the plan's words.
 
-use fragbuf_codegen::{Plan, Planned};
+use fragbuf_codegen::{Plan, PlannedResource};
 use fragbuf_frame::Values;
 use fragbuf_templates::vocabulary::TextureFormat;
 
 use crate::{Error, Pending};
 
-/// The vocabulary's name for the caller's own target.
+/// The vocabulary's name for the caller's output.
 pub(crate) const OUTPUT: &str = "output";
 
-/// The vocabulary's name for the part of a texture's index that counts samples.
+/// The vocabulary's name for the sample index of a texture.
 pub(crate) const SAMPLE: &str = "sample";
 
 pub(crate) fn texture_format(format: TextureFormat) -> wgpu::TextureFormat {
@@ -25,7 +25,7 @@ pub(crate) fn texture_format(format: TextureFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// What a shader reads; of depth with stencil it is the stencil.
+/// Returns the type that a shader reads; for depth with stencil it is the stencil.
 pub(crate) fn sample_type(format: TextureFormat) -> wgpu::TextureSampleType {
     match format {
         TextureFormat::R32Uint | TextureFormat::Rg16Uint | TextureFormat::Depth24PlusStencil8 => {
@@ -36,7 +36,7 @@ pub(crate) fn sample_type(format: TextureFormat) -> wgpu::TextureSampleType {
     }
 }
 
-/// What a shader reads of a texture.
+/// Creates the view that a shader reads.
 pub(crate) fn sampled_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     let aspect = match texture.format() {
         wgpu::TextureFormat::Depth24PlusStencil8 => wgpu::TextureAspect::StencilOnly,
@@ -45,31 +45,31 @@ pub(crate) fn sampled_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor { aspect, ..wgpu::TextureViewDescriptor::default() })
 }
 
-/// Samples of a pixel of a texture.
-pub(crate) fn samples(plan: &Plan, planned: &Planned) -> Result<u32, Error> {
+/// Returns the samples per pixel of a texture.
+pub(crate) fn texture_samples(plan: &Plan, planned: &PlannedResource) -> Result<u32, Error> {
     let mut extents = planned.resource.extents.iter().zip(&planned.lengths);
     let Some((_, length)) = extents.find(|(extent, _)| extent.name == SAMPLE) else { return Ok(1) };
     Ok(Values::of_code(plan).word(length, &format!("the samples of `{}`", planned.resource.name))?)
 }
 
-/// Bytes of a texture of the whole frame.
-pub(crate) fn texture_bytes(planned: &Planned, values: &Values) -> Result<u64, Error> {
+/// Returns the bytes of a texture of the whole frame.
+pub(crate) fn texture_bytes(planned: &PlannedResource, values: &Values) -> Result<u64, Error> {
     let whole = values.with_rows(values.height());
     let words = whole.evaluate(&planned.words, &format!("`{}`", planned.resource.name))?;
     Ok(words.saturating_mul(4))
 }
 
-/// A texture as large as the frame.
+/// Creates a texture of the size of the frame.
 pub(crate) fn create_texture(
     device: &wgpu::Device,
     plan: &Plan,
-    planned: &Planned,
+    planned: &PlannedResource,
     format: TextureFormat,
     (width, height): (u32, u32),
 ) -> Result<wgpu::Texture, Error> {
-    let sample_count = samples(plan, planned)?;
+    let sample_count = texture_samples(plan, planned)?;
     let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    // Several samples cannot be copied to a buffer.
+    // WebGPU cannot copy a multisampled texture to a buffer.
     if sample_count == 1 {
         usage |= wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
     }
@@ -85,19 +85,19 @@ pub(crate) fn create_texture(
     }))
 }
 
-/// A word that a plan clears a colour texture to.
+/// Converts the word that a plan clears a colour texture to.
 pub(crate) fn color_of(format: wgpu::TextureFormat, word: u32) -> wgpu::Color {
     let [r, g, b, a] = match format {
         wgpu::TextureFormat::R32Uint => [f64::from(word), 0.0, 0.0, 0.0],
         wgpu::TextureFormat::Rg16Uint => [f64::from(word & 0xffff), f64::from(word >> 16), 0.0, 0.0],
         wgpu::TextureFormat::Rgba8Unorm => word.to_le_bytes().map(|byte| f64::from(byte) / 255.0),
-        // Every channel of a float format is the same number.
+        // In a float format all channels get the same number.
         _ => [f64::from(f32::from_bits(word)); 4],
     };
     wgpu::Color { r, g, b, a }
 }
 
-/// A word that a plan clears depth to.
+/// Converts the word that a plan clears a depth texture to.
 pub(crate) fn depth_of(format: wgpu::TextureFormat, word: u32) -> f32 {
     match format {
         wgpu::TextureFormat::Depth32Float => f32::from_bits(word),
@@ -105,7 +105,7 @@ pub(crate) fn depth_of(format: wgpu::TextureFormat, word: u32) -> f32 {
     }
 }
 
-/// Records the readback of a texture's texels, row after row. `None`: they cannot be copied.
+/// Records the readback of a texture's texels, row after row. Returns `None` if they cannot be copied.
 pub(crate) fn read_texture(
     device: &wgpu::Device,
     encoder: &mut wgpu::CommandEncoder,

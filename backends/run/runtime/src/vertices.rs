@@ -1,16 +1,16 @@
-//! What a vertex of a geometry pass carries: the position and one input per attribute but depth.
+//! The vertex of a geometry pass: the position, and one input per attribute except depth.
 
 use fragbuf_codegen::Plan;
 use fragbuf_model::Format;
 
 use crate::VertexBuffer;
 
-/// The inputs of the vertex stage, and where each lies in one interleaved buffer.
+/// The inputs of the vertex stage, and their offsets in one interleaved buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VertexInputs {
-    /// In the order of their locations; the position comes first.
+    /// The inputs in the order of their locations; the position is the first.
     pub inputs: Vec<VertexInput>,
-    /// Bytes of one vertex.
+    /// The bytes of one vertex.
     pub stride: u64,
 }
 
@@ -21,14 +21,14 @@ pub struct VertexInput {
     pub name: String,
     /// Its location.
     pub location: u32,
-    /// What it is read as: an `rgba8` or `rgba16` attribute comes in as four floats.
+    /// The format in the buffer: an `rgba8` or `rgba16` attribute is four floats.
     pub format: wgpu::VertexFormat,
-    /// Bytes before it in an interleaved vertex.
+    /// Its offset in an interleaved vertex, in bytes.
     pub offset: u64,
 }
 
 impl VertexInputs {
-    /// The inputs of a plan's geometry passes.
+    /// Returns the inputs of a plan's geometry passes.
     pub fn of(plan: &Plan) -> Self {
         let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
         let attributes =
@@ -42,7 +42,7 @@ impl VertexInputs {
         VertexInputs { inputs, stride }
     }
 
-    /// All inputs in one buffer.
+    /// Returns the layout of one buffer with all inputs.
     pub fn interleaved(&self) -> VertexBuffer {
         let attributes = self.inputs.iter().map(|input| wgpu::VertexAttribute {
             format: input.format,

@@ -1,5 +1,4 @@
-//! Lists per depth bucket: a fragment lies in the fifth of its pixel's depths that it belongs to. No set and no picture
-//! shows that, but it is what the buckets are for.
+//! Lists per depth bucket: a fragment is in the right fifth of its pixel's depth range. Neither kept sets nor images test that.
 
 use crate::capture::scattered;
 use crate::oracle::{PLAIN, fragments, pixels};
@@ -10,15 +9,15 @@ use fragbuf_runtime::headless::Offscreen;
 
 const BUCKETS: usize = 5;
 
-/// The keys in each bucket of a pixel of these depths, in ascending order. Depths are exact in whole parts of 2^24.
+/// Returns the keys in each bucket of a pixel, in ascending order. Depths are exact multiples of 2^-24.
 fn expected(fragments: &[Quad]) -> [Vec<u32>; BUCKETS] {
-    let place = |quad: &Quad| (f64::from(quad.depth) * f64::from(1 << 24)) as u64;
+    let fixed = |quad: &Quad| (f64::from(quad.depth) * f64::from(1 << 24)) as u64;
     let mut buckets: [Vec<u32>; BUCKETS] = Default::default();
-    let (Some(near), Some(far)) = (fragments.iter().map(place).min(), fragments.iter().map(place).max()) else {
+    let (Some(near), Some(far)) = (fragments.iter().map(fixed).min(), fragments.iter().map(fixed).max()) else {
         return buckets;
     };
     for quad in fragments {
-        let bucket = (place(quad) - near) * BUCKETS as u64 / (far - near + 1);
+        let bucket = (fixed(quad) - near) * BUCKETS as u64 / (far - near + 1);
         buckets[bucket as usize].push((PLAIN.words)(quad)[0]);
     }
     buckets.iter_mut().for_each(|bucket| bucket.sort());
@@ -26,7 +25,7 @@ fn expected(fragments: &[Quad]) -> [Vec<u32>; BUCKETS] {
 }
 
 #[test]
-fn every_fragment_lies_in_its_fifth_of_the_pixels_depths() {
+fn every_fragment_is_in_its_fifth_of_the_pixels_depth_range() {
     let stage = device();
     let mut renderer = renderer(&stage, &shaders(&technique("ab_ll_bun", &[]), "wgsl"), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, crate::stage::FORMAT, SIZE, SIZE).unwrap();

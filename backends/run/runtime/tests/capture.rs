@@ -1,17 +1,17 @@
-//! Every technique against the oracle: the kept sets are equal, word by word, and the colours within 1/255, in every order
-//! of drawing.
+//! Compares every technique with the oracle: the kept sets are equal, word by word, and the colours within 1/255, in every drawing
+//! order.
 //!
-//! A software driver runs the fragments of a pixel one after the other. So `kb`, whose races are kept by design, is exact
-//! here too; nothing in this file says anything about races.
+//! A software driver runs the fragments of a pixel sequentially. So `kb`, which is racy by design, is exact here too; this file does
+//! not test races.
 
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Renderer, Room, Settings, Sizing, Value, block_on};
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_runtime::{PoolSize, Renderer, Settings, Sizing, Value, block_on};
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE};
-use crate::stage::{self, BACKGROUND, Seen, described, renderer, see, settings, shaders, technique};
+use crate::stage::{self, BACKGROUND, FrameResult, described, render_frame, renderer, settings, shaders, technique};
 
 const RED: [u8; 4] = [255, 0, 0, 128];
 const GREEN: [u8; 4] = [0, 255, 0, 64];
@@ -19,7 +19,7 @@ const BLUE: [u8; 4] = [0, 0, 255, 200];
 const WHITE: [u8; 4] = [255, 255, 255, 255];
 const GREY: [u8; 4] = [128, 128, 128, 10];
 
-/// The corner cases, by name. At most eight layers lie over a pixel.
+/// Returns the corner cases with their names. At most eight layers cover a pixel.
 pub fn cases() -> Vec<(&'static str, Vec<Quad>)> {
     let near_to_far =
         |count: u32| (0..count).map(|index| Quad::whole((index + 1) as f32 / 16.0, [index as u8 * 30, 200, 9, 90]));
@@ -65,13 +65,13 @@ pub fn scattered(count: u32, seed: u64) -> Vec<Quad> {
     (0..count).map(quad).collect()
 }
 
-/// What a storage keeps of k fragments: all where the best are chosen afterwards.
+/// Returns the k of the storage; `None` if it keeps all fragments and the best are selected later.
 fn stored(renderer: &Renderer) -> Option<u32> {
-    let all = renderer.plan().selection.offers().contains(&Fact::KeepsAll);
+    let all = renderer.plan().selection.provides().contains(&Capability::KeepsAll);
     renderer.k().filter(|_| !all)
 }
 
-pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, k): (Option<u32>, Option<u32>)) {
+pub fn compare(name: &str, seen: &FrameResult, rules: &Rules, quads: &[Quad], (stored, k): (Option<u32>, Option<u32>)) {
     let expected: Vec<Vec<Words>> = oracle::kept_words(rules, quads, stored);
     for (pixel, (seen, expected)) in seen.kept.iter().zip(&expected).enumerate() {
         assert_eq!(
@@ -82,7 +82,7 @@ pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, 
             pixel as u32 / SIZE
         );
     }
-    for (pixel, (seen, expected)) in seen.pixels.iter().zip(oracle::picture(rules, quads, k, BACKGROUND)).enumerate() {
+    for (pixel, (seen, expected)) in seen.pixels.iter().zip(oracle::image(rules, quads, k, BACKGROUND)).enumerate() {
         for (seen, expected) in seen.iter().zip(expected) {
             let difference = 255.0 * (f64::from(*seen) - expected).abs();
             let (x, y) = (pixel as u32 % SIZE, pixel as u32 / SIZE);
@@ -91,12 +91,12 @@ pub fn compare(name: &str, seen: &Seen, rules: &Rules, quads: &[Quad], (stored, 
     }
 }
 
-/// Every case in every order, by the shaders of the target `wgsl`.
+/// Checks every case in every order, with the shaders of the target `wgsl`.
 fn check(variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
     check_as("wgsl", variant, settings, rules, prepare);
 }
 
-/// Every case in every order, by the shaders of a target.
+/// Checks every case in every order, with the shaders of a target.
 pub fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Rules, prepare: impl Fn(&mut Renderer)) {
     let stage = stage::device();
     let mut renderer = renderer(&stage, &shaders(variant, target), settings).unwrap();
@@ -104,9 +104,9 @@ pub fn check_as(target: &str, variant: &Variant, settings: &Settings, rules: &Ru
     for (name, quads) in cases() {
         let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
         for quads in orders(&quads) {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             compare(name, &seen, rules, &quads, (stored(&renderer), renderer.k()));
-            let lost = ["pool_exhausted", "spin_exhausted", "layers_exceeded"];
+            let lost = ["pool_exhausted", "timed_out", "layers_exceeded"];
             assert!(lost.iter().all(|counter| seen.counters.get(counter) == 0), "{name}: {:?}", seen.counters);
         }
     }
@@ -172,21 +172,21 @@ fn the_cascade_of_64_bits() {
 }
 
 #[test]
-fn the_list_that_is_kept_in_order() {
+fn the_sorted_list() {
     for k in ["1", "4", "8"] {
         check(&technique("kb_ll", &[("k", k)]), &settings(), &PLAIN, |_| {});
     }
 }
 
-/// Pixels with fewer fragments than k, as many, and more; arrays, and heaps where there may be one.
+/// Tests pixels with fewer fragments than k, as many, and more; with arrays, and with heaps where allowed.
 #[test]
-fn regions_of_as_many_as_are_kept() {
+fn regions_of_the_kept_fragments() {
     for (k, array) in [("1", "16"), ("3", "16"), ("4", "16"), ("1", "0"), ("3", "0"), ("4", "0")] {
         let set = [("k", k), ("storage.array", array)];
         let exact = Settings { sizing: Sizing::Exact, ..settings() };
         check(&technique("kplus_ab_sb", &set), &exact, &PLAIN, |_| {});
     }
-    let reserved = Sizing::Reserve(Room::Fragments(4 * SIZE * SIZE));
+    let reserved = Sizing::Reserve(PoolSize::Fragments(4 * SIZE * SIZE));
     check(&technique("kplus_ab_sb", &[("k", "4")]), &Settings { sizing: reserved, ..settings() }, &PLAIN, |_| {});
 }
 
@@ -196,13 +196,13 @@ fn the_fixed_array() {
 }
 
 #[test]
-fn the_best_of_all_are_chosen_on_resolve() {
+fn the_best_of_all_are_selected_on_resolve() {
     for key in ["kb_ab_array", "kb_ab_ll", "kb_ab_sb"] {
         check(&technique(key, &[("k", "3")]), &settings(), &PLAIN, |_| {});
     }
 }
 
-/// Of all ways to keep fragments one each; the words lie elsewhere, and are the same.
+/// Tests one storage of each kind: the words have other addresses and equal values.
 #[test]
 fn every_addressing() {
     for addressing in ["tiled", "morton"] {
@@ -225,7 +225,7 @@ fn the_linked_list() {
     check(&technique("ab_ll", &[]), &settings(), &PLAIN, |_| {});
 }
 
-/// Pages of one, of fewer than come, of as many and of more.
+/// Tests pages of one fragment, and of fewer, as many and more than a pixel has.
 #[test]
 fn the_list_of_pages() {
     for page in ["1", "2", "3", "4", "8", "9"] {
@@ -241,13 +241,13 @@ fn the_lists_per_depth_bucket() {
 }
 
 #[test]
-fn exact_regions_cut_at_the_host_step() {
+fn exact_regions_sized_by_the_host_step() {
     check(&technique("ab_sb", &[]), &Settings { sizing: Sizing::Exact, ..settings() }, &PLAIN, |_| {});
 }
 
 #[test]
 fn exact_regions_reserved() {
-    let reserved = Sizing::Reserve(Room::Fragments(8 * SIZE * SIZE));
+    let reserved = Sizing::Reserve(PoolSize::Fragments(8 * SIZE * SIZE));
     check(&technique("ab_sb", &[]), &Settings { sizing: reserved, ..settings() }, &PLAIN, |_| {});
 }
 
@@ -265,7 +265,7 @@ fn k_below_the_capacity() {
     }
 }
 
-/// A payload, a criterion, a constraint, a uniform and an effect of the description's own.
+/// A description with a payload, a criterion, a constraint, uniforms and an effect.
 const GLASS: &str = "
     buffer Glass from TECHNIQUE {
         fragment { color: rgba8, depth: f32, id: u32 }
@@ -316,7 +316,7 @@ pub fn set_uniforms(renderer: &mut Renderer) {
 }
 
 #[test]
-fn a_description_with_a_criterion_of_its_own() {
+fn a_description_with_a_criterion() {
     fn criterion(quad: &Quad) -> u32 {
         let bits = (quad.depth - 0.25 * quad.rgba()[3]).to_bits();
         if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -331,7 +331,7 @@ fn a_description_with_a_criterion_of_its_own() {
     for key in ["kplus_array", "kplus_heap", "kb_ab_ll", "kplus_array_revised", "kplus_ab_sb"] {
         check(&glass(key, keep), &settings(), &rules, set_uniforms);
     }
-    // Three words beside the key are settled by three passes, and come in the order of the criterion.
+    // Three passes refine the three value words, and fragments are in the order of the criterion.
     check(&glass("mdt32_coplanar", &format!("{keep} sort: insertion;")), &settings(), &rules, set_uniforms);
     // The sorted array and the list are in the order of the criterion, which is not the order of depth.
     for key in ["kb", "kb_ll"] {

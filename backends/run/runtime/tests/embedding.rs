@@ -1,10 +1,9 @@
-//! The module form: a material shader of the caller's own, in a pipeline of the caller's own, that ends in a call of
-//! `store_fragment`.
+//! The module form: the caller's material shader in the caller's pipeline ends with a call of `store_fragment`.
 
-use fragbuf_targets::{Request, generate, target};
 use fragbuf_codegen::Form;
 use fragbuf_runtime::headless::Offscreen;
 use fragbuf_runtime::{Output, Renderer, Shaders};
+use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
 
 use crate::kept;
@@ -12,10 +11,10 @@ use crate::oracle::{PLAIN, kept_words};
 use crate::quads::{Quad, SIZE};
 use crate::stage::{FORMAT, device, read_buffers, renderer, settings, technique};
 
-/// The bind group of fragbuf's buffers; the caller's own are in group 0.
+/// The bind group of fragbuf's buffers; those of the caller are in group 0.
 const GROUP: u32 = 1;
 
-/// A material: quads over the whole frame, their colours and depths from a buffer of the caller's.
+/// A material: quads over the whole frame, with colours and depths from a buffer of the caller.
 const MATERIAL: &str = "
 struct Sheet { color: vec4<f32>, depth: f32 }
 @group(0) @binding(0) var<storage, read> sheets: array<Sheet>;
@@ -35,14 +34,14 @@ fn sheets() -> Vec<Quad> {
 fn pipeline(
     device: &wgpu::Device,
     renderer: &Renderer,
-    text: &str,
-    own: &wgpu::BindGroupLayout,
+    module_source: &str,
+    material_layout: &wgpu::BindGroupLayout,
 ) -> wgpu::RenderPipeline {
-    let source = wgpu::ShaderSource::Wgsl(format!("{text}\n{MATERIAL}").into());
+    let source = wgpu::ShaderSource::Wgsl(format!("{module_source}\n{MATERIAL}").into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("material"), source });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(own), renderer.bind_group_layout("store")],
+        bind_group_layouts: &[Some(material_layout), renderer.bind_group_layout("store")],
         immediate_size: 0,
     });
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -69,15 +68,16 @@ fn pipeline(
 }
 
 #[test]
-fn a_material_of_the_callers_own_stores_fragments() {
+fn a_material_of_the_caller_stores_fragments() {
     let stage = device();
     let device = &stage.device;
     let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Module, prefix: "", group: GROUP };
     let variant = technique("kplus_array", &[("k", "3")]);
-    let generation = generate(&variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    let generation =
+        generate(&variant, &request, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     let shaders = Shaders::from_generation(&generation, "wgsl", GROUP).unwrap();
     let mut renderer = renderer(&stage, &shaders, &settings()).unwrap();
-    let text = generation.files.iter().find(|file| file.pass == "store").unwrap();
+    let file = generation.files.iter().find(|file| file.pass == "store").unwrap();
 
     let words =
         sheets().iter().flat_map(|quad| [quad.rgba(), [quad.depth, 0.0, 0.0, 0.0]]).flatten().collect::<Vec<f32>>();
@@ -86,7 +86,7 @@ fn a_material_of_the_callers_own_stores_fragments() {
     let size = bytes.len() as u64;
     let buffer = device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     stage.queue.write_buffer(&buffer, 0, &bytes);
-    let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &[wgpu::BindGroupLayoutEntry {
             binding: 0,
@@ -101,10 +101,10 @@ fn a_material_of_the_callers_own_stores_fragments() {
     });
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &own,
+        layout: &layout,
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
     });
-    let material = pipeline(device, &renderer, std::str::from_utf8(&text.bytes).unwrap(), &own);
+    let material = pipeline(device, &renderer, std::str::from_utf8(&file.bytes).unwrap(), &layout);
 
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
@@ -114,6 +114,6 @@ fn a_material_of_the_callers_own_stores_fragments() {
         pass.draw(0..3, 0..sheets().len() as u32);
     };
     renderer.render(&output, draw).unwrap();
-    let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer));
+    let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer), &sheets());
     assert_eq!(kept, kept_words(&PLAIN, &sheets(), Some(3)));
 }

@@ -1,11 +1,13 @@
-//! What goes wrong is a value that says what, how much and what to do; the renderer stays as it was.
+//! Errors say what is wrong, by how much, and how to fix it; the renderer stays unchanged.
 
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
-use fragbuf_runtime::{Code, Error, Interlock, Output, Recorded, Renderer, Room, Settings, Sizing, Value, block_on};
+use fragbuf_runtime::{
+    Code, Error, Interlock, Output, PoolSize, Recorded, Renderer, Settings, Sizing, Value, block_on,
+};
 use fragbuf_templates::vocabulary::{Access, Use};
 
 use crate::quads::{Quad, SIZE};
-use crate::stage::{FORMAT, device, draw_over, renderer, see, settings, shaders, technique};
+use crate::stage::{FORMAT, device, draw_over, render_frame, renderer, settings, shaders, technique};
 
 fn fresh() -> Headless {
     Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap()
@@ -16,7 +18,7 @@ fn message<T>(result: Result<T, Error>) -> String {
 }
 
 #[test]
-fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
+fn the_error_for_a_resource_beyond_the_limit_has_name_size_and_fix() {
     let stage = device();
     let whole = Settings { slice: Some(u32::MAX), ..settings() };
     let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "64")]), "wgsl"), &whole).unwrap();
@@ -25,26 +27,26 @@ fn a_resource_beyond_the_limit_says_which_how_much_and_what_to_do() {
     let side = stage.device.limits().max_texture_dimension_2d;
     let bytes = 4 * 64 * u64::from(side) * u64::from(side);
     let error = block_on(&stage.device, renderer.resize(side, side)).unwrap().unwrap_err();
-    let Error::TooLarge { what, needed, limit: told, .. } = &error else { panic!("{error}") };
-    assert_eq!((what.as_str(), *needed, *told), ("`keys`", bytes, limit));
+    let Error::TooLarge { what, needed, limit: reported, .. } = &error else { panic!("{error}") };
+    assert_eq!((what.as_str(), *needed, *reported), ("`keys`", bytes, limit));
     assert!(error.to_string().contains("smaller frame"), "{error}");
     assert_eq!((renderer.allocated_bytes(), renderer.symbol("width")), before);
     let quads = [Quad::whole(0.5, [1, 2, 3, 4])];
-    assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
+    assert!(render_frame(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1));
     let error = block_on(&stage.device, renderer.resize(side + 1, 1)).unwrap().unwrap_err();
     assert!(error.to_string().contains("max_texture_dimension_2d"), "{error}");
 }
 
 #[test]
-fn a_pool_beyond_the_limit_is_refused_before_anything_is_made() {
+fn a_pool_beyond_the_limit_is_rejected_before_allocation() {
     let stage = device();
-    let settings = Settings { sizing: Sizing::Reserve(Room::Fragments(u32::MAX)), ..settings() };
+    let settings = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(u32::MAX)), ..settings() };
     let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
     assert!(error.contains("`links`") && error.contains("reserve less"), "{error}");
 }
 
 #[test]
-fn sizing_that_nobody_can_know_says_to_reserve() {
+fn exact_sizing_without_a_count_suggests_to_reserve() {
     let stage = device();
     let settings = Settings { sizing: Sizing::Exact, ..settings() };
     let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
@@ -52,7 +54,7 @@ fn sizing_that_nobody_can_know_says_to_reserve() {
 }
 
 #[test]
-fn interlock_is_refused_on_a_device_that_was_made_without_it() {
+fn interlock_is_rejected_on_a_device_without_it() {
     let stage = device();
     let shaders = shaders(&technique("kplus_array", &[("sync", "interlock")]), "spirv");
     assert_eq!(shaders.check_interlock(Interlock::Enabled), Ok(()));
@@ -77,19 +79,19 @@ fn missing_features_are_named() {
     }
 }
 
-/// The caller draws the scene, so the arguments of that draw are the caller's too.
+/// The caller draws the scene, so a plan cannot give the arguments of that draw.
 #[test]
-fn passes_that_do_not_run_are_named() {
+fn unsupported_passes_are_named() {
     let stage = device();
     let mut shaders = shaders(&technique("kplus_array", &[]), "wgsl");
-    let store = shaders.plan.passes.iter_mut().find(|pass| pass.anchor == "store").unwrap();
+    let store = shaders.plan.passes.iter_mut().find(|pass| pass.name == "store").unwrap();
     store.pass.uses.push(Use::new("locks", Access::Indirect));
     let error = message(renderer(&stage, &shaders, &settings()));
     assert!(error.contains("pass `store`: `locks` as Indirect"), "{error}");
 }
 
 #[test]
-fn code_and_settings_that_do_not_fit_are_values() {
+fn mismatched_code_and_settings_are_errors() {
     let stage = device();
     let good = shaders(&technique("kplus_array", &[]), "wgsl");
     let mut broken = good.clone();
@@ -106,24 +108,27 @@ fn code_and_settings_that_do_not_fit_are_values() {
 }
 
 #[test]
-fn an_output_of_another_size_is_never_read_beyond_the_frame() {
+fn an_output_of_another_size_is_never_written_beyond_the_frame() {
     let stage = device();
     let mut renderer = renderer(&stage, &shaders(&technique("kplus_array", &[]), "wgsl"), &settings()).unwrap();
     let quads = [Quad::whole(0.5, [255, 255, 255, 255])];
     let greater = Offscreen::new(&stage.device, FORMAT, SIZE + 5, SIZE + 3).unwrap();
-    // Clip space is stretched over the attachment of the geometry pass alone.
+    // Clip space covers the attachment of the geometry pass only.
     draw_over(&stage, &mut renderer, &quads, &greater).unwrap();
     for (index, [r, ..]) in greater.colors(&stage.device, &stage.queue).unwrap().into_iter().enumerate() {
         let (x, y) = (index as u32 % (SIZE + 5), index as u32 / (SIZE + 5));
         assert_eq!(r == 1.0, x < SIZE && y < SIZE, "pixel {x}, {y}");
     }
     let smaller = Offscreen::new(&stage.device, FORMAT, SIZE - 1, SIZE).unwrap();
-    assert!(message(draw_over(&stage, &mut renderer, &quads, &smaller)).contains("wgpu refuses the frame's commands"));
-    assert!(see(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1), "the next frame is a good one");
+    assert!(message(draw_over(&stage, &mut renderer, &quads, &smaller)).contains("wgpu rejects the frame's commands"));
+    assert!(
+        render_frame(&stage, &mut renderer, &quads).kept.iter().all(|kept| kept.len() == 1),
+        "the next frame succeeds"
+    );
 }
 
 #[test]
-fn values_out_of_range_are_refused() {
+fn values_out_of_range_are_rejected() {
     let stage = device();
     let mut array = renderer(&stage, &shaders(&technique("kplus_array", &[("k", "5")]), "wgsl"), &settings()).unwrap();
     for k in [0, 9] {
@@ -135,7 +140,7 @@ fn values_out_of_range_are_refused() {
 }
 
 #[test]
-fn frames_that_are_over_and_segments_that_were_not_submitted_are_told() {
+fn stale_frames_and_unsubmitted_segments_are_errors() {
     let stage = device();
     let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
@@ -145,38 +150,38 @@ fn frames_that_are_over_and_segments_that_were_not_submitted_are_told() {
     let frame = renderer.begin().unwrap();
     assert_eq!(stale.record(&renderer, &mut encoder, &output, &mut |_, _| {}).err(), Some(Error::StaleFrame));
     let recorded = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}).unwrap();
-    let Recorded::Cut(cut) = recorded else { panic!("the plan has a host step") };
-    assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).err(), Some(Error::NotSubmitted));
-    assert!(see(&stage, &mut renderer, &[]).kept.iter().all(Vec::is_empty), "the next frame is a good one");
+    let Recorded::Suspended(suspended) = recorded else { panic!("the plan has a host step") };
+    assert_eq!(block_on(&stage.device, suspended.resume(&mut renderer)).err(), Some(Error::NotSubmitted));
+    assert!(render_frame(&stage, &mut renderer, &[]).kept.iter().all(Vec::is_empty), "the next frame succeeds");
 }
 
 #[test]
-fn a_lost_device_is_a_value() {
+fn a_lost_device_is_an_error() {
     let stage = fresh();
     let mut renderer = renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Load };
     let frame = renderer.begin().unwrap();
     stage.device.destroy();
-    assert_eq!(renderer.render(&output, &mut |_, _| {}), Err(Error::Lost));
-    assert_eq!(renderer.begin().err(), Some(Error::Lost));
-    assert_eq!(block_on(&stage.device, renderer.resize(7, 7)).unwrap(), Err(Error::Lost));
+    assert_eq!(renderer.render(&output, &mut |_, _| {}), Err(Error::DeviceLost));
+    assert_eq!(renderer.begin().err(), Some(Error::DeviceLost));
+    assert_eq!(block_on(&stage.device, renderer.resize(7, 7)).unwrap(), Err(Error::DeviceLost));
     assert_eq!(
         self::renderer(&stage, &shaders(&technique("ab_sb", &[]), "wgsl"), &settings()).err(),
-        Some(Error::Lost)
+        Some(Error::DeviceLost)
     );
-    assert_eq!(offscreen.read(&stage.device, &stage.queue), Err(Error::Lost));
-    // A frame that began before: whatever it records, what it waits for never comes.
+    assert_eq!(offscreen.read(&stage.device, &stage.queue), Err(Error::DeviceLost));
+    // A frame that began before records commands, but its readbacks never complete.
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let Ok(Recorded::Cut(cut)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else {
-        panic!("a cut")
+    let Ok(Recorded::Suspended(suspended)) = frame.record(&renderer, &mut encoder, &output, &mut |_, _| {}) else {
+        panic!("the frame is not suspended")
     };
-    assert_eq!(block_on(&stage.device, cut.resume(&mut renderer)).unwrap().err(), Some(Error::Lost));
+    assert_eq!(block_on(&stage.device, suspended.resume(&mut renderer)).unwrap().err(), Some(Error::DeviceLost));
     assert!(stage.is_lost());
 }
 
 #[test]
-fn an_adapter_that_is_not_there_names_those_that_are() {
+fn the_error_for_an_unknown_adapter_names_the_available_ones() {
     let error = message(Headless::open(&"no such adapter".parse::<Choice>().unwrap(), wgpu::Features::empty()));
     let names: Vec<String> = fragbuf_runtime::headless::adapters().into_iter().map(|info| info.name).collect();
     assert!(error.contains("no such adapter") && error.contains(&names[0]), "{error}");

@@ -1,5 +1,5 @@
-//! What a frame left in every pixel, read through the storage's own functions, and what its rows promise of that. No storage
-//! is named here: what is expected follows from what rows offer and from the hazards that they state.
+//! Reads the kept fragments of every pixel through the functions of the storage, and checks them against what its rows declare.
+//! This file names no storage: the expectations follow from the rows' capabilities and declared hazards.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,21 +9,21 @@ use fragbuf_checker::{FrameMemory, ReadOut};
 use fragbuf_codegen::{Plan, Profile};
 use fragbuf_runtime::Renderer;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Alike, Fact, Row};
+use fragbuf_templates::vocabulary::{Capability, Equivalence};
 
-use crate::oracle::{Words, pixels};
-use crate::quads::SIZE;
+use crate::oracle::{Words, fragments, pixels};
+use crate::quads::{Quad, SIZE};
 
 const EMPTY: u32 = u32::MAX;
 
 /// A device after a frame.
-pub trait Drawn {
+pub trait FrameView {
     fn plan(&self) -> &Plan;
     fn k(&self) -> Option<u32>;
     fn symbol(&self, name: &str) -> Option<u64>;
 }
 
-impl Drawn for Renderer {
+impl FrameView for Renderer {
     fn plan(&self) -> &Plan {
         self.plan()
     }
@@ -37,7 +37,7 @@ impl Drawn for Renderer {
     }
 }
 
-impl Drawn for fragbuf_cpu::Device {
+impl FrameView for fragbuf_cpu::Device {
     fn plan(&self) -> &Plan {
         self.plan()
     }
@@ -51,50 +51,57 @@ impl Drawn for fragbuf_cpu::Device {
     }
 }
 
-/// The kept fragments of every pixel, each pixel's in ascending order of their words. `buffers`: all words by resource.
-pub fn kept(drawn: &dyn Drawn, buffers: &BTreeMap<String, Vec<u32>>) -> Vec<Vec<Words>> {
-    let plan = drawn.plan();
+/// Returns the kept fragments of every pixel, each pixel's in ascending order of their words. `buffers`: all words by resource.
+/// `quads`: the scene.
+pub fn kept(frame: &dyn FrameView, buffers: &BTreeMap<String, Vec<u32>>, quads: &[Quad]) -> Vec<Vec<Words>> {
+    let plan = frame.plan();
     let read_out = read_out(plan);
-    let promise = Promise::of(plan, drawn.k());
+    let invariants = PixelInvariants::of(plan, frame.k());
     let words = |name: &str| buffers.get(name).cloned();
-    // Memory may be sized for a greater k than the frame was drawn with.
-    let symbol = |name: &str| if name == "k" { drawn.k().map(u64::from) } else { drawn.symbol(name) };
+    // Memory may be sized for a greater k than that of the frame.
+    let symbol = |name: &str| if name == "k" { frame.k().map(u64::from) } else { frame.symbol(name) };
     let mut memory = FrameMemory::new(plan, [SIZE, SIZE], symbol, words);
     let mut of_pixel = |(x, y)| {
         let seen =
             read_out.pixel(&mut memory, [x, y]).and_then(|kept| Ok((kept, read_out.bound(&mut memory, [x, y])?)));
         let (mut kept, bound) = seen.unwrap_or_else(|error| panic!("pixel {x}, {y}: {error}"));
-        promise.is_kept(&kept, bound, &format!("pixel {x}, {y}"));
+        invariants.check(&kept, bound, fragments(quads, x, y).len(), &format!("pixel {x}, {y}"));
         kept.sort();
         kept
     };
     pixels().map(&mut of_pixel).collect()
 }
 
-/// What holds of every pixel, whatever was drawn.
-struct Promise {
+/// What holds for every pixel of any scene.
+struct PixelInvariants {
+    /// The greatest number of kept fragments.
     most: usize,
-    /// Keys ascend along a walk.
+    /// Keys ascend in the order of reading.
     is_sorted: bool,
     has_distinct_keys: bool,
     has_distinct_entries: bool,
+    /// Every fragment reaches the storage, or has a key greater than the bound.
+    sees_all: bool,
 }
 
-impl Promise {
+impl PixelInvariants {
     fn of(plan: &Plan, k: Option<u32>) -> Self {
         let storage = &plan.selection.row("storage").unwrap().row;
         let alike = plan.hazards.iter().map(|hazard| hazard.permits.one_of).max().unwrap_or_default();
         let has_groups = storage.keeps.as_ref().is_some_and(|kept| kept.group.is_some());
-        let limit = k.filter(|_| !storage.offers.contains(&Fact::KeepsAll));
-        Promise {
+        // Rows of these axes with memory of their own reject fragments before the storage.
+        let has_memory = |axis: &&str| plan.selection.row(axis).is_some_and(|chosen| !chosen.row.resources.is_empty());
+        let limit = k.filter(|_| !storage.provides.contains(&Capability::KeepsAll));
+        PixelInvariants {
             most: limit.map_or(usize::MAX, |k| k as usize),
-            is_sorted: walks_in_order(storage),
-            has_distinct_keys: alike == Alike::Keys || has_groups,
-            has_distinct_entries: alike == Alike::Fragments,
+            is_sorted: storage.may_provide(Capability::Sorted),
+            has_distinct_keys: alike == Equivalence::Keys || has_groups,
+            has_distinct_entries: alike == Equivalence::Fragments,
+            sees_all: plan.variant.constraints.is_empty() && !["cull", "opaque"].iter().any(has_memory),
         }
     }
 
-    fn is_kept(&self, kept: &[Words], bound: Option<u32>, at: &str) {
+    fn check(&self, kept: &[Words], bound: Option<u32>, drawn: usize, at: &str) {
         assert!(kept.len() <= self.most, "{at} holds {} of {}", kept.len(), self.most);
         let keys: Vec<u32> = kept.iter().map(|words| words[0]).collect();
         assert!(!self.is_sorted || keys.is_sorted(), "{at} is not in order: {kept:?}");
@@ -102,20 +109,18 @@ impl Promise {
         assert!(!self.has_distinct_keys || distinct.len() == keys.len(), "{at} holds a key twice: {kept:?}");
         let entries: BTreeSet<&Words> = kept.iter().collect();
         assert!(!self.has_distinct_entries || entries.len() == kept.len(), "{at} holds a fragment twice: {kept:?}");
-        // Until there are k, any fragment may be one of the best; then none behind the worst is. Of none there is no worst.
+        // With fewer than k fragments, any fragment may be one of the k best. With k of them, the worst key is the bound once
+        // more fragments came; with exactly k the storage may have no bound yet. With k = 0 there is no worst key.
         let Some(bound) = bound.filter(|_| self.most > 0) else { return };
         assert!(kept.len() == self.most || bound == EMPTY, "{at} holds {} and is bounded by {bound:x}", kept.len());
         let worst = keys.into_iter().max().unwrap_or(0);
         assert!(bound == EMPTY || bound == worst, "{at} is bounded by {bound:x}, and its worst key is {worst:x}");
+        let is_over_capacity = self.sees_all && drawn > self.most && kept.len() == self.most;
+        assert!(!is_over_capacity || bound == worst, "{at} had more than {} fragments and no bound", self.most);
     }
 }
 
-/// A row whose fragments are in the order of depth where depth is the key keeps them in the order of their keys.
-fn walks_in_order(storage: &Row) -> bool {
-    storage.offers.contains(&Fact::Sorted) || storage.implies.iter().any(|(_, implied)| *implied == Fact::Sorted)
-}
-
-/// The plan's programs: those of the last plan on this thread are kept, because most tests draw many frames of one.
+/// Returns the plan's programs. The last two plans of this thread are cached, because most tests draw many frames of one plan.
 fn read_out(plan: &Plan) -> Rc<ReadOut> {
     thread_local! {
         static LAST: RefCell<Vec<(Plan, Rc<ReadOut>)>> = const { RefCell::new(Vec::new()) };
@@ -124,11 +129,11 @@ fn read_out(plan: &Plan) -> Rc<ReadOut> {
         if let Some((_, known)) = last.iter().find(|(known, _)| known == plan) {
             return known.clone();
         }
-        // Two devices may take turns.
+        // Some tests alternate between two devices.
         last.truncate(1);
-        let made =
-            ReadOut::new(plan, Profile::Native, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
-        last.insert(0, (plan.clone(), Rc::new(made)));
+        let new = ReadOut::new(plan, Profile::Native, &Registry::builtin())
+            .unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        last.insert(0, (plan.clone(), Rc::new(new)));
         last[0].1.clone()
     })
 }

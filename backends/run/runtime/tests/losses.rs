@@ -1,18 +1,18 @@
-//! Storages that lose fragments by what they are, and say so: what is lost is what they state, and nothing else.
+//! Storages that lose fragments by design lose exactly the fragments that they declare.
 
 use std::collections::BTreeMap;
 
 use fragbuf_model::Variant;
 use fragbuf_runtime::headless::Offscreen;
-use fragbuf_runtime::{Output, Renderer, Room, Settings, Sizing, block_on};
+use fragbuf_runtime::{Output, PoolSize, Renderer, Settings, Sizing, block_on};
 
 use crate::capture::{compare, scattered};
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE, vertices};
-use crate::stage::{self, BACKGROUND, Seen, renderer, see, settings, shaders, technique};
+use crate::stage::{self, BACKGROUND, FrameResult, render_frame, renderer, settings, shaders, technique};
 
-/// Scenes with many equal depths, at most eight layers over a pixel.
+/// Returns scenes with many equal depths, and at most eight layers over a pixel.
 fn scenes() -> Vec<Vec<Quad>> {
     let color = |index: u32| [index as u8 * 30, 255 - index as u8 * 30, 7, 100 + index as u8];
     let flat = |depths: &[f32]| (0..).zip(depths).map(|(index, depth)| Quad::whole(*depth, color(index))).collect();
@@ -27,19 +27,19 @@ fn scenes() -> Vec<Vec<Quad>> {
     ]
 }
 
-/// Every scene in every order, each frame handed to `inspect`.
-fn each_frame(variant: &Variant, inspect: impl Fn(&Seen, &[Quad])) {
+/// Renders every scene in every order and passes each frame to `inspect`.
+fn each_frame(variant: &Variant, inspect: impl Fn(&FrameResult, &[Quad])) {
     let stage = stage::device();
     let mut renderer = renderer(&stage, &shaders(variant, "wgsl"), &settings()).unwrap();
     for scene in scenes() {
         let scene: Vec<Quad> = (0..).zip(scene).map(|(id, quad)| quad.named(id)).collect();
         for quads in orders(&scene) {
-            inspect(&see(&stage, &mut renderer, &quads), &quads);
+            inspect(&render_frame(&stage, &mut renderer, &quads), &quads);
         }
     }
 }
 
-/// One fragment for each of the k least keys, and it is one of those with that key; every other is counted.
+/// For each of the k least keys one of its fragments is kept, and every other fragment is counted.
 #[test]
 fn of_equal_depths_one_is_kept() {
     let of_k = |k| [("kb_mdt32", "none", k), ("kb_mdt32", "occupancy", k), ("kb_multi", "none", k)];
@@ -61,20 +61,20 @@ fn of_equal_depths_one_is_kept() {
                 equal += by_key.values().map(|alike| alike.len() as u32 - 1).sum::<u32>();
             }
             let count = |name: &str| seen.counters.get(name);
-            let turned_away = count("culled") + count("displaced") + count("equal_keys");
-            assert_eq!(count("generated"), kept_in_all + turned_away, "{:?}", seen.counters);
-            // Of fragments with equal keys, some may be turned away for their key before they meet an equal one.
+            let rejected = count("culled") + count("displaced") + count("equal_keys");
+            assert_eq!(count("generated"), kept_in_all + rejected, "{:?}", seen.counters);
+            // A fragment may be rejected by its key before it is compared with a fragment of the same key.
             assert!(count("equal_keys") <= equal, "{:?}", seen.counters);
             assert!(k < 8 || count("equal_keys") == equal, "{:?}", seen.counters);
         });
     }
 }
 
-/// Where depths differ nothing is lost but what is farther, whether the host ends the loop or the bound does.
+/// With different depths only farther fragments are lost, whether the host ends the loop or the limit does.
 #[test]
-fn rounds_that_the_host_ends_and_rounds_to_the_bound_keep_the_same() {
+fn loops_that_end_on_their_condition_or_limit_keep_the_same() {
     let stage = stage::device();
-    for (k, sizing) in [(1, Sizing::Exact), (4, Sizing::Auto), (4, Sizing::Reserve(Room::Fragments(0)))] {
+    for (k, sizing) in [(1, Sizing::Exact), (4, Sizing::Auto), (4, Sizing::Reserve(PoolSize::Fragments(0)))] {
         let variant = technique("kb_multi", &[("k", &k.to_string())]);
         let settings = Settings { sizing, ..settings() };
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings).unwrap();
@@ -82,16 +82,16 @@ fn rounds_that_the_host_ends_and_rounds_to_the_bound_keep_the_same() {
         let quad = |index: u32| Quad::whole((index + 1) as f32 / 16.0, color(index)).at(0, 0, SIZE, SIZE - index);
         let quads: Vec<Quad> = (0..8).map(quad).collect();
         for quads in orders(&quads) {
-            let seen = see(&stage, &mut renderer, &quads);
-            compare("rounds", &seen, &PLAIN, &quads, (renderer.k(), renderer.k()));
-            assert_eq!(seen.counters.get("unsettled"), 0);
+            let seen = render_frame(&stage, &mut renderer, &quads);
+            compare("iterations", &seen, &PLAIN, &quads, (renderer.k(), renderer.k()));
+            assert_eq!(seen.counters.get("not_converged"), 0);
         }
     }
 }
 
-/// A loop is cut after every round that the host must hear of, and goes on where it was; k decides how many there may be.
+/// A frame is suspended after each iteration of a loop with an end condition, and then continues. k limits the iterations.
 #[test]
-fn a_loop_is_cut_once_a_round() {
+fn a_frame_is_suspended_once_per_iteration() {
     let stage = stage::device();
     let variant = technique("kb_multi", &[("k", "4")]);
     let shaders = shaders(&variant, "wgsl");
@@ -117,14 +117,14 @@ fn a_loop_is_cut_once_a_round() {
     };
     let timed = Settings { timestamps: true, ..settings() };
     let mut exact = renderer(&stage, &shaders, &timed).unwrap();
-    // One fragment of a pixel after the other: the second round changes nothing.
+    // The driver runs the fragments of a pixel sequentially, so the second iteration changes nothing.
     assert_eq!(draws(&mut exact), 2);
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let times = exact.pass_times(&mut encoder).unwrap();
     stage.queue.submit([encoder.finish()]);
-    // There are queries for every round.
+    // There are queries for every iteration.
     assert!(times.wait(&stage.device).unwrap().iter().all(|time| time.untimed == 0));
-    let reserve = Settings { sizing: Sizing::Reserve(Room::Fragments(0)), ..settings() };
+    let reserve = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(0)), ..settings() };
     let mut reserved = renderer(&stage, &shaders, &reserve).unwrap();
     assert_eq!(draws(&mut reserved), 5);
     block_on(&stage.device, reserved.set_k(2)).unwrap().unwrap();
@@ -133,18 +133,18 @@ fn a_loop_is_cut_once_a_round() {
     assert_eq!(draws(&mut renderer(&stage, &shaders, &sliced).unwrap()), 2 * SIZE.div_ceil(5));
 }
 
-/// The depths of `quad` in millionths, from `near` to `far`, cut into `k` ranges.
+/// Returns the range of a depth, among `k` ranges from `near` to `far` in millionths.
 fn range(quad: &Quad, near: u64, far: u64, k: u64) -> u64 {
     let depth = (quad.depth * 1_000_000.0) as u64;
     (depth.clamp(near, far) - near) * k / (far - near)
 }
 
-/// The nearest fragment of each range, and the picture of them.
+/// The storage keeps the nearest fragment of each depth range.
 #[test]
 fn of_every_range_of_depth_the_nearest_is_kept() {
     for (near, far, k) in [(0, 1_000_000, 1), (0, 1_000_000, 4), (0, 1_000_000, 7), (250_000, 500_000, 2)] {
-        let text = [k, near, far].map(|number: u64| number.to_string());
-        let set = [("k", &*text[0]), ("storage.near", &*text[1]), ("storage.far", &*text[2])];
+        let parameters = [k, near, far].map(|number: u64| number.to_string());
+        let set = [("k", &*parameters[0]), ("storage.near", &*parameters[1]), ("storage.far", &*parameters[2])];
         each_frame(&technique("depth_partition", &set), |seen, quads| {
             let nearest = |x: u32, y: u32| {
                 let mut nearest: BTreeMap<u64, Quad> = BTreeMap::new();
@@ -161,7 +161,7 @@ fn of_every_range_of_depth_the_nearest_is_kept() {
     }
 }
 
-/// With as many ranges as there are depths nothing is lost, and the picture is everybody's.
+/// With as many ranges as depths nothing is lost, and the image is complete.
 #[test]
 fn ranges_that_hold_one_fragment_each_lose_nothing() {
     let variant = technique("depth_partition", &[("k", "8")]);
@@ -172,29 +172,29 @@ fn ranges_that_hold_one_fragment_each_lose_nothing() {
         .map(|index| Quad::whole(index as f32 / 8.0, [index as u8 * 30, 90, 200, 80]).at(0, 0, SIZE - index, SIZE))
         .collect();
     for quads in orders(&quads) {
-        compare("ranges", &see(&stage, &mut renderer, &quads), &rules, &quads, (None, None));
+        compare("ranges", &render_frame(&stage, &mut renderer, &quads), &rules, &quads, (None, None));
     }
 }
 
-/// What a stream of k entries composites of the fragments of a pixel, in which order, how many of those too late, and what
-/// it still holds: each time one more than k are there, the nearest leaves.
+/// Simulates a stream of k entries: whenever it holds k + 1 fragments, it emits the nearest. Returns the fragments in composition
+/// order, the number of those that are too late, and the words of the entries at the end.
 fn streamed(fragments: &[Quad], k: usize) -> (Vec<Quad>, u32, Vec<Words>) {
-    let (mut held, mut gone): (Vec<Quad>, Vec<Quad>) = (Vec::new(), Vec::new());
+    let (mut held, mut emitted): (Vec<Quad>, Vec<Quad>) = (Vec::new(), Vec::new());
     let mut late = 0;
     for quad in fragments {
         held.push(*quad);
         held.sort_by_key(PLAIN.words);
         if held.len() > k {
             let nearest = held.remove(0);
-            late += u32::from(gone.iter().any(|other| other.depth > nearest.depth));
-            gone.push(nearest);
+            late += u32::from(emitted.iter().any(|other| other.depth > nearest.depth));
+            emitted.push(nearest);
         }
     }
     let kept = held.iter().map(PLAIN.words).collect();
-    (gone.into_iter().chain(held).collect(), late, kept)
+    (emitted.into_iter().chain(held).collect(), late, kept)
 }
 
-/// Whether `seen` is `layers` composited one after the other, at one pixel.
+/// Checks that the colour `seen` of a pixel is that of the composited `layers`.
 fn assert_composited(seen: &[f32; 4], layers: &[Quad], what: &str) {
     let color = oracle::over(layers);
     for (channel, background) in BACKGROUND.into_iter().enumerate() {
@@ -204,9 +204,9 @@ fn assert_composited(seen: &[f32; 4], layers: &[Quad], what: &str) {
     }
 }
 
-/// In every order of arrival the picture is that of the stream, and what comes too late is counted, one by one.
+/// In every order of arrival the image is that of the stream, and each fragment that comes too late is counted.
 #[test]
-fn a_stream_composites_in_the_order_of_leaving() {
+fn a_stream_composites_in_the_order_of_emission() {
     for k in [1, 3, 8] {
         let variant = technique("kb_stream", &[("k", &k.to_string()), ("counters", "all")]);
         let disorder = std::cell::Cell::new(0);
@@ -228,9 +228,9 @@ fn a_stream_composites_in_the_order_of_leaving() {
     }
 }
 
-/// No fragment comes more than k places late: all of them are composited in order, however many there are.
+/// If no fragment comes more than k positions late, any number of them is composited in order.
 #[test]
-fn a_stream_of_what_is_nearly_sorted_is_everybodys_picture() {
+fn a_stream_of_nearly_sorted_fragments_gives_the_complete_image() {
     let stage = stage::device();
     let k = 3;
     let mut renderer = renderer(&stage, &shaders(&technique("kb_stream", &[("k", "3")]), "wgsl"), &settings()).unwrap();
@@ -238,7 +238,7 @@ fn a_stream_of_what_is_nearly_sorted_is_everybodys_picture() {
     let sorted: Vec<Quad> = (0..24).map(|index| Quad::whole(index as f32 / 32.0, color(index))).collect();
     for seed in 0..16 {
         let mut numbers = Numbers::seeded(seed);
-        // Each group of k + 1 in any order: none is more than k places late.
+        // Each group of k + 1 is in random order, so none is more than k positions late.
         let nearly: Vec<Quad> = sorted
             .chunks(k + 1)
             .flat_map(|group| {
@@ -247,21 +247,21 @@ fn a_stream_of_what_is_nearly_sorted_is_everybodys_picture() {
                 group
             })
             .collect();
-        let seen = see(&stage, &mut renderer, &nearly);
+        let seen = render_frame(&stage, &mut renderer, &nearly);
         assert_eq!(seen.counters.get("out_of_order"), 0, "{nearly:?}");
         for pixel in &seen.pixels {
             assert_composited(pixel, &sorted, "nearly sorted");
         }
     }
     let farthest_first: Vec<Quad> = sorted.iter().rev().copied().collect();
-    let seen = see(&stage, &mut renderer, &farthest_first);
-    // All that come once the farthest has left.
+    let seen = render_frame(&stage, &mut renderer, &farthest_first);
+    // All that come after the farthest was emitted.
     assert_eq!(seen.counters.get("out_of_order"), (24 - k as u32 - 1) * SIZE * SIZE);
 }
 
-/// On one device that runs the fragments of a pixel one after the other: the k nearest, equal fragments once.
+/// On a device that runs the fragments of a pixel sequentially, the k nearest are kept, and equal fragments once.
 #[test]
-fn of_equal_fragments_a_checked_array_keeps_one() {
+fn a_checksummed_array_keeps_one_of_equal_fragments() {
     let red = [255, 0, 0, 128];
     let twice = |quads: &[Quad]| -> Vec<Quad> { [quads, quads].concat() };
     let equal = [Quad::whole(0.5, red), Quad::whole(0.5, [0, 255, 0, 64]), Quad::whole(0.25, red).at(0, 0, 5, 9)];
@@ -271,7 +271,7 @@ fn of_equal_fragments_a_checked_array_keeps_one() {
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
         for scene in scenes().into_iter().chain([equal.to_vec(), twice(&equal), twice(&scattered(4, 5))]) {
             for quads in orders(&scene) {
-                let seen = see(&stage, &mut renderer, &quads);
+                let seen = render_frame(&stage, &mut renderer, &quads);
                 let mut repeated = 0;
                 for ((kept, pixel), (x, y)) in seen.kept.iter().zip(&seen.pixels).zip(oracle::pixels()) {
                     let mut fragments = oracle::kept(&PLAIN, &quads, None, x, y);
@@ -285,7 +285,7 @@ fn of_equal_fragments_a_checked_array_keeps_one() {
                 let count = |name: &str| seen.counters.get(name);
                 let kept: u32 = seen.kept.iter().map(|kept| kept.len() as u32).sum();
                 assert_eq!(count("generated"), kept + count("displaced") + count("equal_keys"), "{:?}", seen.counters);
-                // Of equal fragments, some may be behind k others when they come.
+                // Some of the equal fragments may be behind k others when they come.
                 assert!(count("equal_keys") <= repeated && (k < 8 || count("equal_keys") == repeated));
             }
         }

@@ -1,17 +1,19 @@
-//! Plans, run: what every technique keeps and shows is compared with a plain oracle, on whatever adapter there is (the
-//! CPU's first). A machine without any fails here; nothing is skipped.
-#![allow(missing_docs, reason = "tests are read, not documented")]
+//! Runs plans and compares the kept fragments and the image of every technique with a plain oracle, on the CPU's adapter. The
+//! tests fail on a machine without it; none is skipped.
+#![allow(missing_docs, reason = "tests need no documentation")]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    reason = "a test fails by panicking"
+    reason = "a test fails by a panic"
 )]
 
 mod kept;
 mod oracle;
 mod order;
+#[path = "../../cpu/tests/peeling_loop.rs"]
+mod peeling_loop;
 mod quads;
 mod samples;
 mod stage;
@@ -32,7 +34,6 @@ mod occupancy;
 mod opaque;
 mod opaque_depth;
 mod overflow;
-mod own_storage;
 mod rasterisation;
 mod routing;
 mod sizing;
@@ -41,3 +42,4 @@ mod sorts;
 mod textures;
 mod ties;
 mod translations;
+mod user_storage;

@@ -1,26 +1,32 @@
-//! What is displaced and not dropped: blended behind what is kept, merged with the last, or the closest two made one. Each
-//! row against a model of its own over the fragments in the order of drawing, on every storage that the rules allow; and
-//! the law that all of them share: as much light comes through as through every fragment, whatever the order.
+//! Overflow rows that do not drop displaced fragments: they blend them behind the kept ones, merge them with the last, or merge the
+//! closest two. Each row is compared with a model over the fragments in drawing order, on every storage that the rules allow. All
+//! of them preserve the transmittance of the whole pixel, in any order.
 
 use std::collections::BTreeSet;
 
-use fragbuf_targets::target;
 use fragbuf_codegen::{Arrival, plan};
-use fragbuf_cpu::Order;
-use fragbuf_model::{Draft, Origin, Variant, check};
+use fragbuf_cpu::FragmentOrder;
+use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::Offscreen;
+use fragbuf_targets::target;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Fact, Row};
+use fragbuf_templates::vocabulary::{Capability, Feature, Row};
 
 use crate::cpu_device;
 use crate::oracle::{self, pixels};
 use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE};
-use crate::stage::{self, BACKGROUND, FORMAT, draw_over, renderer, see, settings, shaders};
+use crate::stage::{self, BACKGROUND, FORMAT, draw_over, render_frame, renderer, settings, shaders};
 
 const ROWS: [&str; 3] = ["tail_blend", "merge_last", "merge_closest"];
 
-/// A fragment as a model sees it: depth and straight colour.
+/// The storages that each row is legal with.
+const MERGE_LAST: [&str; 5] = ["bounded_regions", "max_array", "max_heap", "revised_array", "sorted_array"];
+const MERGE_CLOSEST: [&str; 1] = ["sorted_array"];
+const TAIL_BLEND: [&str; 6] =
+    ["bounded_regions", "depth_ranges", "max_array", "max_heap", "revised_array", "sorted_array"];
+
+/// A fragment of a model: depth and straight colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Layer {
     depth: f32,
@@ -31,14 +37,14 @@ fn layer(quad: &Quad) -> Layer {
     Layer { depth: quad.depth, color: quad.color.map(|channel| f64::from(channel) / 255.0) }
 }
 
-/// What a pixel keeps, nearest first, and the premultiplied colour behind that.
+/// The kept fragments of a pixel, nearest first, and the premultiplied colour behind them.
 #[derive(Clone, Debug, Default)]
 struct Pixel {
     kept: Vec<Layer>,
     tail: [f64; 4],
 }
 
-/// `near` over `far`, straight colours both.
+/// Composites `near` over `far`, both straight colours.
 fn over(near: [f64; 4], far: [f64; 4]) -> [f64; 4] {
     let shares = [near[3], (1.0 - near[3]) * far[3]];
     let alpha = shares[0] + shares[1];
@@ -48,19 +54,19 @@ fn over(near: [f64; 4], far: [f64; 4]) -> [f64; 4] {
 
 impl Pixel {
     fn insert(&mut self, new: Layer) {
-        let place = self.kept.partition_point(|kept| kept.depth <= new.depth);
-        self.kept.insert(place, new);
+        let position = self.kept.partition_point(|kept| kept.depth <= new.depth);
+        self.kept.insert(position, new);
     }
 
-    fn displaces_into_a_tail(&mut self, lost: Layer) {
+    fn blend_into_tail(&mut self, lost: Layer) {
         let [r, g, b, a] = lost.color;
         let old = self.tail;
         self.tail = [r * a, g * a, b * a, a];
         (0..4).for_each(|at| self.tail[at] += (1.0 - a) * old[at]);
     }
 
-    /// One fragment more, of which at most `k` are kept, or one in each of `k` ranges of depth.
-    fn comes(&mut self, row: &str, has_ranges: bool, k: usize, new: Layer) {
+    /// Adds a fragment and applies the overflow row. At most `k` fragments are kept, or one in each of `k` depth ranges.
+    fn add(&mut self, row: &str, has_ranges: bool, k: usize, new: Layer) {
         if has_ranges {
             let range = |layer: &Layer| ((f64::from(layer.depth) * 1.0e6).floor() * k as f64 / 1.0e6).floor() as usize;
             let Some(at) = self.kept.iter().position(|kept| range(kept) == range(&new)) else {
@@ -70,7 +76,7 @@ impl Pixel {
             if new.depth < old.depth {
                 self.kept[at] = new;
             }
-            return self.displaces_into_a_tail(if new.depth < old.depth { old } else { new });
+            return self.blend_into_tail(if new.depth < old.depth { old } else { new });
         }
         self.insert(new);
         if self.kept.len() <= k {
@@ -79,7 +85,7 @@ impl Pixel {
         match row {
             "tail_blend" => {
                 let lost = self.kept.remove(k);
-                self.displaces_into_a_tail(lost);
+                self.blend_into_tail(lost);
             }
             "merge_last" => {
                 let lost = self.kept.remove(k);
@@ -94,7 +100,8 @@ impl Pixel {
         }
     }
 
-    fn shown(&self) -> [f64; 3] {
+    /// Returns the colour over the background.
+    fn color(&self) -> [f64; 3] {
         let mut color = [0.0; 3];
         let mut through = 1.0;
         for Layer { color: [r, g, b, a], .. } in &self.kept {
@@ -107,10 +114,10 @@ impl Pixel {
 }
 
 fn variant(key: &str, set: &[(&str, &str)]) -> Option<Variant> {
-    let origin = Origin::new("merging", 1, 1);
-    let mut draft = Draft::from_technique(key, &origin);
+    let span = SourceSpan::new("merging", 1, 1);
+    let mut draft = Draft::from_technique(key, &span);
     for (name, value) in set {
-        draft.set(name, value, &origin).ok()?;
+        draft.set(name, value, &span).ok()?;
     }
     check(&draft, &Registry::builtin()).ok()
 }
@@ -119,17 +126,12 @@ fn storage(variant: &Variant) -> &Row {
     &variant.choices.iter().find(|chosen| chosen.axis == "storage").unwrap().alternatives[0].row
 }
 
-/// Whether a fragment competes with those of its range of depth alone.
+/// Whether a fragment competes only with those of its depth range.
 fn has_ranges(variant: &Variant) -> bool {
     storage(variant).keeps.as_ref().is_some_and(|kept| kept.group.is_some())
 }
 
-fn offers(variant: &Variant, fact: Fact) -> bool {
-    let row = storage(variant);
-    row.offers.contains(&fact) || row.implies.iter().any(|(_, implied)| *implied == fact)
-}
-
-/// Every technique that a row is legal with, under a lock and with nothing culled, by its storage.
+/// Returns a technique for every storage that a row is legal with, under a lock and without culling, with the storage's key.
 fn with_row(row: &str, k: usize, color: &str) -> Vec<(String, Variant)> {
     let k = k.to_string();
     let set = [("k", &*k), ("overflow", row), ("sync", "spin_lock"), ("cull", "none"), ("fragment.color", color)];
@@ -143,19 +145,17 @@ fn with_row(row: &str, k: usize, color: &str) -> Vec<(String, Variant)> {
 }
 
 #[test]
-fn the_rules_allow_what_displaces_in_turn() {
+fn the_rules_allow_a_row_on_the_expected_storages() {
     let keys = |variants: Vec<(String, Variant)>| variants.into_iter().map(|(key, _)| key).collect::<BTreeSet<_>>();
-    for (row, needed) in
-        [("merge_last", Fact::CanReplace), ("merge_closest", Fact::OrderedSlots), ("tail_blend", Fact::DisplacesInTurn)]
+    for (row, expected) in
+        [("merge_last", &MERGE_LAST[..]), ("merge_closest", &MERGE_CLOSEST), ("tail_blend", &TAIL_BLEND)]
     {
-        let offering = with_row("drop", 3, "rgba8").into_iter().filter(|(_, variant)| offers(variant, needed));
-        let offering = keys(offering.collect());
-        assert!(!offering.is_empty(), "{row}");
-        assert_eq!(keys(with_row(row, 3, "rgba8")), offering, "{row}");
+        let expected: BTreeSet<String> = expected.iter().map(|key| (*key).to_owned()).collect();
+        assert_eq!(keys(with_row(row, 3, "rgba8")), expected, "{row}");
     }
 }
 
-/// Quads anywhere, of different depths at uneven distances, none opaque.
+/// Returns random quads of different depths at uneven distances, none opaque.
 fn scene(count: u32, seed: u64) -> Vec<Quad> {
     let mut numbers = Numbers::seeded(seed);
     let mut quad = |index: u32| {
@@ -168,36 +168,36 @@ fn scene(count: u32, seed: u64) -> Vec<Quad> {
     (0..count).map(&mut quad).collect()
 }
 
-/// The model of every pixel.
+/// Returns the model of every pixel.
 fn modelled(quads: &[Quad], row: &str, variant: &Variant, k: usize) -> Vec<Pixel> {
     let has_ranges = has_ranges(variant);
     let of_pixel = |(x, y)| {
         let mut pixel = Pixel::default();
-        oracle::fragments(quads, x, y).iter().for_each(|quad| pixel.comes(row, has_ranges, k, layer(quad)));
+        oracle::fragments(quads, x, y).iter().for_each(|quad| pixel.add(row, has_ranges, k, layer(quad)));
         pixel
     };
     pixels().map(of_pixel).collect()
 }
 
 #[test]
-fn every_row_does_what_its_model_does_on_every_storage() {
+fn every_row_matches_its_model_on_every_storage() {
     let stage = stage::device();
     for row in ROWS {
         for (k, color) in [(1, "vec4"), (3, "vec4"), (3, "rgba16"), (4, "rgba8")] {
             for (storage, variant) in with_row(row, k, color) {
                 let mut renderer = renderer(&stage, &shaders(&variant, "wgsl-native"), &settings()).unwrap();
                 for quads in orders(&scene(9, 5)).into_iter().take(3) {
-                    let seen = see(&stage, &mut renderer, &quads);
+                    let seen = render_frame(&stage, &mut renderer, &quads);
                     let models = modelled(&quads, row, &variant, k);
                     for ((kept, shown), model) in seen.kept.iter().zip(&seen.pixels).zip(&models) {
                         let keys: Vec<u32> = kept.iter().map(|words| words[0]).collect();
                         let wanted: Vec<u32> = model.kept.iter().map(|layer| layer.depth.to_bits()).collect();
                         assert_eq!(keys, wanted, "{row}, {storage}, k = {k}, {color}: {quads:?}");
-                        // An entry is rounded whenever it is merged; exact floats apart.
-                        let mergings = if color == "rgba8" { 1.0 + (9 - k) as f64 } else { 1.0 };
-                        for (shown, wanted) in shown.iter().zip(model.shown()) {
+                        // Each merge rounds an rgba8 entry.
+                        let roundings = if color == "rgba8" { 1.0 + (9 - k) as f64 } else { 1.0 };
+                        for (shown, wanted) in shown.iter().zip(model.color()) {
                             let off = (f64::from(*shown) - wanted).abs();
-                            assert!(off <= mergings / 255.0, "{row}, {storage}, k = {k}, {color}: off by {off}");
+                            assert!(off <= roundings / 255.0, "{row}, {storage}, k = {k}, {color}: off by {off}");
                         }
                     }
                 }
@@ -206,29 +206,28 @@ fn every_row_does_what_its_model_does_on_every_storage() {
     }
 }
 
-/// Of what `merge_last` keeps all but the farthest is as it came, to the bit; of what the others keep in front of a tail
-/// everything is.
+/// `merge_last` does not change a bit of the kept fragments except for the farthest, and `tail_blend` of none.
 #[test]
-fn what_does_not_merge_stays_to_the_bit() {
+fn unmerged_fragments_stay_bit_identical() {
     let stage = stage::device();
     let k = 4;
-    for (row, whole) in [("merge_last", k - 1), ("tail_blend", k)] {
+    for (row, unmerged) in [("merge_last", k - 1), ("tail_blend", k)] {
         for (storage, variant) in with_row(row, k, "rgba8").into_iter().filter(|(_, variant)| !has_ranges(variant)) {
             let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
             for quads in orders(&scene(12, 8)).into_iter().take(4) {
-                let seen = see(&stage, &mut renderer, &quads);
+                let seen = render_frame(&stage, &mut renderer, &quads);
                 let expected = oracle::kept_words(&oracle::PLAIN, &quads, Some(k as u32));
                 for (kept, wanted) in seen.kept.iter().zip(expected) {
-                    let whole = whole.min(wanted.len());
-                    assert_eq!(kept[..whole], wanted[..whole], "{row}, {storage}: {quads:?}");
+                    let unmerged = unmerged.min(wanted.len());
+                    assert_eq!(kept[..unmerged], wanted[..unmerged], "{row}, {storage}: {quads:?}");
                 }
             }
         }
     }
 }
 
-/// The picture of `quads`, and how many fragments the counters call displaced.
-fn shown(stage: &fragbuf_runtime::headless::Headless, variant: &Variant, quads: &[Quad]) -> (Vec<[f32; 4]>, u32) {
+/// Returns the image of `quads` and the number of displaced fragments.
+fn rendered(stage: &fragbuf_runtime::headless::Headless, variant: &Variant, quads: &[Quad]) -> (Vec<[f32; 4]>, u32) {
     let mut renderer = renderer(stage, &shaders(variant, "wgsl"), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     draw_over(stage, &mut renderer, quads, &offscreen).unwrap();
@@ -236,10 +235,9 @@ fn shown(stage: &fragbuf_runtime::headless::Headless, variant: &Variant, quads: 
     (offscreen.colors(&stage.device, &stage.queue).unwrap(), counters.get("displaced"))
 }
 
-/// Black fragments of some equal depths, of which one lets everything through: what is seen is the background, as much of
-/// it as all of them let through.
+/// Black fragments, some of equal depth and one fully transparent: the image is the background times the transmittance of all.
 #[test]
-fn as_much_light_comes_through_as_through_all() {
+fn the_transmittance_is_that_of_all_fragments() {
     let stage = stage::device();
     let alphas = [30, 80, 0, 140, 55, 200, 11, 90];
     let depths = [0.5, 0.25, 0.25, 0.75, 0.5, 0.5, 0.125, 0.75];
@@ -252,7 +250,7 @@ fn as_much_light_comes_through_as_through_all() {
         {
             for (storage, variant) in with_row(row, k, color) {
                 for quads in orders(&quads).into_iter().take(8) {
-                    let (pixels, displaced) = shown(&stage, &variant, &quads);
+                    let (pixels, displaced) = rendered(&stage, &variant, &quads);
                     let lost = if has_ranges(&variant) { displaced } else { (8 - k as u32) * SIZE * SIZE };
                     assert_eq!(displaced, lost, "{row}, {storage}");
                     for pixel in pixels {
@@ -269,29 +267,29 @@ fn as_much_light_comes_through_as_through_all() {
 }
 
 #[test]
-fn where_nothing_is_lost_the_picture_is_that_of_drop() {
+fn without_overflow_the_image_equals_that_of_drop() {
     let stage = stage::device();
     let quads = scene(6, 3);
     for row in ROWS {
         for (storage, variant) in with_row(row, 6, "rgba8").into_iter().filter(|(_, variant)| !has_ranges(variant)) {
             let dropped = with_row("drop", 6, "rgba8").into_iter().find(|(key, _)| *key == storage).unwrap().1;
-            assert_eq!(shown(&stage, &variant, &quads), shown(&stage, &dropped, &quads), "{row}, {storage}");
+            assert_eq!(rendered(&stage, &variant, &quads), rendered(&stage, &dropped, &quads), "{row}, {storage}");
         }
     }
 }
 
-/// A plan must not promise what an order of drawing can break; and it can.
+/// A plan declares an image as order-dependent if a drawing order can change it, and only then.
 #[test]
-fn plans_say_that_the_order_of_arrival_shows() {
+fn plans_declare_whether_the_order_of_arrival_matters() {
     let stage = stage::device();
     let planned = |variant: &Variant| {
-        let offers = [target("spirv").unwrap().offers, &[Capability::OwnEntryPoints]].concat();
-        plan(variant, &variant.select(&offers).unwrap(), &Registry::builtin()).unwrap()
+        let provides = [target("spirv").unwrap().provides, &[Feature::OwnEntryPoints]].concat();
+        plan(variant, &variant.select(&provides).unwrap(), &Registry::builtin()).unwrap()
     };
     let first_and_last = |variant: &Variant| {
         let quads = scene(9, 5);
         let backwards: Vec<Quad> = quads.iter().rev().copied().collect();
-        (shown(&stage, variant, &quads).0, shown(&stage, variant, &backwards).0)
+        (rendered(&stage, variant, &quads).0, rendered(&stage, variant, &backwards).0)
     };
     for row in ROWS {
         for (storage, variant) in with_row(row, 3, "rgba8") {
@@ -303,47 +301,48 @@ fn plans_say_that_the_order_of_arrival_shows() {
         assert_eq!(planned(&variant("kb_ps", &set).unwrap()).arrival(), Arrival::Submission, "{row}");
     }
     let mut any = 0;
-    for (storage, variant) in with_row("drop", 3, "rgba8") {
-        // A storage of 64-bit words is for other targets.
-        if variant.select(target("wgsl").unwrap().offers).is_err() {
+    for (key, variant) in with_row("drop", 3, "rgba8") {
+        // A storage of 64-bit words needs other targets.
+        if variant.select(target("wgsl").unwrap().provides).is_err() {
             continue;
         }
         let plan = planned(&variant);
-        if offers(&variant, Fact::KeepsBest) && plan.hazards.is_empty() {
-            assert_eq!(plan.arrival(), Arrival::Any, "{storage}");
+        if storage(&variant).may_provide(Capability::KeepsBest) && plan.hazards.is_empty() {
+            assert_eq!(plan.arrival(), Arrival::Any, "{key}");
             let (forwards, backwards) = first_and_last(&variant);
-            assert_eq!(forwards, backwards, "{storage}");
+            assert_eq!(forwards, backwards, "{key}");
             any += 1;
         }
     }
     assert!(any > 1, "{any} storages keep the best under a lock");
 }
 
-/// Interleaved as a GPU may, the keys and the light that comes through are the same for every schedule.
+/// Under every schedule keys and transmittance are the same.
 #[test]
-fn schedules_change_colours_alone() {
+fn schedules_change_only_colours() {
     let quads: Vec<Quad> = scene(12, 2).into_iter().map(|quad| quad.at(0, 0, SIZE, SIZE)).collect();
     let through: f64 = quads.iter().map(|quad| 1.0 - f64::from(quad.color[3]) / 255.0).product();
     for row in ROWS {
         for (storage, variant) in with_row(row, 4, "rgba8") {
             let best: Vec<u32> = oracle::kept_words(&oracle::PLAIN, &quads, Some(4))[0].iter().map(|w| w[0]).collect();
             for seed in 0..3 {
-                let (kept, pixels) = cpu_device::draw(&mut cpu_device::device(&variant, Order::Shuffled(seed)), &quads);
+                let (kept, pixels) =
+                    cpu_device::draw(&mut cpu_device::device(&variant, FragmentOrder::Shuffled(seed)), &quads);
                 for (kept, pixel) in kept.iter().zip(pixels) {
                     let off = (1.0 - f64::from(pixel[3]) - through).abs();
                     assert!(off <= 8.0 * 0.51 / 255.0, "{row}, {storage}, seed {seed}: {off}");
                     let keys: Vec<u32> = kept.iter().map(|words| words[0]).collect();
-                    let promises_best = row != "merge_closest" && !has_ranges(&variant);
-                    assert!(!promises_best || keys == best, "{row}, {storage}, seed {seed}: {keys:x?}");
+                    let keeps_best = row != "merge_closest" && !has_ranges(&variant);
+                    assert!(!keeps_best || keys == best, "{row}, {storage}, seed {seed}: {keys:x?}");
                 }
             }
         }
     }
 }
 
-/// Of pairs that are equally close the farther becomes one, in whatever order they come: the front stays to the bit.
+/// Of equally close pairs the farther merges, in any order of arrival: the front fragment stays bit-identical.
 #[test]
-fn of_pairs_equally_close_the_farther_merges() {
+fn of_equally_close_pairs_the_farther_merges() {
     let stage = stage::device();
     let color = |alpha| [200, 100, 50, alpha];
     let quads: Vec<Quad> =
@@ -351,24 +350,24 @@ fn of_pairs_equally_close_the_farther_merges() {
     for (storage, variant) in with_row("merge_closest", 2, "rgba8") {
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
         for quads in orders(&quads) {
-            let kept = see(&stage, &mut renderer, &quads).kept.swap_remove(0);
+            let kept = render_frame(&stage, &mut renderer, &quads).kept.swap_remove(0);
             assert_eq!(kept.iter().map(|words| words[0]).collect::<Vec<_>>(), [0.25f32.to_bits(), 0.5f32.to_bits()]);
             assert_eq!(kept[0][1], u32::from_le_bytes(color(90)), "{storage}");
-            // One colour over itself is that colour: 60 + (1 - 60 / 255) * 120, in 255ths.
+            // A colour over itself keeps its value. The alpha is 60 + (1 - 60 / 255) * 120, in 255ths.
             assert_eq!(kept[1][1], u32::from_le_bytes(color(152)), "{storage}");
         }
     }
 }
 
-/// Of two fragments that are not seen no colour can be divided out.
+/// Merging two fully transparent fragments must not divide by zero.
 #[test]
-fn two_that_are_not_seen_are_one_that_is_not() {
+fn two_transparent_fragments_merge_into_a_transparent_one() {
     let stage = stage::device();
     let quads = [0.5, 0.25, 0.75].map(|depth| Quad::whole(depth, [255, 128, 9, 0]));
     for row in ROWS {
         for color in ["rgba8", "vec4"] {
             for (storage, variant) in with_row(row, 1, color) {
-                for pixel in shown(&stage, &variant, &quads).0 {
+                for pixel in rendered(&stage, &variant, &quads).0 {
                     let is_background = pixel.iter().zip(BACKGROUND).all(|(a, b)| (f64::from(*a) - b).abs() < 0.001);
                     assert!(is_background, "{row}, {storage}, {color}: {pixel:?}");
                 }

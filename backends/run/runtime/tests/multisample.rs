@@ -1,11 +1,11 @@
-//! Several samples per pixel against supersampling: the same triangles drawn once per sample with one sample per pixel,
-//! moved so that the sample lies in the middle, and the mean of the pictures. Triangles have one depth and one colour, so
-//! that nothing but coverage tells the two apart.
+//! Compares several samples per pixel with supersampling: the mean of one image per sample, each with one sample per pixel and with
+//! the triangles moved so that the sample is at the pixel centre. Triangles have one depth and one colour, so that only coverage
+//! can differ.
 
 use std::sync::Arc;
 
-use fragbuf_cpu::{Code, Device, Mesh, Order};
-use fragbuf_model::{Draft, Origin, Variant, check};
+use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh};
+use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
 use fragbuf_runtime::{Error, Output, Sizing, VertexInputs};
 use fragbuf_templates::Registry;
@@ -23,8 +23,8 @@ struct Triangle {
     color: [u8; 4],
 }
 
-/// The standard places of the graphics APIs, in 256ths of a pixel from its top left (Vulkan 1.3, Standard Sample Locations).
-fn places(samples: u32) -> &'static [[i32; 2]] {
+/// Returns the standard sample positions, in 256ths of a pixel from its top left (Vulkan 1.3, Standard Sample Locations).
+fn positions(samples: u32) -> &'static [[i32; 2]] {
     match samples {
         2 => &[[192, 192], [64, 64]],
         4 => &[[96, 32], [224, 96], [32, 160], [160, 224]],
@@ -35,31 +35,31 @@ fn places(samples: u32) -> &'static [[i32; 2]] {
 
 const WHOLE: i32 = 256 * SIZE as i32;
 
-/// Silhouettes, shared edges, and triangles in one place. At most eight lie over a pixel.
+/// Returns scenes with silhouettes, shared edges and coincident triangles. At most eight cover a pixel.
 fn scenes() -> Vec<(&'static str, Vec<Triangle>)> {
     let colors = [[255, 0, 0, 128], [0, 255, 0, 64], [0, 0, 255, 200], [250, 250, 250, 30]];
     let triangle = |corners, depth, number: usize| Triangle { corners, depth, color: colors[number % 4] };
     let frame = [[0, 0], [WHOLE, 0], [WHOLE, WHOLE], [0, WHOLE]];
-    // Around a point that is the middle of no pixel: edges that two triangles share at one depth.
-    let fan = |middle: [i32; 2], depth| {
-        (0..4).map(move |side| triangle([middle, frame[side], frame[(side + 1) % 4]], depth, side)).collect::<Vec<_>>()
+    // A fan around a point that is no pixel centre: two triangles share each edge, at one depth.
+    let fan = |centre: [i32; 2], depth| {
+        (0..4).map(move |side| triangle([centre, frame[side], frame[(side + 1) % 4]], depth, side)).collect::<Vec<_>>()
     };
-    let place = [[300, 410], [3700, 1200], [900, 3650]];
+    let silhouette = [[300, 410], [3700, 1200], [900, 3650]];
     let mut numbers = Numbers::seeded(3);
-    let anywhere = (0..8).map(|number| {
+    let random = (0..8).map(|number| {
         let corners = std::array::from_fn(|_| [numbers.below(4096) as i32, numbers.below(4096) as i32]);
         triangle(corners, numbers.below(4) as f32 / 4.0, number)
     });
     vec![
-        ("one silhouette", vec![triangle(place, 0.5, 0)]),
+        ("one silhouette", vec![triangle(silhouette, 0.5, 0)]),
         ("a shared edge", fan([1951, 2222], 0.5)),
-        ("coincident", (0..4).map(|number| triangle(place, 0.5, number)).collect()),
-        ("shared edges behind a silhouette", [fan([1951, 2222], 0.5), vec![triangle(place, 0.25, 2)]].concat()),
-        ("anywhere", anywhere.collect()),
+        ("coincident", (0..4).map(|number| triangle(silhouette, 0.5, number)).collect()),
+        ("shared edges behind a silhouette", [fan([1951, 2222], 0.5), vec![triangle(silhouette, 0.25, 2)]].concat()),
+        ("random", random.collect()),
     ]
 }
 
-/// The triangles with everything moved by 256ths of a pixel.
+/// Moves triangles by 256ths of a pixel.
 fn moved(triangles: &[Triangle], by: [i32; 2]) -> Vec<Triangle> {
     let corner = |[x, y]: [i32; 2]| [x + by[0], y + by[1]];
     triangles.iter().map(|triangle| Triangle { corners: triangle.corners.map(corner), ..*triangle }).collect()
@@ -75,7 +75,7 @@ fn vertices(triangles: &[Triangle], inputs: &VertexInputs) -> Vec<f32> {
                     floats.extend([x as f32 / half - 1.0, 1.0 - y as f32 / half, triangle.depth]);
                 }
                 "color" => floats.extend(triangle.color.map(|channel| f32::from(channel) / 255.0)),
-                // The user's own attribute of that name.
+                // A user's attribute of that name.
                 "coverage" => floats.push(1.0),
                 other => panic!("no value for the attribute `{other}`"),
             }
@@ -84,11 +84,11 @@ fn vertices(triangles: &[Triangle], inputs: &VertexInputs) -> Vec<f32> {
     floats
 }
 
-/// Premultiplied, over nothing.
+/// Premultiplied colours over transparency.
 type Picture = Vec<[f32; 4]>;
 
 fn on_driver(stage: &Headless, variant: &Variant, triangles: &[Triangle]) -> Result<Picture, Error> {
-    let portable = variant.select(fragbuf_targets::target("wgsl").unwrap().offers).is_ok();
+    let portable = variant.select(fragbuf_targets::target("wgsl").unwrap().provides).is_ok();
     let shaders = shaders(variant, if portable { "wgsl" } else { "wgsl-native" });
     let mut renderer = renderer(stage, &shaders, &settings())?;
     let floats = vertices(triangles, renderer.vertex_inputs());
@@ -107,10 +107,11 @@ fn on_cpu(variant: &Variant, triangles: &[Triangle]) -> Picture {
     behind(None, variant, triangles)
 }
 
-/// On the CPU device; behind something opaque at one depth, if there is any.
+/// Renders on the CPU device, behind an opaque surface at one depth if there is one.
 fn behind(opaque: Option<f32>, variant: &Variant, triangles: &[Triangle]) -> Picture {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order: Order::Submission };
+    let settings =
+        fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order: FragmentOrder::Submission };
     let mut device = Device::new(Arc::new(code), settings).unwrap();
     if let Some(depth) = opaque {
         device.set_texture("opaque", &[depth; (SIZE * SIZE) as usize]).unwrap();
@@ -121,12 +122,12 @@ fn behind(opaque: Option<f32>, variant: &Variant, triangles: &[Triangle]) -> Pic
     device.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap().pixels
 }
 
-/// The mean of one picture per sample.
+/// Returns the mean of one image per sample.
 fn supersampled(samples: u32, triangles: &[Triangle], draw: impl Fn(&[Triangle]) -> Picture) -> Picture {
     let mut sum = vec![[0.0; 4]; (SIZE * SIZE) as usize];
-    for [x, y] in places(samples) {
-        let picture = draw(&moved(triangles, [128 - x, 128 - y]));
-        for (sum, pixel) in sum.iter_mut().zip(picture) {
+    for [x, y] in positions(samples) {
+        let image = draw(&moved(triangles, [128 - x, 128 - y]));
+        for (sum, pixel) in sum.iter_mut().zip(image) {
             sum.iter_mut().zip(pixel).for_each(|(sum, channel)| *sum += channel / samples as f32);
         }
     }
@@ -141,18 +142,18 @@ fn compare(what: &str, seen: &Picture, expected: &Picture) {
     }
 }
 
-/// The same description with `samples` per pixel; `None`: the rules refuse it.
+/// Returns a technique with `samples` per pixel; `None` if the rules reject it.
 fn with_samples(key: &str, set: &[(&str, &str)], samples: u32) -> Option<Variant> {
-    let origin = Origin::new(key, 1, 1);
-    let mut draft = Draft::from_technique(key, &origin);
+    let span = SourceSpan::new(key, 1, 1);
+    let mut draft = Draft::from_technique(key, &span);
     let count = samples.to_string();
     for (name, value) in set.iter().chain(&[("samples", "coverage"), ("samples.count", &count)]) {
-        draft.set(name, value, &origin).unwrap();
+        draft.set(name, value, &span).unwrap();
     }
     check(&draft, &Registry::builtin()).ok()
 }
 
-/// Every technique that the rules let have several samples, with room for all fragments of a pixel.
+/// Returns every technique that supports several samples, with k large enough for all fragments of a pixel.
 fn multisampled(samples: u32) -> Vec<(String, Variant, Variant)> {
     let registry = Registry::builtin();
     let all = registry.techniques().iter().filter_map(|technique_row| {
@@ -166,7 +167,7 @@ fn multisampled(samples: u32) -> Vec<(String, Variant, Variant)> {
     all.collect()
 }
 
-/// Those whose stated hazards keep every fragment apart where they come one after the other.
+/// Whether every declared hazard needs a race, so that the result is exact if fragments run sequentially.
 fn is_exact_in_order(variant: &Variant) -> bool {
     let rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
     let mut hazards = rows.flat_map(|selected| &selected.row.hazards);
@@ -174,7 +175,7 @@ fn is_exact_in_order(variant: &Variant) -> bool {
 }
 
 #[test]
-fn the_driver_shows_what_supersampling_shows() {
+fn the_driver_matches_supersampling() {
     let stage = stage::device();
     let all = multisampled(4);
     assert!(all.len() >= 15, "{} techniques", all.len());
@@ -193,7 +194,7 @@ fn the_driver_shows_what_supersampling_shows() {
 }
 
 #[test]
-fn the_cpu_device_shows_what_supersampling_shows() {
+fn the_cpu_device_matches_supersampling() {
     for samples in [2, 4, 8] {
         for key in ["kplus_array", "mdt32_coplanar", "ab_ll", "kplus_ab_sb"] {
             let several = with_samples(key, &[], samples).unwrap();
@@ -206,7 +207,7 @@ fn the_cpu_device_shows_what_supersampling_shows() {
     }
 }
 
-/// The depth buffer of opaque surfaces has one sample: what it hides, it hides in all samples of a pixel.
+/// The depth buffer of opaque surfaces has one sample, so it hides all samples of a fragment or none.
 #[test]
 fn opaque_surfaces_hide_every_sample() {
     const OPAQUE: f32 = 0.375;
@@ -239,7 +240,8 @@ fn every_sort_serves_every_sample() {
     }
 }
 
-/// From the farthest to the nearest, then one in the middle again; and an attribute of the word that masks go by.
+/// An effect that reads from the farthest to the nearest and then a middle one again; with an attribute named like the coverage
+/// mask.
 const BOTH_WAYS: &str = "
     buffer B from ab_ll {
         fragment { color: rgba8, coverage: f32, depth: f32 }
@@ -255,7 +257,7 @@ const BOTH_WAYS: &str = "
     }";
 
 #[test]
-fn effects_go_through_the_fragments_of_a_sample_as_they_like() {
+fn effects_read_the_fragments_of_a_sample_in_any_order() {
     let stage = stage::device();
     let variant = |samples: &str| described(&BOTH_WAYS.replace("SAMPLES", samples));
     let (several, one) = (variant("samples: coverage;"), variant(""));
@@ -266,13 +268,13 @@ fn effects_go_through_the_fragments_of_a_sample_as_they_like() {
     }
 }
 
-/// A tail takes a fragment for as much of the pixel as it covers. Of one fragment that is what each sample shows of it.
+/// A tail weights a fragment by the samples that it covers. For a single fragment that equals supersampling.
 #[test]
-fn a_tail_takes_what_a_fragment_covers() {
+fn a_tail_weights_a_fragment_by_its_coverage() {
     let stage = stage::device();
     let behind = Triangle { corners: [[300, 410], [3700, 1200], [900, 3650]], depth: 0.5, color: [0, 0, 255, 200] };
-    // No larger than the frame, or the driver cuts it into several; where it covers all samples, above the diagonal, nothing
-    // of the tail lies beside it.
+    // The triangle is inside the frame, because the driver would clip it into several. Above the diagonal it covers all samples,
+    // and hides the tail completely.
     let corners = [[0, 0], [WHOLE, 0], [WHOLE, WHOLE]];
     let triangles = [Triangle { corners, depth: 0.25, color: [255, 0, 0, 128] }, behind];
     let expected = supersampled(4, &triangles, |moved| on_driver(&stage, &technique("ab_ll", &[]), moved).unwrap());
@@ -289,12 +291,12 @@ fn a_tail_takes_what_a_fragment_covers() {
             assert!(difference <= 1.0, "{overflow}: pixel {x}, {y} is {seen:?}, supersampled {expected:?}");
             halves += u32::from(expected[2] > 0.02 && expected[2] < 0.35);
         }
-        assert!(halves > 4, "{halves} pixels lie on the edge of what the tail took");
+        assert!(halves > 4, "{halves} pixels are on the edge of the tail's triangle");
     }
 }
 
 #[test]
-fn numbers_of_samples_that_a_device_lacks_are_refused_by_name() {
+fn sample_counts_that_a_device_lacks_are_rejected_by_name() {
     let features = wgpu::Features::PASSTHROUGH_SHADERS | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
     let stage = Headless::open(&Choice::Cpu, features).unwrap();
     let several = with_samples("kplus_array", &[], 8).unwrap();

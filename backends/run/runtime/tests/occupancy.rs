@@ -1,18 +1,18 @@
-//! Occupancy culling before every storage that may be handed the k best alone: what stays, and the picture, are what they
-//! are without it, and what was turned away is counted.
+//! Occupancy culling before every storage that accepts the k best only: kept sets and images do not change, and culled fragments are
+//! counted.
 
-use fragbuf_cpu::Order;
+use fragbuf_cpu::FragmentOrder;
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Renderer, Room, Settings, Sizing, block_on};
+use fragbuf_runtime::{PoolSize, Renderer, Settings, Sizing, block_on};
 
 use crate::capture::{GLASS_KEEPS, cases, compare, glass, glass_resolve, scattered, set_uniforms};
 use crate::cpu_device::{device, draw};
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::{Numbers, orders};
 use crate::quads::{Quad, SIZE};
-use crate::stage::{self, Seen, renderer, see, settings, shaders, technique};
+use crate::stage::{self, FrameResult, render_frame, renderer, settings, shaders, technique};
 
-/// Techniques, each with a language that has what it needs.
+/// Techniques, each with a target that supports it.
 const COMPOSED: [(&str, &str); 9] = [
     ("kplus_array", "wgsl"),
     ("kplus_heap", "wgsl"),
@@ -25,8 +25,8 @@ const COMPOSED: [(&str, &str); 9] = [
     ("kb_ab_ll", "wgsl"),
 ];
 
-/// Many layers: spread out, crowded within a few steps of the last bit on either side of a border of buckets, of few
-/// depths, all but one equal, and in all of these some at both ends of the range.
+/// Returns scenes of many layers: spread out, within a few units in the last place of bucket edges, of few depths, all but one
+/// equal, and scattered.
 fn deep() -> Vec<(&'static str, Vec<Quad>)> {
     let mut numbers = Numbers::seeded(5);
     let mut layers = |count: u32, depth: &dyn Fn(&mut Numbers) -> f32| -> Vec<Quad> {
@@ -39,12 +39,12 @@ fn deep() -> Vec<(&'static str, Vec<Quad>)> {
     };
     vec![
         ("spread", layers(40, &|numbers| 0.5 + numbers.below(1 << 20) as f32 / (1 << 21) as f32)),
-        // Between 0.5 and 1 there are 2^23 depths: 2^18 for each of 32 buckets.
+        // There are 2^23 depths between 0.5 and 1: 2^18 for each of 32 buckets.
         (
-            "at borders",
+            "at bucket edges",
             ends(layers(30, &|numbers| {
-                let border = 0.5f32.to_bits() + (numbers.below(31) + 1) * (1 << 18);
-                near(border, numbers)
+                let edge = 0.5f32.to_bits() + (numbers.below(31) + 1) * (1 << 18);
+                near(edge, numbers)
             })),
         ),
         ("few depths", ends(layers(30, &|numbers| 0.5 + numbers.below(4) as f32 / 8.0))),
@@ -53,12 +53,12 @@ fn deep() -> Vec<(&'static str, Vec<Quad>)> {
     ]
 }
 
-/// The same as without the cull, and as the oracle says.
+/// Compares every scene with the oracle, and returns the number of culled fragments.
 fn check(variant: &Variant, language: &str, rules: &Rules, prepare: impl Fn(&mut Renderer)) -> u32 {
     let stage = stage::device();
-    // Lists spend a node on every fragment, whether it stays or not.
-    let room = Sizing::Reserve(Room::Fragments(48 * SIZE * SIZE));
-    let settings = Settings { sizing: room, ..settings() };
+    // Lists allocate a node for every fragment, kept or not.
+    let sizing = Sizing::Reserve(PoolSize::Fragments(48 * SIZE * SIZE));
+    let settings = Settings { sizing, ..settings() };
     let mut renderer = renderer(&stage, &shaders(variant, language), &settings).unwrap();
     prepare(&mut renderer);
     let mut culled = 0;
@@ -67,9 +67,9 @@ fn check(variant: &Variant, language: &str, rules: &Rules, prepare: impl Fn(&mut
     for (name, in_orders) in all.chain(many) {
         for quads in in_orders {
             let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
-            let seen = chosen(see(&stage, &mut renderer, &quads), renderer.k());
+            let seen = k_best(render_frame(&stage, &mut renderer, &quads), renderer.k());
             compare(name, &seen, rules, &quads, (renderer.k(), renderer.k()));
-            let lost = ["pool_exhausted", "spin_exhausted", "layers_exceeded", "equal_keys"];
+            let lost = ["pool_exhausted", "timed_out", "layers_exceeded", "equal_keys"];
             assert!(lost.iter().all(|counter| seen.counters.get(counter) == 0), "{name}: {:?}", seen.counters);
             let count = |name: &str| seen.counters.get(name);
             let generated = oracle::total(rules, &quads) as u32;
@@ -82,14 +82,14 @@ fn check(variant: &Variant, language: &str, rules: &Rules, prepare: impl Fn(&mut
     culled
 }
 
-/// The k best of what a storage holds: it may have been handed more, where the best are chosen afterwards.
-fn chosen(mut seen: Seen, k: Option<u32>) -> Seen {
+/// Returns the k best fragments of a storage, which holds more if the best are selected later.
+fn k_best(mut seen: FrameResult, k: Option<u32>) -> FrameResult {
     seen.kept.iter_mut().for_each(|kept: &mut Vec<Words>| kept.truncate(k.map_or(usize::MAX, |k| k as usize)));
     seen
 }
 
 #[test]
-fn what_stays_is_the_same_with_every_storage() {
+fn the_kept_set_is_the_same_with_every_storage() {
     for (key, language) in COMPOSED {
         let culled = [("1", "1"), ("4", "1"), ("4", "4")].map(|(k, words)| {
             let set = [("k", k), ("cull", "occupancy"), ("cull.words", words), ("counters", "all")];
@@ -100,7 +100,7 @@ fn what_stays_is_the_same_with_every_storage() {
     }
 }
 
-/// Fragments that are not admitted set no bits: else nearer ones would end the range too early.
+/// Fragments that fail a constraint set no bits, because nearer ones would end the range too early.
 #[test]
 fn constraints_and_criteria_hold_in_every_pass() {
     fn criterion(quad: &Quad) -> u32 {
@@ -123,7 +123,7 @@ fn constraints_and_criteria_hold_in_every_pass() {
 }
 
 #[test]
-fn k_may_be_any_up_to_the_capacity() {
+fn any_k_up_to_the_capacity_works() {
     for k in [1, 2, 3, 5, 7, 8] {
         let set_k = |renderer: &mut Renderer| {
             let device = renderer.device().clone();
@@ -135,7 +135,7 @@ fn k_may_be_any_up_to_the_capacity() {
 }
 
 #[test]
-fn slices_turn_away_the_same() {
+fn slices_cull_the_same_fragments() {
     let stage = stage::device();
     let variant = technique("kplus_array", &[("k", "4"), ("cull", "occupancy"), ("counters", "all")]);
     let quads = [deep().remove(0).1, scattered(20, 23)].concat();
@@ -151,11 +151,11 @@ fn slices_turn_away_the_same() {
     assert!(culled[0] == culled[1]);
 }
 
-/// Techniques that a depth test can turn fragments away from.
+/// Techniques that support culling by a depth test.
 const TESTED: [&str; 6] = ["kplus_array", "kplus_heap", "kplus_ab_sb", "kb_ps", "mdt32_coplanar", "kb_mdt64"];
 
 #[test]
-fn a_drivers_depth_test_turns_away_none_of_the_best() {
+fn a_drivers_depth_test_rejects_none_of_the_best() {
     let stage = stage::device();
     for key in TESTED {
         let variant = technique(key, &[("k", "4"), ("cull", "occupancy_early"), ("counters", "all")]);
@@ -163,20 +163,20 @@ fn a_drivers_depth_test_turns_away_none_of_the_best() {
         let mut drawn = 0;
         for (name, quads) in cases().into_iter().chain(deep()) {
             for quads in orders(&quads).into_iter().take(2) {
-                let seen = chosen(see(&stage, &mut renderer, &quads), renderer.k());
+                let seen = k_best(render_frame(&stage, &mut renderer, &quads), renderer.k());
                 compare(name, &seen, &PLAIN, &quads, (renderer.k(), renderer.k()));
                 drawn += oracle::total(&PLAIN, &quads) as u32 - seen.counters.get("generated");
             }
         }
-        assert!(drawn > 1000, "{key}: the depth test turned {drawn} fragments away before the shader");
+        assert!(drawn > 1000, "{key}: the depth test rejected {drawn} fragments before the shader");
     }
 }
 
 #[test]
-fn a_depth_test_turns_away_before_the_shader() {
+fn a_depth_test_rejects_before_the_shader() {
     for key in TESTED {
         let set = [("k", "4"), ("cull", "occupancy_early"), ("counters", "all")];
-        let mut device = device(&technique(key, &set), Order::Submission);
+        let mut device = device(&technique(key, &set), FragmentOrder::Submission);
         let (mut seen, mut drawn) = (0, 0);
         for (name, quads) in cases().into_iter().chain(deep()) {
             for quads in orders(&quads).into_iter().take(2) {
@@ -186,7 +186,7 @@ fn a_depth_test_turns_away_before_the_shader() {
                 drawn += oracle::total(&PLAIN, &quads) as u32;
             }
         }
-        println!("{key}: the shader sees {seen} of {drawn}");
-        assert!(seen < drawn * 3 / 4, "{key}: the shader sees {seen} of {drawn}");
+        println!("{key}: the shader runs for {seen} of {drawn}");
+        assert!(seen < drawn * 3 / 4, "{key}: the shader runs for {seen} of {drawn}");
     }
 }

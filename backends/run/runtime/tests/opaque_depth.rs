@@ -1,20 +1,20 @@
-//! Transparent fragments behind opaque ones: what stays is what an oracle makes of those in front alone, in the shader and by
-//! a depth test alike, with every storage, in every order. What is hidden takes no room, no sample, and no part in what passes
-//! ahead of the store pass find out. Equal depths stay.
+//! Transparent fragments behind opaque surfaces. With every storage, in every order, in the shader and by a depth test, the kept set is
+//! the oracle's for the visible fragments. Hidden fragments use no memory and no sample, and do not affect the passes before the
+//! store pass. Fragments of equal depth are visible.
 
-use fragbuf_cpu::Order;
+use fragbuf_cpu::FragmentOrder;
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Output, Renderer, Room, Settings, Shaders, Sizing, block_on};
+use fragbuf_runtime::{Error, Output, PoolSize, Renderer, Settings, Shaders, Sizing, block_on};
 
 use crate::capture::{GLASS_KEEPS, cases, glass, glass_resolve, scattered, set_uniforms};
 use crate::cpu_device;
 use crate::oracle::{self, PLAIN, Rules, Words};
 use crate::order::orders;
 use crate::quads::{Quad, SIZE, vertices};
-use crate::stage::{self, BACKGROUND, Seen, described, renderer, see, settings, shaders, technique};
+use crate::stage::{self, BACKGROUND, FrameResult, described, render_frame, renderer, settings, shaders, technique};
 use crate::translations::glsl_shaders;
 
-/// Opaque surfaces: none, before everything, behind everything, in the midst of it at depths that transparent ones have too.
+/// Returns opaque surfaces: none, in front of everything, and at depths that transparent fragments have too.
 fn surfaces() -> Vec<Vec<Quad>> {
     let color = |index: u8| [index * 40, 255 - index * 40, 90, 255];
     vec![
@@ -26,13 +26,13 @@ fn surfaces() -> Vec<Vec<Quad>> {
     ]
 }
 
-/// Depth of the nearest opaque surface, row after row.
+/// Returns the depth of the nearest opaque surface at every pixel, row by row.
 fn opaque_depths(opaque: &[Quad]) -> Vec<f32> {
     let nearest = |(x, y)| oracle::fragments(opaque, x, y).iter().map(|quad| quad.depth).fold(1.0, f32::min);
     oracle::pixels().map(nearest).collect()
 }
 
-/// What is not behind the opaque ones, pixel by pixel in the order of drawing.
+/// Returns the fragments that opaque surfaces do not hide, as quads of one pixel in drawing order.
 fn visible(quads: &[Quad], opaque: &[Quad]) -> Vec<Quad> {
     let depths = opaque_depths(opaque);
     let in_front = |quad: &Quad| {
@@ -44,14 +44,14 @@ fn visible(quads: &[Quad], opaque: &[Quad]) -> Vec<Quad> {
     quads.iter().flat_map(in_front).collect()
 }
 
-/// The opaque scene, drawn: its depths are a texture.
+/// Renders the opaque scene. Its depths are a texture of the renderer.
 fn opaque_scene(stage: &Headless, quads: &[Quad], offscreen: &Offscreen) -> Renderer {
     let mut opaque = renderer(stage, &shaders(&technique("z_buffer", &[]), "wgsl"), &settings()).unwrap();
     stage::draw_over(stage, &mut opaque, quads, offscreen).unwrap();
     opaque
 }
 
-fn bring(stage: &Headless, renderer: &mut Renderer, opaque: &Renderer) {
+fn set_depths(stage: &Headless, renderer: &mut Renderer, opaque: &Renderer) {
     let texture = opaque.texture("depths").unwrap();
     block_on(&stage.device, renderer.set_texture("opaque", texture)).unwrap().unwrap();
 }
@@ -60,56 +60,56 @@ fn offscreen(stage: &Headless) -> Offscreen {
     Offscreen::new(&stage.device, stage::FORMAT, SIZE, SIZE).unwrap()
 }
 
-/// Whether hidden fragments are seen by a counter.
+/// Whether a counter counts hidden fragments.
 #[derive(Clone, Copy, PartialEq)]
-enum Hidden {
+enum HiddenFragments {
     Counted,
-    Unseen,
+    NotCounted,
 }
 
-/// What is kept, word by word, and the colours within 1/255: pixel by pixel, because so are the fragments.
-fn compare(name: &str, seen: &Seen, rules: &Rules, in_front: &[Quad], k: Option<u32>) {
+/// Compares the kept set word by word and the colours within 1/255.
+fn compare(name: &str, seen: &FrameResult, rules: &Rules, in_front: &[Quad], k: Option<u32>) {
     let expected = oracle::kept_words(rules, in_front, k);
-    let pictures = seen.pixels.iter().zip(oracle::picture(rules, in_front, k, BACKGROUND));
-    for ((kept, expected), (pixel, place)) in seen.kept.iter().zip(&expected).zip(pictures.zip(oracle::pixels())) {
-        assert_eq!(kept, expected, "{name}: kept by the pixel {place:?}");
+    let images = seen.pixels.iter().zip(oracle::image(rules, in_front, k, BACKGROUND));
+    for ((kept, expected), (pixel, position)) in seen.kept.iter().zip(&expected).zip(images.zip(oracle::pixels())) {
+        assert_eq!(kept, expected, "{name}: kept by the pixel {position:?}");
         for (seen, expected) in pixel.0.iter().zip(pixel.1) {
             let difference = 255.0 * (f64::from(*seen) - expected).abs();
-            assert!(difference <= 1.0, "{name}: the colour of the pixel {place:?} is off by {difference}/255");
+            assert!(difference <= 1.0, "{name}: the colour of the pixel {position:?} is off by {difference}/255");
         }
     }
 }
 
-/// Every case behind every surface, in some orders.
-fn check(shaders: &Shaders, (rules, hidden): (&Rules, Hidden), prepare: impl Fn(&mut Renderer)) -> u32 {
+/// Checks every case behind every surface, in some orders. Returns the number of hidden fragments.
+fn check(shaders: &Shaders, (rules, hidden): (&Rules, HiddenFragments), prepare: impl Fn(&mut Renderer)) -> u32 {
     let stage = stage::device();
-    let room = Sizing::Reserve(Room::Fragments(32 * SIZE * SIZE));
-    let settings = Settings { sizing: room, ..settings() };
+    let sizing = Sizing::Reserve(PoolSize::Fragments(32 * SIZE * SIZE));
+    let settings = Settings { sizing, ..settings() };
     let mut renderer = renderer(&stage, shaders, &settings).unwrap();
     prepare(&mut renderer);
-    let mut turned_away = 0;
+    let mut occluded = 0;
     for opaque in surfaces() {
-        bring(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
+        set_depths(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
         for (name, quads) in cases() {
             let quads: Vec<Quad> = (0..).zip(quads).map(|(id, quad)| quad.named(id)).collect();
             for quads in orders(&quads).into_iter().take(2) {
-                let seen = see(&stage, &mut renderer, &quads);
+                let seen = render_frame(&stage, &mut renderer, &quads);
                 let in_front = visible(&quads, &opaque);
                 compare(name, &seen, rules, &in_front, renderer.k());
                 let (all, left) = (oracle::total(rules, &quads) as u32, oracle::total(rules, &in_front) as u32);
                 let count = |counter: &str| seen.counters.get(counter);
                 assert_eq!(count("generated"), left, "{name} behind {opaque:?}");
-                let seen_away = if hidden == Hidden::Counted { all - left } else { 0 };
-                assert_eq!(count("occluded"), seen_away, "{name} behind {opaque:?}");
+                let counted = if hidden == HiddenFragments::Counted { all - left } else { 0 };
+                assert_eq!(count("occluded"), counted, "{name} behind {opaque:?}");
                 let kept: usize = seen.kept.iter().map(Vec::len).sum();
                 let lost = count("displaced") + count("culled");
                 assert_eq!(u64::from(lost), seen.counters.lost() + u64::from(count("culled")), "{:?}", seen.counters);
                 assert_eq!(lost + kept as u32, left, "{name} behind {opaque:?}: {:?}", seen.counters);
-                turned_away += all - left;
+                occluded += all - left;
             }
         }
     }
-    turned_away
+    occluded
 }
 
 /// Techniques, with the k that they keep.
@@ -128,21 +128,26 @@ const STORAGES: [(&str, &str); 11] = [
 ];
 
 #[test]
-fn what_is_hidden_never_enters_a_storage() {
+fn hidden_fragments_never_enter_a_storage() {
     for (key, k) in STORAGES {
         let set = |value| [("k", k), ("counters", "all"), ("opaque", value)];
-        let in_shader = check(&shaders(&technique(key, &set("in_shader")), "wgsl"), (&PLAIN, Hidden::Counted), |_| {});
-        let early = check(&shaders(&technique(key, &set("early")), "wgsl-native"), (&PLAIN, Hidden::Unseen), |_| {});
+        let in_shader =
+            check(&shaders(&technique(key, &set("in_shader")), "wgsl"), (&PLAIN, HiddenFragments::Counted), |_| {});
+        let early = check(
+            &shaders(&technique(key, &set("early_depth")), "wgsl-native"),
+            (&PLAIN, HiddenFragments::NotCounted),
+            |_| {},
+        );
         assert!(in_shader == early && in_shader > 10_000, "{key}: {in_shader}, {early}");
     }
     let set = [("k", "4"), ("counters", "all"), ("opaque", "in_shader")];
-    check(&shaders(&technique("kb_mdt64", &set), "wgsl-native"), (&PLAIN, Hidden::Counted), |_| {});
+    check(&shaders(&technique("kb_mdt64", &set), "wgsl-native"), (&PLAIN, HiddenFragments::Counted), |_| {});
 }
 
-/// In our SPIR-V and GLSL too: a depth texture is read in the fragment stage.
+/// Tests the generated SPIR-V and GLSL too, which read a depth texture in the fragment stage.
 #[test]
 fn every_language_reads_the_depth_buffer() {
-    for (value, hidden) in [("in_shader", Hidden::Counted), ("early", Hidden::Unseen)] {
+    for (value, hidden) in [("in_shader", HiddenFragments::Counted), ("early_depth", HiddenFragments::NotCounted)] {
         let variant = technique("kplus_array", &[("k", "4"), ("counters", "all"), ("opaque", value)]);
         for shaders in [shaders(&variant, "spirv"), glsl_shaders(&variant)] {
             check(&shaders, (&PLAIN, hidden), |_| {});
@@ -151,16 +156,16 @@ fn every_language_reads_the_depth_buffer() {
 }
 
 #[test]
-fn other_addressings_read_their_own_texel() {
+fn every_addressing_reads_the_right_texel() {
     for addressing in ["tiled", "morton"] {
         let set = [("k", "4"), ("counters", "all"), ("opaque", "in_shader"), ("addressing", addressing)];
-        check(&shaders(&technique("kplus_array", &set), "wgsl"), (&PLAIN, Hidden::Counted), |_| {});
+        check(&shaders(&technique("kplus_array", &set), "wgsl"), (&PLAIN, HiddenFragments::Counted), |_| {});
     }
 }
 
-/// By a criterion that is not depth, what is hidden may be better than what is seen, and have the key of what is seen.
+/// With a criterion other than depth, a hidden fragment may be better than a visible one, or have the same key.
 #[test]
-fn what_is_hidden_displaces_nothing_by_any_criterion() {
+fn hidden_fragments_displace_nothing_by_any_criterion() {
     fn criterion(quad: &Quad) -> u32 {
         let bits = (quad.depth - 0.25 * quad.rgba()[3]).to_bits();
         if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -175,15 +180,15 @@ fn what_is_hidden_displaces_nothing_by_any_criterion() {
     };
     for key in ["kplus_array", "kplus_ab_sb", "kb_ll", "mdt32_coplanar"] {
         for extra in ["opaque: in_shader;", "opaque: in_shader; cull: occupancy { words: 1 };"] {
-            let text = format!("{GLASS_KEEPS} sort: insertion; counters: all; {extra}");
-            check(&shaders(&glass(key, &text), "wgsl"), (&rules, Hidden::Counted), set_uniforms);
+            let rest = format!("{GLASS_KEEPS} sort: insertion; counters: all; {extra}");
+            check(&shaders(&glass(key, &rest), "wgsl"), (&rules, HiddenFragments::Counted), set_uniforms);
         }
     }
 }
 
-/// Alpha alone decides, so that keys of hidden and of seen fragments are spread over one range, and often equal.
+/// The criterion is alpha, so that keys of hidden and visible fragments have the same range and are often equal.
 #[test]
-fn what_is_hidden_has_no_part_in_the_passes_ahead() {
+fn hidden_fragments_do_not_affect_earlier_passes() {
     fn key(quad: &Quad) -> u32 {
         quad.rgba()[3].to_bits() | 1 << 31
     }
@@ -195,7 +200,7 @@ fn what_is_hidden_has_no_part_in_the_passes_ahead() {
     };
     let layer = |depth: f32, red: u8, alpha: u8| Quad::whole(depth, [red, 20, 30, alpha]);
     let opaque = [Quad::whole(0.5, [9, 9, 9, 255]).at(0, 0, 12, 16)];
-    // Of every alpha there are a hidden one with lesser words and a visible one, and hidden ones between.
+    // Every alpha has a hidden fragment with lesser words and a visible one; further hidden ones are between.
     let mut quads: Vec<Quad> =
         (1..=6).flat_map(|step| [layer(0.75, 1, 40 * step), layer(0.25, 200, 40 * step)]).collect();
     quads.extend((0..24).map(|step| layer(0.625, 7, 45 + 5 * step)));
@@ -210,31 +215,31 @@ fn what_is_hidden_has_no_part_in_the_passes_ahead() {
             "buffer Alpha from {key} {{ keep 4 least |f| f.color.w; sort: insertion; opaque: in_shader; {extra} }}"
         ));
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
-        bring(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
+        set_depths(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
         for quads in orders(&quads).into_iter().take(6) {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             compare(key, &seen, &rules, &visible(&quads, &opaque), Some(4));
         }
     }
 }
 
-/// Storages in textures discard what is hidden: the nearest of the others is kept, and no sample is taken.
+/// Storages in textures discard hidden fragments, keep the nearest or first of the others, and use no sample for hidden ones.
 #[test]
-fn what_is_hidden_takes_no_target_and_no_sample() {
+fn hidden_fragments_use_no_target_and_no_sample() {
     let stage = stage::device();
     for (key, k) in [("z_buffer", 1), ("kb_sr", 4)] {
         let variant = technique(key, &[("k", &k.to_string()), ("counters", "all"), ("opaque", "in_shader")]);
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
         for opaque in surfaces() {
-            bring(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
+            set_depths(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
             let quads: Vec<Quad> = (1..8).map(|step| Quad::whole(step as f32 / 8.0, [step * 9, 4, 5, 90])).collect();
             for quads in orders(&quads) {
-                let seen = see(&stage, &mut renderer, &quads);
+                let seen = render_frame(&stage, &mut renderer, &quads);
                 let in_front = visible(&quads, &opaque);
-                // Where two triangles meet, both have a fragment for their own samples.
+                // Where two triangles share a pixel, each has a fragment for its samples.
                 let (occluded, hidden) = (seen.counters.get("occluded") as usize, 7 * 256 - in_front.len());
                 assert!(if k == 1 { occluded == hidden } else { occluded >= hidden }, "{key}: {occluded} of {hidden}");
-                // The first k that are seen, in the order of submission, or the nearest.
+                // The first k visible fragments in submission order, or the nearest.
                 let kept = |(x, y): (u32, u32)| {
                     let mut left = oracle::fragments(&in_front, x, y);
                     if k == 1 {
@@ -251,21 +256,21 @@ fn what_is_hidden_takes_no_target_and_no_sample() {
     }
 }
 
-/// The host makes room for what is seen alone.
+/// The host allocates for visible fragments only.
 #[test]
-fn counts_leave_out_what_is_hidden() {
+fn counts_exclude_hidden_fragments() {
     let stage = stage::device();
     let opaque = [Quad::whole(0.5, [9, 9, 9, 255]).at(0, 0, 16, 7)];
     let quads = scattered(8, 7);
     let in_front = visible(&quads, &opaque);
     for (key, symbol, k) in [("ab_sb", "fragments", None), ("kplus_ab_sb", "kept", Some(3))] {
-        for (value, language) in [("in_shader", "wgsl"), ("early", "wgsl-native")] {
+        for (value, language) in [("in_shader", "wgsl"), ("early_depth", "wgsl-native")] {
             let set = [("k", k.map_or("all".to_owned(), |k: u32| k.to_string())), ("opaque", value.to_owned())];
             let set: Vec<(&str, &str)> = set.iter().map(|(name, value)| (*name, value.as_str())).collect();
             let exact = Settings { sizing: Sizing::Exact, ..settings() };
             let mut renderer = renderer(&stage, &shaders(&technique(key, &set), language), &exact).unwrap();
-            bring(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
-            see(&stage, &mut renderer, &quads);
+            set_depths(&stage, &mut renderer, &opaque_scene(&stage, &opaque, &offscreen(&stage)));
+            render_frame(&stage, &mut renderer, &quads);
             let kept: usize = oracle::kept_words(&PLAIN, &in_front, k).iter().map(Vec::len).sum();
             assert_eq!(renderer.symbol(symbol), Some(kept as u64), "{key}, {value}");
         }
@@ -276,11 +281,12 @@ fn counts_leave_out_what_is_hidden() {
 fn the_cpu_device_keeps_the_same_words() {
     for (key, k) in [("kplus_array", "4"), ("ab_sb", "all"), ("mdt32_coplanar", "4"), ("z_buffer", "1"), ("kb_sr", "8")]
     {
-        // Depth and stencil of storages in textures are their own.
-        let values = if ["z_buffer", "kb_sr"].contains(&key) { &["in_shader"][..] } else { &["in_shader", "early"] };
+        // Storages in textures use the depth and stencil test themselves.
+        let values =
+            if ["z_buffer", "kb_sr"].contains(&key) { &["in_shader"][..] } else { &["in_shader", "early_depth"] };
         for value in values {
             let variant = technique(key, &[("k", k), ("counters", "all"), ("opaque", value)]);
-            for order in [Order::Submission, Order::Shuffled(3)] {
+            for order in [FragmentOrder::Submission, FragmentOrder::Shuffled(3)] {
                 let mut device = cpu_device::device(&variant, order);
                 for opaque in surfaces() {
                     device.set_texture("opaque", &opaque_depths(&opaque)).unwrap();
@@ -295,7 +301,7 @@ fn the_cpu_device_keeps_the_same_words() {
                     assert_eq!(kept, oracle::kept_words(&PLAIN, &in_front, most), "{key}, {value} behind {opaque:?}");
                     let counters = fragbuf_runtime::Counters::sum(&device.words("counters").unwrap());
                     let hidden = oracle::total(&PLAIN, &quads) - oracle::total(&PLAIN, &in_front);
-                    let seen = if *value == "early" { 0 } else { hidden };
+                    let seen = if *value == "early_depth" { 0 } else { hidden };
                     assert_eq!(counters.get("occluded") as usize, seen, "{key}, {value} behind {opaque:?}");
                 }
             }
@@ -304,9 +310,9 @@ fn the_cpu_device_keeps_the_same_words() {
 }
 
 #[test]
-fn the_cpu_device_says_what_is_missing() {
+fn the_cpu_device_reports_a_missing_depth_texture() {
     let variant = technique("kplus_array", &[("opaque", "in_shader")]);
-    let mut device = cpu_device::device(&variant, Order::Submission);
+    let mut device = cpu_device::device(&variant, FragmentOrder::Submission);
     let mesh = fragbuf_cpu::Mesh { vertices: &[], indices: &[] };
     let error = device.render(&mesh, &|_| {}).unwrap_err().to_string();
     assert!(error.contains("`opaque`") && error.contains("Device::set_texture"), "{error}");
@@ -318,12 +324,12 @@ fn the_cpu_device_says_what_is_missing() {
     device.render(&mesh, &|_| {}).unwrap();
 }
 
-/// The opaque picture is what the transparent one is drawn over; slices read their own rows of the depth buffer.
+/// Renders the transparent image over the opaque one. Slices read their rows of the depth buffer.
 #[test]
-fn pictures_are_drawn_over_what_is_opaque() {
+fn images_are_rendered_over_opaque_surfaces() {
     let stage = stage::device();
     let quads = scattered(8, 42);
-    for (value, language) in [("in_shader", "wgsl"), ("early", "wgsl-native")] {
+    for (value, language) in [("in_shader", "wgsl"), ("early_depth", "wgsl-native")] {
         for slice in [None, Some(5)] {
             let settings = Settings { slice, ..settings() };
             let set = [("k", "8"), ("opaque", value)];
@@ -332,13 +338,13 @@ fn pictures_are_drawn_over_what_is_opaque() {
             for opaque in surfaces() {
                 let target = offscreen(&stage);
                 let drawn = opaque_scene(&stage, &opaque, &target);
-                bring(&stage, &mut renderer, &drawn);
+                set_depths(&stage, &mut renderer, &drawn);
                 draw_on(&stage, &mut renderer, &quads, &target);
                 let pixels = target.colors(&stage.device, &stage.queue).unwrap();
                 let in_front = visible(&quads, &opaque);
-                let behind = oracle::picture(&PLAIN, &nearest(&opaque), Some(1), BACKGROUND);
+                let behind = oracle::image(&PLAIN, &nearest(&opaque), Some(1), BACKGROUND);
                 for ((seen, behind), (x, y)) in pixels.iter().zip(behind).zip(oracle::pixels()) {
-                    let over = oracle::picture(&PLAIN, &oracle::fragments(&in_front, x, y), Some(8), behind);
+                    let over = oracle::image(&PLAIN, &oracle::fragments(&in_front, x, y), Some(8), behind);
                     let over = over[(y * SIZE + x) as usize];
                     for (seen, expected) in seen.iter().zip(over) {
                         let difference = 255.0 * (f64::from(*seen) - expected).abs();
@@ -353,7 +359,7 @@ fn pictures_are_drawn_over_what_is_opaque() {
     }
 }
 
-/// What the depth test keeps of a scene: the first of the nearest, in front of the far plane.
+/// Returns the fragments that the depth test keeps: the first of the nearest, in front of the far plane.
 fn nearest(quads: &[Quad]) -> Vec<Quad> {
     let first = |(x, y)| {
         let fragments = oracle::fragments(quads, x, y).into_iter().filter(|quad| quad.depth < 1.0);
@@ -363,7 +369,7 @@ fn nearest(quads: &[Quad]) -> Vec<Quad> {
     oracle::pixels().filter_map(first).collect()
 }
 
-/// Draws over what the target holds.
+/// Renders over the content of the target.
 fn draw_on(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], target: &Offscreen) {
     let bytes = vertices(quads, renderer.vertex_inputs());
     let buffer = stage::vertex_buffer(stage, &bytes);
@@ -394,20 +400,20 @@ fn depth_texture(
 }
 
 #[test]
-fn a_texture_that_is_missing_or_does_not_fit_is_said() {
+fn a_missing_or_mismatched_texture_is_reported() {
     use wgpu::TextureFormat::{Depth24Plus, Depth32Float};
     use wgpu::TextureUsages as Usages;
     let stage = stage::device();
-    let made = |value, language| {
+    let new = |value, language| {
         renderer(&stage, &shaders(&technique("kplus_array", &[("opaque", value)]), language), &settings()).unwrap()
     };
     for (value, language, usage) in
-        [("in_shader", "wgsl", Usages::TEXTURE_BINDING), ("early", "wgsl-native", Usages::RENDER_ATTACHMENT)]
+        [("in_shader", "wgsl", Usages::TEXTURE_BINDING), ("early_depth", "wgsl-native", Usages::RENDER_ATTACHMENT)]
     {
-        let mut renderer = made(value, language);
+        let mut renderer = new(value, language);
         assert!(renderer.texture("opaque").is_none());
         let error = renderer.begin().unwrap_err().to_string();
-        assert!(error.contains("the texture `opaque` must be brought") && error.contains("set_texture"), "{error}");
+        assert!(error.contains("the texture `opaque` must be set") && error.contains("set_texture"), "{error}");
         let other = if usage == Usages::TEXTURE_BINDING { Usages::RENDER_ATTACHMENT } else { Usages::TEXTURE_BINDING };
         let wrong = [
             (depth_texture(&stage, (15, 16), Depth32Float, usage), "15 x 16"),
@@ -419,14 +425,14 @@ fn a_texture_that_is_missing_or_does_not_fit_is_said() {
             assert!(matches!(error, Error::BadValue { .. }) && error.to_string().contains(part), "{error}");
         }
         let right = depth_texture(&stage, (SIZE, SIZE), Depth32Float, usage);
-        for (name, part) in [("keys", "left to the plan"), ("nothing", "nothing")] {
+        for (name, part) in [("keys", "an external texture"), ("nothing", "nothing")] {
             let error = block_on(&stage.device, renderer.set_texture(name, &right)).unwrap().unwrap_err();
             assert!(error.to_string().contains(part), "{error}");
         }
         block_on(&stage.device, renderer.set_texture("opaque", &right)).unwrap().unwrap();
         renderer.begin().unwrap();
-        // What a caller brings is no memory of the renderer's.
-        let bytes = made("none", "wgsl").allocated_bytes();
+        // An external texture does not count as allocated memory.
+        let bytes = new("none", "wgsl").allocated_bytes();
         assert_eq!(renderer.allocated_bytes(), bytes);
         block_on(&stage.device, renderer.resize(8, 8)).unwrap().unwrap();
         assert!(renderer.begin().is_err());

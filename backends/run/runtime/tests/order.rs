@@ -1,6 +1,6 @@
-//! Orders to draw in, and numbers that look random and are the same on every run.
+//! Drawing orders, and reproducible pseudorandom numbers.
 
-/// A generator by its seed (xorshift, Marsaglia 2003).
+/// A seeded generator (xorshift, Marsaglia 2003).
 pub struct Numbers(u64);
 
 impl Numbers {
@@ -8,7 +8,7 @@ impl Numbers {
         Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    /// Below `end`.
+    /// Returns a number below `end`.
     pub fn below(&mut self, end: u32) -> u32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -17,7 +17,7 @@ impl Numbers {
     }
 }
 
-/// All orders of up to four things; of more, sixteen.
+/// Returns all orders of up to four things, and sixteen of more.
 pub fn orders<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
     if things.len() <= 4 { all(things) } else { (0..16).map(|seed| shuffled(things, seed)).collect() }
 }

@@ -1,12 +1,11 @@
-//! The scenes: axis-aligned quads of one depth whose edges lie on the borders of pixels, so that what covers a pixel is
-//! known without a rasteriser.
+//! The scenes: axis-aligned quads of constant depth whose edges are on pixel edges, so that coverage is known without a rasteriser.
 
 use fragbuf_runtime::VertexInputs;
 
 /// Pixels along each side of the frame.
 pub const SIZE: u32 = 16;
 
-/// All pixels with `x0 ≤ x < x1` and `y0 ≤ y < y1`, `y` downwards.
+/// A quad over all pixels with `x0 ≤ x < x1` and `y0 ≤ y < y1`, `y` downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quad {
     pub x0: u32,
@@ -19,7 +18,7 @@ pub struct Quad {
 }
 
 impl Quad {
-    /// A quad over the whole frame.
+    /// Returns a quad over the whole frame.
     pub fn whole(depth: f32, color: [u8; 4]) -> Self {
         Quad { x0: 0, y0: 0, x1: SIZE, y1: SIZE, depth, color, id: 0 }
     }
@@ -41,7 +40,7 @@ impl Quad {
     }
 }
 
-/// Two triangles per quad, in the order of the quads.
+/// Returns the vertices of two triangles per quad, in the order of the quads.
 pub fn vertices(quads: &[Quad], inputs: &VertexInputs) -> Vec<u8> {
     let mut bytes = Vec::new();
     for quad in quads {
@@ -54,7 +53,7 @@ pub fn vertices(quads: &[Quad], inputs: &VertexInputs) -> Vec<u8> {
                 match input.name.as_str() {
                     "position" => push(&mut bytes, &[x, y, quad.depth]),
                     "color" => push(&mut bytes, &quad.rgba()),
-                    // Towards the eye.
+                    // Towards the camera.
                     "normal" => push(&mut bytes, &[0.0, 0.0, 1.0]),
                     "id" => bytes.extend(quad.id.to_le_bytes()),
                     other => panic!("no value for the attribute `{other}`"),

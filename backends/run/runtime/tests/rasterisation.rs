@@ -1,5 +1,5 @@
-//! What the rasteriser hands to a fragment buffer, on shapes whose coverage is known: a pixel belongs to a shape when its
-//! centre lies inside, or on a left or a top edge.
+//! The fragments that the rasteriser generates for shapes of known coverage: a pixel belongs to a shape if its centre is inside,
+//! or on a left or top edge.
 
 use fragbuf_runtime::Output;
 use fragbuf_runtime::headless::Offscreen;
@@ -9,7 +9,7 @@ use crate::oracle::pixels;
 use crate::quads::SIZE;
 use crate::stage::{FORMAT, device, read_buffers, renderer, settings, shaders, technique};
 
-/// Triangles in pixels from the top left, with a depth per corner. The kept fragments of every pixel, as depths.
+/// Renders triangles, in pixels from the top left with a depth per corner. Returns the depths of every pixel's fragments.
 fn depths(triangles: &[[[f32; 3]; 3]]) -> Vec<Vec<f32>> {
     let stage = device();
     let mut renderer = renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings()).unwrap();
@@ -27,7 +27,7 @@ fn depths(triangles: &[[[f32; 3]; 3]]) -> Vec<Vec<f32>> {
         pass.draw(0..3 * triangles.len() as u32, 0..1);
     };
     renderer.render(&output, draw).unwrap();
-    let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer));
+    let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer), &[]);
     kept.iter().map(|words| words.iter().map(|words| f32::from_bits(words[0])).collect()).collect()
 }
 
@@ -37,14 +37,14 @@ fn quad(x0: f32, y0: f32, x1: f32, y1: f32) -> [[[f32; 3]; 3]; 2] {
 }
 
 #[test]
-fn centres_decide_and_of_edges_the_left_and_the_top_ones() {
-    // Edges on the borders of pixels, between centres, and through centres.
+fn a_pixel_is_covered_if_its_centre_is_inside_or_on_a_left_or_top_edge() {
+    // Edges on pixel edges, between centres, and through centres.
     for [x0, y0, x1, y1] in [[2.0, 3.0, 9.0, 7.0], [2.4, 3.3, 9.6, 7.7], [2.5, 3.5, 9.5, 7.5], [0.5, 0.5, 15.5, 15.5]] {
         let depths = depths(&quad(x0, y0, x1, y1));
         for ((x, y), depths) in pixels().zip(depths) {
             let (cx, cy) = (x as f32 + 0.5, y as f32 + 0.5);
             let inside = x0 <= cx && cx < x1 && y0 <= cy && cy < y1;
-            // One fragment, though the diagonal between the quad's triangles goes through centres.
+            // There is one fragment, although the diagonal between the quad's triangles passes through centres.
             assert_eq!(depths.len(), usize::from(inside), "pixel {x}, {y} of {x0}, {y0}, {x1}, {y1}");
         }
     }
@@ -67,7 +67,7 @@ fn depth_is_linear_across_the_screen() {
     for ((x, y), depths) in pixels().zip(depths(&[triangle])) {
         for depth in depths {
             let expected = plane(x as f32 + 0.5, y as f32 + 0.5);
-            assert!((depth - expected).abs() < 1.0e-5, "pixel {x}, {y}: {depth}, and not {expected}");
+            assert!((depth - expected).abs() < 1.0e-5, "pixel {x}, {y}: {depth} instead of {expected}");
             covered += 1;
         }
     }

@@ -1,4 +1,4 @@
-//! Textures of several samples, which nothing but a shader can read: one word per texel, sample after sample.
+//! Reads multisampled textures, which only a shader can read: one word per texel, sample after sample.
 
 use fragbuf_runtime::headless::Headless;
 
@@ -13,7 +13,7 @@ fn main(@builtin(global_invocation_id) at: vec3<u32>) {
     words[(at.z * size.y + at.y) * size.x + at.x] = texel.x | (texel.y << 16u);
 }";
 
-/// The words of a texture of whole numbers, two halves a word, or of a stencil.
+/// Returns the words of a texture of integers, two 16-bit halves per word, or of a stencil.
 pub fn read(stage: &Headless, texture: &wgpu::Texture) -> Vec<u32> {
     let Headless { device, queue, .. } = stage;
     let is_stencil = texture.format().has_stencil_aspect();

@@ -1,5 +1,5 @@
-//! Triangles at any angle: what covers a pixel, and at what depth, is captured by a shader of this test's own that only
-//! appends to a list. The techniques must keep the best of exactly that.
+//! Triangles at any angle. A shader of this test appends the coverage and depth of every pixel to a list, and the techniques must
+//! keep the best of exactly these fragments.
 
 use fragbuf_runtime::headless::{Headless, Offscreen};
 use fragbuf_runtime::{Output, Renderer};
@@ -9,7 +9,7 @@ use crate::kept;
 use crate::oracle::PLAIN;
 use crate::order::Numbers;
 use crate::quads::{Quad, SIZE};
-use crate::stage::{FORMAT, Seen, device, read_buffers, read_counters, renderer, settings, shaders, technique};
+use crate::stage::{FORMAT, FrameResult, device, read_buffers, read_counters, renderer, settings, shaders, technique};
 
 const CAPTURE: &str = "
 struct Corner { @location(0) position: vec3<f32>, @location(1) color: vec4<f32> }
@@ -27,12 +27,12 @@ struct List { count: atomic<u32>, words: array<u32> }
     list.words[at + 3u] = color.r | (color.g << 8u) | (color.b << 16u) | (color.a << 24u);
 }";
 
-/// Position and colour of a vertex.
+/// The floats of a vertex: position and colour.
 const FLOATS: usize = 7;
-/// Bytes of the list.
+/// The bytes of the list.
 const LIST: u64 = 4 + 24 * 4096;
 
-/// Triangles whose corners lie anywhere, at any depth, some partly outside the frame.
+/// Returns triangles with random corners and depths, some partly outside the frame.
 fn triangles(count: u32, seed: u64) -> Vec<f32> {
     let mut numbers = Numbers::seeded(seed);
     let mut unit = || numbers.below(1 << 20) as f32 / (1 << 20) as f32;
@@ -41,7 +41,7 @@ fn triangles(count: u32, seed: u64) -> Vec<f32> {
     corners.collect()
 }
 
-/// Every fragment of the triangles, as a quad over one pixel.
+/// Returns every fragment of the triangles, as a quad over one pixel.
 fn captured(stage: &Headless, vertices: &wgpu::Buffer, count: u32) -> Vec<Quad> {
     let Headless { device, queue, .. } = stage;
     let source = wgpu::ShaderSource::Wgsl(CAPTURE.into());
@@ -116,7 +116,7 @@ fn captured(stage: &Headless, vertices: &wgpu::Buffer, count: u32) -> Vec<Quad> 
 }
 
 #[test]
-fn every_technique_keeps_the_best_of_what_was_captured() {
+fn every_technique_keeps_the_best_captured_fragments() {
     let stage = device();
     let techniques =
         [("kplus_array", "3"), ("kplus_array", "8"), ("kb", "3"), ("kb", "8"), ("ab_ll", "all"), ("ab_sb", "all")]
@@ -138,9 +138,9 @@ fn every_technique_keeps_the_best_of_what_was_captured() {
                 pass.draw(0..3 * count, 0..1);
             };
             renderer.render(&output, draw).unwrap();
-            let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer));
+            let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer), &fragments);
             let pixels = offscreen.colors(&stage.device, &stage.queue).unwrap();
-            let seen = Seen { pixels, kept, counters: read_counters(&stage, &renderer) };
+            let seen = FrameResult { pixels, kept, counters: read_counters(&stage, &renderer) };
             compare(key, &seen, &PLAIN, &fragments, (renderer.k(), renderer.k()));
         }
     }

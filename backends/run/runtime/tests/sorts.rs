@@ -1,19 +1,19 @@
-//! Every sort against the oracle, with more layers than a pass meets every day. What a pixel shows is a checksum over the
-//! identities of its fragments in their order, so that any two fragments in each other's place show.
+//! Compares every sort with the oracle, for many layers. The colour of a pixel is a checksum over the identities of its fragments in
+//! order, so that any two swapped fragments change it.
 
 use fragbuf_model::Variant;
-use fragbuf_runtime::{Room, Settings, Sizing};
+use fragbuf_runtime::{PoolSize, Settings, Sizing};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::capture::{compare, scattered};
 use crate::oracle::Rules;
 use crate::order::Numbers;
 use crate::quads::{Quad, SIZE};
-use crate::stage::{described, device, renderer, see, settings, shaders, technique};
+use crate::stage::{described, device, render_frame, renderer, settings, shaders, technique};
 
-/// Each step multiplies what was and adds the next, so the order matters; 12 bits of it become a colour of 16 levels a
-/// channel, which no rounding confuses.
+/// Each step multiplies the sum and adds the next identity, so the order matters. 12 bits of it become a colour of 16 levels per
+/// channel, which rounding cannot confuse.
 const CHECKSUM: &str = "
     buffer Checksum from ab_ll {
         fragment { color: rgba8, depth: f32, id: u32 }
@@ -42,23 +42,23 @@ fn rules() -> Rules {
     }
 }
 
-/// The nearest `layers` of a pixel only: what a resolve pass shows that holds no more.
+/// Returns the rules of a resolve pass that holds the nearest eight layers.
 fn rules_of_eight() -> Rules {
     Rules { resolve: |kept| (rules().resolve)(&kept[..kept.len().min(8)]), ..rules() }
 }
 
-/// Every sort that puts fragments in order, and the hybrid on either side of its border.
+/// Returns every row that sorts, and the hybrid with each of its two algorithms only.
 fn sorts() -> Vec<String> {
     let registry = Registry::builtin();
-    let sorts = registry.rows_of("sort").filter(|row| row.offers.contains(&Fact::Sorted));
-    let mut written: Vec<String> = sorts.map(|row| row.key.clone()).collect();
-    assert!(written.len() >= 4, "{written:?}");
+    let sorts = registry.rows_of("sort").filter(|row| row.provides.contains(&Capability::Sorted));
+    let mut choices: Vec<String> = sorts.map(|row| row.key.clone()).collect();
+    assert!(choices.len() >= 4, "{choices:?}");
     let more = ["hybrid { insertion: 0 }", "hybrid { insertion: 4096 }", "lplus { batch: 1 }", "lplus { batch: 7 }"];
-    written.extend(more.map(str::to_owned));
-    written
+    choices.extend(more.map(str::to_owned));
+    choices
 }
 
-/// Whether a sort holds a number of layers that is set; the others hold any number.
+/// Whether the parameter `layers` limits the layers of a sort.
 fn is_bounded(sort: &str) -> bool {
     let key = sort.split(' ').next().unwrap();
     Registry::builtin().row("sort", key).unwrap().parameters.iter().any(|parameter| parameter.name == "layers")
@@ -73,7 +73,7 @@ fn with_layers(sort: &str, layers: u32) -> Variant {
     described(&CHECKSUM.replace("SORT", &sort))
 }
 
-/// `count` layers over the whole frame in random order; of some, depth is the same, of some of those colour too.
+/// Returns `count` layers over the whole frame in random order, some with equal depths, and some of those with equal colours.
 fn layers(count: u32, seed: u64) -> Vec<Quad> {
     let mut numbers = Numbers::seeded(seed);
     let quad = |id| {
@@ -88,7 +88,7 @@ fn layers(count: u32, seed: u64) -> Vec<Quad> {
 }
 
 fn roomy() -> Settings {
-    Settings { sizing: Sizing::Reserve(Room::Fragments(64 * SIZE * SIZE)), ..settings() }
+    Settings { sizing: Sizing::Reserve(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() }
 }
 
 #[test]
@@ -98,10 +98,10 @@ fn every_sort_orders_any_number_of_layers() {
         let mut renderer = renderer(&stage, &shaders(&with_layers(&sort, 64), "wgsl"), &roomy()).unwrap();
         let mut scenes: Vec<Vec<Quad>> =
             [1, 2, 3, 4, 5, 8, 15, 16, 17, 31, 32, 33, 63, 64].into_iter().map(|count| layers(count, 5)).collect();
-        // Quads anywhere: every pixel holds a number of its own.
+        // Random quads: pixels have different numbers of fragments.
         scenes.extend([scattered(64, 3), scattered(64, 4), layers(64, 6), Vec::new()]);
         for quads in scenes {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             compare(&sort, &seen, &rules(), &quads, (None, None));
             assert_eq!(seen.counters.lost(), 0, "{sort}: {:?}", seen.counters);
         }
@@ -109,12 +109,12 @@ fn every_sort_orders_any_number_of_layers() {
 }
 
 #[test]
-fn every_sort_keeps_the_nearest_of_more_than_fit() {
+fn every_limited_sort_keeps_the_nearest_layers() {
     let stage = device();
     for sort in sorts().iter().filter(|sort| is_bounded(sort)) {
         let mut renderer = renderer(&stage, &shaders(&with_layers(sort, 8), "wgsl"), &roomy()).unwrap();
         for quads in [layers(9, 1), layers(40, 2), scattered(64, 5)] {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             compare(sort, &seen, &rules_of_eight(), &quads, (None, None));
             let beyond = |pixel: &Vec<_>| pixel.len().saturating_sub(8) as u32;
             assert_eq!(seen.counters.get("layers_exceeded"), seen.kept.iter().map(beyond).sum::<u32>(), "{sort}");
@@ -122,29 +122,29 @@ fn every_sort_keeps_the_nearest_of_more_than_fit() {
     }
 }
 
-/// More than any array of the other sorts holds by itself.
+/// Tests more layers than the arrays of the other sorts can hold.
 #[test]
-fn sorts_without_an_array_for_all_leave_none_out() {
+fn unlimited_sorts_omit_no_layer() {
     let stage = device();
     let free: Vec<String> = sorts().into_iter().filter(|sort| !is_bounded(sort)).collect();
     assert!(!free.is_empty());
     for sort in free {
-        let sizing = Sizing::Reserve(Room::Fragments(200 * SIZE * SIZE));
+        let sizing = Sizing::Reserve(PoolSize::Fragments(200 * SIZE * SIZE));
         let settings = Settings { sizing, ..settings() };
         let mut renderer = renderer(&stage, &shaders(&with_layers(&sort, 0), "wgsl"), &settings).unwrap();
-        // Many equal depths and colours, then one fragment again and again.
+        // Many equal depths and colours, then 90 equal fragments.
         let equal = vec![Quad::whole(0.5, [9, 9, 9, 255]).named(3); 90];
         for quads in [layers(128, 1), layers(97, 2), layers(65, 3), equal] {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             compare(&sort, &seen, &rules(), &quads, (None, None));
             assert_eq!(seen.counters.lost(), 0, "{sort}: {:?}", seen.counters);
         }
     }
 }
 
-/// Farthest first, and each fragment beside the one before it: what is gathered on demand must serve any order of asking.
+/// Reads the farthest first, and with each fragment another one: sorts that read on demand must support any access order.
 #[test]
-fn effects_may_go_back() {
+fn effects_may_read_backwards() {
     const BACK: &str = "
         let mut sum = 1;
         for (i, f) in fragments.iter().enumerate().rev() {
@@ -163,26 +163,26 @@ fn effects_may_go_back() {
     for sort in sorts() {
         let sort_option =
             if is_bounded(&sort) && !sort.contains('{') { format!("{sort} {{ layers: 64 }}") } else { sort.clone() };
-        let text = CHECKSUM.replace(&format!("let mut sum{forward}"), BACK).replace("SORT", &sort_option);
-        assert!(text.contains("rev()"));
-        let mut renderer = renderer(&stage, &shaders(&described(&text), "wgsl"), &roomy()).unwrap();
-        // A software driver ends loops after 65,535 rounds in all: batches of one are read again for every step back.
+        let source = CHECKSUM.replace(&format!("let mut sum{forward}"), BACK).replace("SORT", &sort_option);
+        assert!(source.contains("rev()"));
+        let mut renderer = renderer(&stage, &shaders(&described(&source), "wgsl"), &roomy()).unwrap();
+        // A software driver stops loops after 65,535 iterations in all, and batches of one are read again for every step back.
         for quads in [layers(1, 1), layers(30, 2), scattered(40, 5)] {
-            compare(&sort, &see(&stage, &mut renderer, &quads), &rules, &quads, (None, None));
+            compare(&sort, &render_frame(&stage, &mut renderer, &quads), &rules, &quads, (None, None));
         }
     }
 }
 
-/// Class by class nothing is resolved or counted twice, whatever counts where the pixel is read.
+/// Passes per size class resolve and count no pixel twice.
 #[test]
-fn passes_for_classes_of_pixels_count_once() {
+fn passes_per_size_class_count_once() {
     let stage = device();
     for key in ["kb_ll", "kb_ab_ll"] {
         let counted = |sort: &str| {
             let set = [("k", "20"), ("counters", "all"), ("sort", sort)];
             let mut renderer = renderer(&stage, &shaders(&technique(key, &set), "wgsl"), &roomy()).unwrap();
             [layers(40, 1), scattered(64, 2)].map(|quads| {
-                let seen = see(&stage, &mut renderer, &quads);
+                let seen = render_frame(&stage, &mut renderer, &quads);
                 (seen.pixels, seen.counters)
             })
         };

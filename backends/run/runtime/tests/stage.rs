@@ -1,13 +1,13 @@
-//! One device for all tests, and what is needed to see a frame of quads: a renderer, a target, and everything read back.
+//! The common device of all tests, and functions to render a frame of quads and to read its results back.
 
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
-use fragbuf_targets::{Request, generate, target};
 use fragbuf_codegen::Form;
-use fragbuf_model::{Draft, Origin, Variant, check};
+use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
 use fragbuf_runtime::{Counters, Error, Output, Pending, Renderer, Settings, Shaders, block_on};
+use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
 
 use crate::kept;
@@ -15,41 +15,42 @@ use crate::oracle::Words;
 use crate::quads::{Quad, SIZE, vertices};
 use crate::samples;
 
-/// The CPU's adapter: the same on every machine, and in the order of submission.
+/// Returns the CPU's adapter: it is the same on every machine, and runs fragments in submission order.
 pub fn device() -> MutexGuard<'static, Headless> {
     static DEVICE: LazyLock<Mutex<Headless>> = LazyLock::new(|| {
         let opened = Headless::open(&Choice::Cpu, wgpu::Features::PASSTHROUGH_SHADERS);
-        Mutex::new(opened.unwrap_or_else(|error| panic!("these tests run on a software driver: {error}")))
+        Mutex::new(opened.unwrap_or_else(|error| panic!("these tests need a software driver: {error}")))
     });
     DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 pub const FORMAT: wgpu::TextureFormat = BLENDED;
 
-/// The opaque background of every picture.
+/// The opaque background of every image.
 pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
 
-/// A technique with `set`, each as in `--set name=value`.
+/// Returns a technique with the settings `set`, each as in `--set name=value`.
 pub fn technique(key: &str, set: &[(&str, &str)]) -> Variant {
-    let origin = Origin::new(key, 1, 1);
-    let mut draft = Draft::from_technique(key, &origin);
+    let span = SourceSpan::new(key, 1, 1);
+    let mut draft = Draft::from_technique(key, &span);
     for (name, value) in set {
-        draft.set(name, value, &origin).unwrap();
+        draft.set(name, value, &span).unwrap();
     }
-    check(&draft, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+    check(&draft, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
-/// A description in the written language.
-pub fn described(text: &str) -> Variant {
-    let parsed = fragbuf_syntax::parse(text, "test.fragbuf");
+/// Checks a description.
+pub fn described(source: &str) -> Variant {
+    let parsed = fragbuf_syntax::parse(source, "test.fragbuf");
     assert!(parsed.diagnostics.is_empty(), "{}", parsed.diagnostics);
-    check(&parsed.draft.unwrap(), &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"))
+    check(&parsed.draft.unwrap(), &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
-/// The shaders of one target.
+/// Generates the shaders of one target.
 pub fn shaders(variant: &Variant, name: &str) -> Shaders {
     let request = Request { targets: &[target(name).unwrap()], form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    let generation =
+        generate(variant, &request, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     Shaders::from_generation(&generation, name, 0).unwrap()
 }
 
@@ -61,22 +62,22 @@ pub fn renderer(stage: &Headless, shaders: &Shaders, settings: &Settings) -> Res
     block_on(&stage.device, Renderer::new(&stage.device, &stage.queue, shaders, settings))?
 }
 
-/// A frame, seen from all sides.
-pub struct Seen {
-    /// Red, green, blue and alpha, row after row from the top.
+/// The results of a frame.
+pub struct FrameResult {
+    /// Red, green, blue and alpha, row by row from the top.
     pub pixels: Vec<[f32; 4]>,
     pub kept: Vec<Vec<Words>>,
     pub counters: Counters,
 }
 
-/// Draws `quads` in their order and reads everything back.
-pub fn see(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Seen {
+/// Renders `quads` in their order and reads the results back.
+pub fn render_frame(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> FrameResult {
     let Headless { device, queue, .. } = stage;
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
     draw_over(stage, renderer, quads, &offscreen).unwrap();
     let counters = read_counters(stage, renderer);
     let pixels = offscreen.colors(device, queue).unwrap();
-    Seen { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer)), counters }
+    FrameResult { pixels, kept: kept::kept(renderer, &read_buffers(stage, renderer), quads), counters }
 }
 
 pub fn read_counters(stage: &Headless, renderer: &Renderer) -> Counters {
@@ -86,7 +87,7 @@ pub fn read_counters(stage: &Headless, renderer: &Renderer) -> Counters {
     counters.wait(&stage.device).unwrap()
 }
 
-/// All words of all resources that are not empty, by name.
+/// Reads all words of all resources that are not empty, by name.
 pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, Vec<u32>> {
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let names: Vec<String> = renderer.plan().resources.iter().map(|planned| planned.resource.name.clone()).collect();
@@ -100,7 +101,7 @@ pub fn read_buffers(stage: &Headless, renderer: &Renderer) -> BTreeMap<String, V
     reads.into_iter().filter_map(read).collect()
 }
 
-/// A vertex buffer with these bytes, or with nothing.
+/// Creates a vertex buffer with these bytes, which may be none.
 pub fn vertex_buffer(stage: &Headless, bytes: &[u8]) -> wgpu::Buffer {
     let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("vertices"),
@@ -112,7 +113,7 @@ pub fn vertex_buffer(stage: &Headless, bytes: &[u8]) -> wgpu::Buffer {
     buffer
 }
 
-/// Draws `quads` in their order over the background.
+/// Renders `quads` in their order over the background.
 pub fn draw_over(
     stage: &Headless,
     renderer: &mut Renderer,

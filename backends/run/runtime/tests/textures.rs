@@ -1,4 +1,4 @@
-//! Storages in textures, written by fixed function: what depth test, stencil and targets keep, against the oracle.
+//! Compares storages in textures, which depth test, stencil test and targets write, with the oracle.
 
 use fragbuf_runtime::{Renderer, Settings, block_on};
 
@@ -6,9 +6,9 @@ use crate::capture::scattered;
 use crate::oracle::{self, PLAIN, Words};
 use crate::order::orders;
 use crate::quads::{Quad, SIZE};
-use crate::stage::{self, BACKGROUND, Seen, described, renderer, see, settings, shaders, technique};
+use crate::stage::{self, BACKGROUND, FrameResult, described, render_frame, renderer, settings, shaders, technique};
 
-/// Whole frames and scattered quads, with equal depths, the nearest plane and the farthest.
+/// Returns scenes of whole-frame and scattered quads, with equal depths and depths on the near and far plane.
 fn scenes() -> Vec<Vec<Quad>> {
     let color = |index: u32| [index as u8 * 30, 255 - index as u8 * 30, 7, 100 + index as u8];
     let flat = |depths: &[f32]| (0..).zip(depths).map(|(index, depth)| Quad::whole(*depth, color(index))).collect();
@@ -23,20 +23,20 @@ fn scenes() -> Vec<Vec<Quad>> {
     ]
 }
 
-/// The first of the nearest fragments in front of the far plane.
+/// Returns the first of the nearest fragments in front of the far plane.
 fn nearest(quads: &[Quad], x: u32, y: u32) -> Option<Quad> {
     let fragments = oracle::fragments(quads, x, y).into_iter().filter(|quad| quad.depth < 1.0);
     fragments.min_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
-fn check_nearest(seen: &Seen, quads: &[Quad], words: fn(&Quad) -> Words) {
+fn check_nearest(seen: &FrameResult, quads: &[Quad], words: fn(&Quad) -> Words) {
     for (kept, (x, y)) in seen.kept.iter().zip(oracle::pixels()) {
         let expected: Vec<Words> = nearest(quads, x, y).iter().map(words).collect();
         assert_eq!(*kept, expected, "{x}, {y} of {quads:?}");
     }
 }
 
-fn check_picture(seen: &Seen, quads: &[Quad]) {
+fn check_image(seen: &FrameResult, quads: &[Quad]) {
     for (pixel, (x, y)) in seen.pixels.iter().zip(oracle::pixels()) {
         let layers: Vec<Quad> = nearest(quads, x, y).into_iter().collect();
         let color = oracle::over(&layers);
@@ -47,11 +47,15 @@ fn check_picture(seen: &Seen, quads: &[Quad]) {
     }
 }
 
-fn each_frame(renderer: &mut Renderer, stage: &fragbuf_runtime::headless::Headless, inspect: impl Fn(&Seen, &[Quad])) {
+fn each_frame(
+    renderer: &mut Renderer,
+    stage: &fragbuf_runtime::headless::Headless,
+    inspect: impl Fn(&FrameResult, &[Quad]),
+) {
     for scene in scenes() {
         let scene: Vec<Quad> = (0..).zip(scene).map(|(id, quad)| quad.named(id)).collect();
         for quads in orders(&scene) {
-            inspect(&see(stage, renderer, &quads), &quads);
+            inspect(&render_frame(stage, renderer, &quads), &quads);
         }
     }
 }
@@ -63,24 +67,24 @@ fn the_depth_test_keeps_the_nearest_and_of_equal_ones_the_first() {
         let settings = Settings { slice, ..settings() };
         let mut renderer = renderer(&stage, &shaders(&technique("z_buffer", &[]), "wgsl"), &settings).unwrap();
         each_frame(&mut renderer, &stage, |seen, quads| {
-            // Every slice clears the textures for itself: afterwards they hold the last one's.
+            // Every slice clears the textures, so they hold only the last slice afterwards.
             if slice.is_none() {
                 check_nearest(seen, quads, PLAIN.words);
             }
-            check_picture(seen, quads);
+            check_image(seen, quads);
         });
     }
 }
 
-/// One word of a fragment for each target, and no target where there is no word.
+/// Each word of a fragment has a target, and a payload without words has none.
 #[test]
 fn a_payload_has_as_many_targets_as_words() {
     let stage = stage::device();
-    let text = "buffer Wide from z_buffer {
+    let source = "buffer Wide from z_buffer {
         fragment { id: u32, color: vec4, depth: f32 }
         where |f, u| f.id != 1;
     }";
-    let mut wide = renderer(&stage, &shaders(&described(text), "wgsl"), &settings()).unwrap();
+    let mut wide = renderer(&stage, &shaders(&described(source), "wgsl"), &settings()).unwrap();
     let words = |quad: &Quad| {
         let color = quad.color.map(|channel| (f32::from(channel) / 255.0).to_bits());
         [&[quad.depth.to_bits(), quad.id], &color[..]].concat()
@@ -89,7 +93,7 @@ fn a_payload_has_as_many_targets_as_words() {
         let admitted: Vec<Quad> = quads.iter().filter(|quad| quad.id != 1).copied().collect();
         check_nearest(seen, &admitted, words);
     });
-    let text = "buffer Depth from z_buffer {
+    let source = "buffer Depth from z_buffer {
         fragment { depth: f32 }
         resolve |fragments, u| {
             let mut nearest = 0.0;
@@ -97,7 +101,7 @@ fn a_payload_has_as_many_targets_as_words() {
             vec4(nearest, nearest, nearest, 1.0)
         }
     }";
-    let mut depth = renderer(&stage, &shaders(&described(text), "wgsl"), &settings()).unwrap();
+    let mut depth = renderer(&stage, &shaders(&described(source), "wgsl"), &settings()).unwrap();
     each_frame(&mut depth, &stage, |seen, quads| {
         check_nearest(seen, quads, |quad| vec![quad.depth.to_bits()]);
         for (pixel, (x, y)) in seen.pixels.iter().zip(oracle::pixels()) {
@@ -107,9 +111,9 @@ fn a_payload_has_as_many_targets_as_words() {
     });
 }
 
-/// Textures follow the frame's size, and are counted among its bytes.
+/// Textures have the frame's size, and allocated bytes include them.
 #[test]
-fn textures_are_as_large_as_the_frame() {
+fn textures_have_the_size_of_the_frame() {
     let stage = stage::device();
     let shaders = shaders(&technique("z_buffer", &[]), "wgsl");
     let small = Settings { width: 3, height: 70, ..settings() };
@@ -121,10 +125,10 @@ fn textures_are_as_large_as_the_frame() {
     block_on(&stage.device, renderer.resize(SIZE, SIZE)).unwrap().unwrap();
     assert_eq!(renderer.allocated_bytes(), 4 * 2 * u64::from(SIZE * SIZE) + counters);
     let quads = scattered(8, 9);
-    check_nearest(&see(&stage, &mut renderer, &quads), &quads, PLAIN.words);
+    check_nearest(&render_frame(&stage, &mut renderer, &quads), &quads, PLAIN.words);
 }
 
-/// The first k fragments of a pixel, in the order of drawing, and how many came too late. Quads cover whole pixels.
+/// The first k fragments of a pixel in drawing order are kept, and later ones are counted. Quads cover whole pixels.
 #[test]
 fn stencil_routing_keeps_the_first() {
     let stage = stage::device();
@@ -134,56 +138,60 @@ fn stencil_routing_keeps_the_first() {
         block_on(&stage.device, renderer.set_k(k)).unwrap().unwrap();
         each_frame(&mut renderer, &stage, |seen, quads| check_first(seen, quads, k as usize));
     }
-    // More than a stencil has room for: some of them are counted.
+    // More fragments than a stencil value can count: only some of them are counted.
     block_on(&stage.device, renderer.set_k(4)).unwrap().unwrap();
     let many: Vec<Quad> = (0..300).map(|index| Quad::whole(index as f32 / 300.0, [9, index as u8, 9, 9])).collect();
-    let seen = see(&stage, &mut renderer, &many);
+    let seen = render_frame(&stage, &mut renderer, &many);
     assert_eq!(seen.counters.get("samples_exhausted"), (255 - 4) * SIZE * SIZE);
     assert!(seen.kept.iter().all(|kept| kept.len() == 4 && kept[3] == (PLAIN.words)(&many[3])));
 }
 
-/// As many words as there are targets.
+/// An entry has at most as many words as there are targets.
 #[test]
 fn stencil_routing_takes_eight_words() {
     let stage = stage::device();
-    let text = "buffer Wide from kb_sr { fragment { id: u32, color: vec4, depth: f32, uv: vec2 } }";
-    let wide = fragbuf_syntax::parse(text, "wide.fragbuf").draft.unwrap();
+    let source = "buffer Wide from kb_sr { fragment { id: u32, color: vec4, depth: f32, uv: vec2 } }";
+    let wide = fragbuf_syntax::parse(source, "wide.fragbuf").draft.unwrap();
     let wide = fragbuf_model::check(&wide, &fragbuf_templates::Registry::builtin()).unwrap();
     assert_eq!(wide.attributes.len(), 4);
-    let refused =
-        described_faults("buffer Wider from kb_sr { fragment { color: vec4, depth: f32, uv: vec2, a: u32, b: u32 } }");
-    assert!(refused.contains("there are eight targets"), "{refused}");
-    let made = renderer(&stage, &shaders(&wide, "wgsl"), &settings());
+    let errors =
+        errors_of("buffer Wider from kb_sr { fragment { color: vec4, depth: f32, uv: vec2, a: u32, b: u32 } }");
+    assert!(errors.contains("one per render target"), "{errors}");
+    let renderer = renderer(&stage, &shaders(&wide, "wgsl"), &settings());
     assert!(
-        made.is_ok_and(|renderer| renderer.texture("entries_uv_y").is_some_and(|texture| texture.sample_count() == 4))
+        renderer
+            .is_ok_and(|renderer| renderer.texture("entries_uv_y").is_some_and(|texture| texture.sample_count() == 4))
     );
 }
 
-/// What cannot be is refused with the way out.
+/// Unsupported descriptions are rejected with a suggested fix.
 #[test]
-fn what_fixed_function_cannot_keep_is_refused() {
+fn descriptions_that_fixed_function_cannot_keep_are_rejected() {
     let cases = [
         ("buffer B from z_buffer { keep 8; }", "write `keep 1;`"),
-        ("buffer B from z_buffer { keep 1 least |f| f.color.x; }", "depth decides which fragment is worst"),
+        ("buffer B from z_buffer { keep 1 least |f| f.color.x; }", "depth as the key, without a criterion"),
         ("buffer B from z_buffer { sync: spin_lock; }", "`sync: fixed_function`"),
         ("buffer B from kb_sr { keep 5; }", "write `keep 4;`"),
-        ("buffer B from kplus_array { sync: fixed_function; }", "leaves writers to depth test"),
+        (
+            "buffer B from kplus_array { sync: fixed_function; }",
+            "a storage that depth test, stencil test or blending synchronises",
+        ),
     ];
-    for (text, hint) in cases {
-        let faults = described_faults(text);
-        assert!(faults.contains(hint), "{text}: {faults}");
+    for (source, help) in cases {
+        let errors = errors_of(source);
+        assert!(errors.contains(help), "{source}: {errors}");
     }
     let variant = technique("kb_sr", &[]);
-    let refusal = variant.select(fragbuf_targets::target("msl").unwrap().offers).unwrap_err();
-    assert!(refusal.to_string().contains("sample mask") || refusal.to_string().contains("entry points"), "{refusal}");
+    let missing = variant.select(fragbuf_targets::target("msl").unwrap().provides).unwrap_err();
+    assert!(missing.to_string().contains("sample mask") || missing.to_string().contains("entry points"), "{missing}");
 }
 
-fn described_faults(text: &str) -> String {
-    let parsed = fragbuf_syntax::parse(text, "test.fragbuf");
+fn errors_of(source: &str) -> String {
+    let parsed = fragbuf_syntax::parse(source, "test.fragbuf");
     fragbuf_model::check(&parsed.draft.unwrap(), &fragbuf_templates::Registry::builtin()).unwrap_err().to_string()
 }
 
-fn check_first(seen: &Seen, quads: &[Quad], k: usize) {
+fn check_first(seen: &FrameResult, quads: &[Quad], k: usize) {
     let (mut late, mut pixels) = (0, seen.pixels.iter());
     for (kept, (x, y)) in seen.kept.iter().zip(oracle::pixels()) {
         let fragments = oracle::fragments(quads, x, y);
@@ -199,6 +207,6 @@ fn check_first(seen: &Seen, quads: &[Quad], k: usize) {
     }
     let count = |name: &str| seen.counters.get(name) as usize;
     assert_eq!(count("samples_exhausted"), late, "{quads:?}");
-    // Where two triangles meet, both have a fragment, each for its own samples.
+    // Where two triangles share a pixel, each has a fragment for its samples.
     assert!(count("generated") >= seen.kept.iter().map(Vec::len).sum::<usize>() + late);
 }

@@ -1,12 +1,12 @@
-//! Which of fragments with equal depths stay, where the description names the attribute that decides.
+//! Tie-breaking among fragments of equal depth by a named attribute.
 
-use fragbuf_templates::vocabulary::Fact;
+use fragbuf_templates::vocabulary::Capability;
 
 use crate::order::orders;
 use crate::quads::Quad;
-use crate::stage::{described, device, renderer, see, settings, shaders};
+use crate::stage::{described, device, render_frame, renderer, settings, shaders};
 
-/// `id` decides, though it is named last: the words of `color` would choose others.
+/// `id` decides although it is the last attribute: the words of `color` would select other fragments.
 const BY_ID: &str = "
     buffer Ties from STORAGE {
         fragment { color: rgba8, depth: f32, id: u32 }
@@ -15,17 +15,17 @@ const BY_ID: &str = "
     }";
 
 #[test]
-fn the_attribute_that_is_named_decides() {
+fn the_named_attribute_decides() {
     let quads: Vec<Quad> = (0..4u8).map(|i| Quad::whole(0.5, [200 - 50 * i, 0, 0, 255]).named(u32::from(i))).collect();
     for storage in ["kplus_array", "kplus_heap", "mdt32_coplanar", "kplus_array_revised", "kb_ab_ll"] {
         let stage = device();
         let variant = described(&BY_ID.replace("STORAGE", storage));
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings()).unwrap();
-        let keeps_all = renderer.plan().selection.offers().contains(&Fact::KeepsAll);
+        let keeps_all = renderer.plan().selection.provides().contains(&Capability::KeepsAll);
         for quads in orders(&quads) {
-            let seen = see(&stage, &mut renderer, &quads);
+            let seen = render_frame(&stage, &mut renderer, &quads);
             if keeps_all {
-                // It keeps all and chooses when it resolves: the two shown are opaque, so the first covers.
+                // The storage keeps all and selects on resolve: the selected two are opaque, so the first hides the other.
                 assert!((seen.pixels[0][0] - 200.0 / 255.0).abs() < 1.0 / 255.0, "{:?}", seen.pixels[0]);
                 continue;
             }

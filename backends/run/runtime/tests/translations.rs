@@ -1,23 +1,24 @@
-//! The same technique by every language that this device takes: the linked WGSL of both profiles, our SPIR-V and our GLSL
-//! (through glslang) passed through. Pictures and kept sets are equal to the bit.
+//! Runs techniques in every language that this device accepts: the linked WGSL of both profiles, and the generated SPIR-V and GLSL
+//! (compiled by glslang) passed through. Images and kept sets are equal bit by bit.
 
 use std::process::Command;
 
-use fragbuf_targets::{Request, generate, target};
 use fragbuf_codegen::{EntryPoint, Form, Linking, Stage, link, plan};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{Checks, Code, Module, Renderer, Settings, Shaders};
+use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::Capability;
+use fragbuf_templates::vocabulary::Feature;
 
 use crate::capture::{GLASS_KEEPS, glass, scattered, set_uniforms};
-use crate::stage::{device, renderer, see, settings, shaders, technique};
+use crate::stage::{device, render_frame, renderer, settings, shaders, technique};
 
-/// The files of the target `glsl-vulkan`, compiled.
+/// Returns the compiled files of the target `glsl-vulkan`.
 pub fn glsl_shaders(variant: &Variant) -> Shaders {
     let targets = [target("glsl-vulkan").unwrap()];
     let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(variant, &request, &Registry::builtin()).unwrap_or_else(|faults| panic!("{faults}"));
+    let generation =
+        generate(variant, &request, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     let modules = generation.files.iter().map(|file| {
         let (stage, name) = file.entry_points[0].clone();
         let (stage, suffix) = match stage {
@@ -32,35 +33,35 @@ pub fn glsl_shaders(variant: &Variant) -> Shaders {
     Shaders { modules: modules.collect(), plan, group: 0, profile: targets[0].profile }
 }
 
-/// A program that never was a file.
+/// Links a program without generating files.
 fn linked(variant: &Variant, name: &str) -> Shaders {
     let (target, registry) = (target(name).unwrap(), Registry::builtin());
-    let selection = variant.select(&[target.offers, &[Capability::OwnEntryPoints]].concat()).unwrap();
-    let plan = plan(variant, &selection, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let selection = variant.select(&[target.provides, &[Feature::OwnEntryPoints]].concat()).unwrap();
+    let plan = plan(variant, &selection, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
-    let program = link(&plan, &linking, &registry).unwrap_or_else(|faults| panic!("{faults}"));
+    let program = link(&plan, &linking, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     Shaders::from_program(&plan, &program)
 }
 
 /// Compiles one stage with `glslangValidator`, which must be installed.
-fn glslang(text: &[u8], stage: &str) -> Vec<u32> {
+fn glslang(code: &[u8], stage: &str) -> Vec<u32> {
     let folder = tempfile::tempdir().unwrap();
     let (source, binary) = (folder.path().join(format!("shader.{stage}")), folder.path().join("shader.spv"));
-    std::fs::write(&source, text).unwrap();
+    std::fs::write(&source, code).unwrap();
     let mut command = Command::new("glslangValidator");
     command.args(["-V", "--target-env", "vulkan1.1", "-o"]).arg(&binary).arg(&source);
     let output = command.output().expect("`glslangValidator` is needed: install the package glslang-tools");
-    assert!(output.status.success(), "{}\n{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(text));
+    assert!(output.status.success(), "{}\n{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(code));
     let bytes = std::fs::read(&binary).unwrap();
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect()
 }
 
-/// Every language shows and keeps what portable WGSL does.
+/// Checks that every language gives the results of portable WGSL.
 fn check(variant: &Variant, prepare: impl Fn(&mut Renderer)) {
     check_in(variant, "wgsl", prepare);
 }
 
-/// Every language shows and keeps what WGSL does, in the profile of the target `first`.
+/// Checks that every language gives the results of the WGSL of the target `first`.
 fn check_in(variant: &Variant, first: &str, prepare: impl Fn(&mut Renderer)) {
     let stage = device();
     let languages = [
@@ -77,7 +78,7 @@ fn check_in(variant: &Variant, first: &str, prepare: impl Fn(&mut Renderer)) {
         let mut renderer = renderer(&stage, &shaders, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         prepare(&mut renderer);
         for seed in 0..4 {
-            let seen = see(&stage, &mut renderer, &scattered(8, seed));
+            let seen = render_frame(&stage, &mut renderer, &scattered(8, seed));
             if index == 0 {
                 expected.push(seen);
                 continue;
@@ -89,7 +90,7 @@ fn check_in(variant: &Variant, first: &str, prepare: impl Fn(&mut Renderer)) {
         }
     }
     let colors = expected.iter().flat_map(|seen| &seen.pixels);
-    assert!(colors.clone().any(|color| Some(color) != colors.clone().next()), "the pictures are not empty");
+    assert!(colors.clone().any(|color| Some(color) != colors.clone().next()), "the images are not empty");
 }
 
 #[test]
@@ -129,7 +130,7 @@ fn targets_and_textures() {
 }
 
 #[test]
-fn what_is_displaced_and_not_dropped() {
+fn overflow_rows() {
     let set = |row| [("overflow", row), ("k", "2"), ("cull", "none"), ("counters", "all")];
     for row in ["tail_blend", "merge_last"] {
         check(&technique("kplus_array", &set(row)), |_| {});
@@ -138,6 +139,6 @@ fn what_is_displaced_and_not_dropped() {
 }
 
 #[test]
-fn functions_of_the_descriptions_own() {
+fn user_functions() {
     check(&glass("kplus_array", GLASS_KEEPS), set_uniforms);
 }

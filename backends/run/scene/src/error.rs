@@ -1,38 +1,38 @@
-//! What is wrong with a scene, and where.
+//! The errors of scenes, with their positions.
 
 use std::fmt;
 
-/// Why there is no scene.
+/// Why a scene cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
     /// A file cannot be read.
     Unreadable {
         /// The file.
         file: String,
-        /// The system's words.
+        /// The reason that the system reports.
         reason: String,
     },
-    /// A file was read, and is no model that this crate takes.
+    /// A file is not a valid or supported model.
     Malformed {
         /// The file.
         file: String,
-        /// Where in it.
-        place: Place,
-        /// What is wrong.
+        /// The position in the file.
+        position: FilePosition,
+        /// The message.
         message: String,
     },
-    /// `builtin:…` asks for what there is not.
+    /// `builtin:…` names an unknown scene or parameter, or an invalid value.
     Unknown(String),
 }
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// A line, from 1.
+pub enum FilePosition {
+    /// A line, counted from 1.
     Line(usize),
-    /// A byte of a binary file, from 0; of what was compressed, after decompression.
+    /// A byte of a binary file, counted from 0, after decompression.
     Byte(usize),
-    /// Nowhere in particular.
+    /// The whole file.
     Whole,
 }
 
@@ -40,11 +40,13 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Error::Unreadable { file, reason } => write!(f, "{file}: {reason}"),
-            Error::Malformed { file, place: Place::Line(line), message } => write!(f, "{file}:{line}: {message}"),
-            Error::Malformed { file, place: Place::Byte(byte), message } => {
+            Error::Malformed { file, position: FilePosition::Line(line), message } => {
+                write!(f, "{file}:{line}: {message}")
+            }
+            Error::Malformed { file, position: FilePosition::Byte(byte), message } => {
                 write!(f, "{file}: at byte {byte}: {message}")
             }
-            Error::Malformed { file, place: Place::Whole, message } => write!(f, "{file}: {message}"),
+            Error::Malformed { file, position: FilePosition::Whole, message } => write!(f, "{file}: {message}"),
             Error::Unknown(message) => f.write_str(message),
         }
     }
@@ -52,21 +54,21 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// A place and what is wrong there, before the file's name is known.
+/// An error in a file whose name is not known yet: its position and message.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Fault(pub(crate) Place, pub(crate) String);
+pub(crate) struct FileError(pub(crate) FilePosition, pub(crate) String);
 
-impl Fault {
+impl FileError {
     pub(crate) fn line(line: usize, message: impl Into<String>) -> Self {
-        Fault(Place::Line(line), message.into())
+        FileError(FilePosition::Line(line), message.into())
     }
 
     pub(crate) fn whole(message: impl Into<String>) -> Self {
-        Fault(Place::Whole, message.into())
+        FileError(FilePosition::Whole, message.into())
     }
 
-    /// The fault of this file.
-    pub(crate) fn of(self, file: &str) -> Error {
-        Error::Malformed { file: file.to_owned(), place: self.0, message: self.1 }
+    /// Adds the name of the file.
+    pub(crate) fn in_file(self, file: &str) -> Error {
+        Error::Malformed { file: file.to_owned(), position: self.0, message: self.1 }
     }
 }

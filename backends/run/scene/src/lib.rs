@@ -1,12 +1,13 @@
-//! Scenes: triangles with normals, colours and objects, from a model's file or generated.
+//! Scenes: triangles with normals, colours and objects, from a model file or generated.
 //!
-//! In: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Out: a [`Scene`], whole and checked:
-//! finite numbers, indices in range, a normal and a colour for every vertex. A model is never mended in silence: what is
-//! malformed is an [`Error`] with its place. Nothing here knows of fragment buffers or devices.
+//! Input: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
+//! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex. A malformed model is never corrected
+//! silently; it is an [`Error`] with its position. This crate is independent of fragment buffers and devices.
 
 mod builtin;
 mod camera;
 mod error;
+mod file;
 mod gltf;
 mod load;
 mod materials;
@@ -17,9 +18,9 @@ mod scene;
 mod shading;
 mod text;
 
-pub use builtin::{BUILTIN, Builtin, Parameter};
+pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
 pub use camera::{Camera, Eye};
-pub use error::{Error, Place};
+pub use error::{Error, FilePosition};
 pub use load::{load, open};
 pub use scene::{Object, Scene};
 pub use shading::light;

@@ -1,10 +1,10 @@
-//! Normals that a model does not give: the mean of the triangles around a vertex, weighted by area.
+//! Computes missing normals: the mean of the triangles around a vertex, weighted by area.
 
 use glam::Vec3;
 
 use crate::Object;
 
-/// Replaces normals of zero, and makes every normal a unit vector. A vertex of no triangle with an area looks along z.
+/// Replaces zero normals, and normalises all normals. A vertex without triangles of non-zero area gets the z axis.
 pub(crate) fn complete(object: &mut Object) {
     let mut sums = vec![Vec3::ZERO; object.positions.len()];
     if object.normals.iter().any(|normal| Vec3::from_array(*normal) == Vec3::ZERO) {
@@ -22,7 +22,7 @@ pub(crate) fn complete(object: &mut Object) {
     }
     for (normal, sum) in object.normals.iter_mut().zip(sums) {
         let given = Vec3::from_array(*normal);
-        let chosen = if given == Vec3::ZERO { sum } else { given };
-        *normal = chosen.normalize_or(Vec3::Z).to_array();
+        let normal_or_mean = if given == Vec3::ZERO { sum } else { given };
+        *normal = normal_or_mean.normalize_or(Vec3::Z).to_array();
     }
 }

@@ -1,16 +1,16 @@
-//! The data: indexed triangles per object.
+//! A scene: indexed triangles per object.
 
-/// What is drawn, object after object, triangle after triangle.
+/// The triangles of a scene, object after object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The index of an object is its id.
     pub objects: Vec<Object>,
 }
 
-/// Triangles that belong together. The three vertex lists are of one length.
+/// A named part of a scene. Its three vertex lists have equal lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Object {
-    /// Its name in the model; empty where it has none.
+    /// Its name in the model; empty if it has none.
     pub name: String,
     /// Positions, finite.
     pub positions: Vec<[f32; 3]>,
@@ -18,22 +18,22 @@ pub struct Object {
     pub normals: Vec<[f32; 3]>,
     /// Linear red, green and blue with straight alpha.
     pub colors: Vec<[f32; 4]>,
-    /// Three vertices each, in range.
+    /// Three vertex indices each, in range.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Scene {
-    /// Vertices of all objects.
+    /// Returns the number of vertices of all objects.
     pub fn vertices(&self) -> usize {
         self.objects.iter().map(|object| object.positions.len()).sum()
     }
 
-    /// Triangles of all objects.
+    /// Returns the number of triangles of all objects.
     pub fn triangles(&self) -> usize {
         self.objects.iter().map(|object| object.triangles.len()).sum()
     }
 
-    /// The least and the greatest coordinates of what triangles use; `None`: there are no triangles.
+    /// Returns the least and greatest coordinates of the triangles; `None` if there are none.
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
         let used = self.objects.iter().flat_map(Object::corners);
         used.map(|position| (position, position)).reduce(|(least, greatest), (position, _)| {
@@ -46,12 +46,12 @@ impl Scene {
 }
 
 impl Object {
-    /// The positions of the triangles' corners, as often as they are used.
+    /// Returns the positions of the corners of all triangles.
     pub(crate) fn corners(&self) -> impl Iterator<Item = [f32; 3]> {
         self.triangles.iter().flatten().filter_map(|index| self.positions.get(*index as usize).copied())
     }
 
-    /// Adds a vertex; its index. A normal of zero is computed later from the triangles around the vertex.
+    /// Adds a vertex and returns its index. A zero normal is computed later from the triangles around the vertex.
     pub(crate) fn vertex(&mut self, position: [f32; 3], normal: [f32; 3], color: [f32; 4]) -> u32 {
         self.positions.push(position);
         self.normals.push(normal);

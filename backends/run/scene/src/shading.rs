@@ -1,13 +1,13 @@
-//! Light, baked into the colours of vertices: Lambert with a lamp at the eye, and the same from both sides.
+//! Lighting, baked into vertex colours: two-sided Lambert shading with the light at the eye.
 
 use glam::Vec3;
 
 use crate::{Eye, Scene};
 
-/// What a surface that the light only grazes has left.
+/// The brightness of a surface at a grazing angle.
 const AMBIENT: f32 = 0.2;
 
-/// Darkens every vertex by the angle between its normal and the way to the eye. Alpha stays.
+/// Darkens every vertex by the angle between its normal and the direction to the eye. Alpha does not change.
 pub fn light(scene: &mut Scene, eye: Eye) {
     for object in &mut scene.objects {
         let vertices = object.positions.iter().zip(&object.normals);

@@ -1,9 +1,9 @@
 //! Lines and numbers of text formats.
 
-use crate::error::Fault;
+use crate::error::FileError;
 
-/// Lines with their numbers, from 1. A line that ends in a backslash goes on in the next and has the number of its first
-/// part. Comments from `#` on, and empty lines, are left out.
+/// Returns the lines with their numbers, from 1, without comments after `#` and empty lines. A line that ends in a backslash
+/// continues in the next; it has the number of its first part.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     let mut rest = text.lines().enumerate();
     std::iter::from_fn(move || {
@@ -18,20 +18,23 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     .filter(|(_, line)| !line.is_empty())
 }
 
-/// A finite number.
-pub(crate) fn number(word: &str, line: usize) -> Result<f32, Fault> {
+/// Parses a finite number.
+pub(crate) fn number(word: &str, line: usize) -> Result<f32, FileError> {
     match word.parse::<f32>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(Fault::line(line, format!("`{word}` is not finite"))),
-        Err(_) => Err(Fault::line(line, format!("`{word}` is no number"))),
+        Ok(_) => Err(FileError::line(line, format!("`{word}` is not finite"))),
+        Err(_) => Err(FileError::line(line, format!("`{word}` is not a number"))),
     }
 }
 
-/// All words as finite numbers; `counts` says how many there may be.
-pub(crate) fn numbers(words: &[&str], counts: &[usize], line: usize) -> Result<Vec<f32>, Fault> {
+/// Parses all words as finite numbers; `counts` are the allowed numbers of words.
+pub(crate) fn numbers(words: &[&str], counts: &[usize], line: usize) -> Result<Vec<f32>, FileError> {
     if !counts.contains(&words.len()) {
-        let wanted: Vec<String> = counts.iter().map(usize::to_string).collect();
-        return Err(Fault::line(line, format!("{} numbers stand where {} belong", words.len(), wanted.join(" or "))));
+        let expected: Vec<String> = counts.iter().map(usize::to_string).collect();
+        return Err(FileError::line(
+            line,
+            format!("expected {} numbers, found {}", expected.join(" or "), words.len()),
+        ));
     }
     words.iter().map(|word| number(word, line)).collect()
 }

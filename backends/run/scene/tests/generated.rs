@@ -2,15 +2,15 @@
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use fragbuf_scene::{BUILTIN, Camera, Error, Eye, Scene, light, open};
+use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Eye, Scene, light, open};
 
 fn scene(name: &str) -> Scene {
     open(&format!("builtin:{name}"), [1.0; 4]).unwrap()
 }
 
 #[test]
-fn every_scene_is_whole_and_the_same_every_time() {
-    for row in BUILTIN {
+fn every_scene_is_valid_and_deterministic() {
+    for row in BUILTIN_SCENES {
         let name = if row.name == "hairball" { "hairball,strands=20" } else { row.name };
         let made = scene(name);
         assert_eq!(made, scene(name));
@@ -32,38 +32,41 @@ fn the_hairball_has_over_two_million_triangles() {
     assert!(made.triangles() > 2_000_000, "{}", made.triangles());
 }
 
-/// Every needle goes through most of the scene's depth, and they are parallel but for some degrees.
+/// Every needle spans most of the depth of the scene, and their directions differ by a few degrees.
 #[test]
 fn needles_are_long_thin_and_nearly_parallel() {
     let made = scene("needles,n=50");
     assert_eq!((made.objects.len(), made.triangles()), (50, 150));
-    let way = |object: &fragbuf_scene::Object| {
+    let direction = |object: &fragbuf_scene::Object| {
         let [blunt, _, tip] = object.triangles[0].map(|corner| object.positions[corner as usize]);
         [0, 1, 2].map(|axis| tip[axis] - blunt[axis])
     };
     let dot = |a: [f32; 3], b: [f32; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f32>();
-    let first = way(&made.objects[0]);
+    let first = direction(&made.objects[0]);
     for object in &made.objects {
-        let way = way(object);
-        assert!((dot(way, way).sqrt() - 2.4).abs() < 0.05 && way[2].abs() > 1.5, "{way:?}");
-        assert!(dot(way, first).abs() / (dot(way, way) * dot(first, first)).sqrt() > 0.95, "{way:?}");
+        let direction = direction(object);
+        assert!((dot(direction, direction).sqrt() - 2.4).abs() < 0.05 && direction[2].abs() > 1.5, "{direction:?}");
+        assert!(
+            dot(direction, first).abs() / (dot(direction, direction) * dot(first, first)).sqrt() > 0.95,
+            "{direction:?}"
+        );
     }
 }
 
 #[test]
-fn what_there_is_not_is_listed() {
-    let refused = |name: &str| match open(name, [1.0; 4]) {
+fn unknown_names_list_the_known_ones() {
+    let error = |name: &str| match open(name, [1.0; 4]) {
         Err(Error::Unknown(message)) => message,
         other => format!("{other:?}"),
     };
     assert_eq!(
-        refused("builtin:bunny"),
-        "no scene `builtin:bunny`: there are cubes, slabs, marbles, hairball, needles"
+        error("builtin:bunny"),
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, marbles, hairball, needles"
     );
-    assert_eq!(refused("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: it takes n (16), seed (1)");
-    assert_eq!(refused("builtin:slabs,n=0"), "`n=0`: give `n` from 1 to 65536");
-    assert_eq!(refused("builtin:slabs,n"), "`n`: give `n` from 1 to 65536");
-    assert_eq!(refused("builtin:cubes,n=3"), "`builtin:cubes` has no `n`: it takes nothing");
+    assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
+    assert_eq!(error("builtin:slabs,n=0"), "`n=0`: `n` must be from 1 to 65536");
+    assert_eq!(error("builtin:slabs,n"), "`n`: `n` must be from 1 to 65536");
+    assert_eq!(error("builtin:cubes,n=3"), "`builtin:cubes` has no `n`: it has no parameters");
 }
 
 fn project(matrix: &[f32; 16], [x, y, z]: [f32; 3]) -> [f32; 3] {
@@ -72,7 +75,7 @@ fn project(matrix: &[f32; 16], [x, y, z]: [f32; 3]) -> [f32; 3] {
 }
 
 #[test]
-fn the_framing_camera_sees_everything_and_is_near() {
+fn the_framing_camera_shows_the_whole_scene_at_full_size() {
     for name in ["cubes", "slabs", "marbles", "hairball,strands=9", "needles,n=40"] {
         for aspect in [0.3, 1.0, 2.5] {
             let made = scene(name);
@@ -89,12 +92,12 @@ fn the_framing_camera_sees_everything_and_is_near() {
 }
 
 #[test]
-fn light_falls_from_the_eye_on_both_sides() {
+fn light_comes_from_the_eye_and_is_two_sided() {
     let mut made = scene("slabs,n=1");
-    let bare = made.objects[0].colors[0];
+    let unlit = made.objects[0].colors[0];
     light(&mut made, Eye::Along([0.0, 0.0, 1.0]));
-    assert_eq!(made.objects[0].colors[0], bare);
+    assert_eq!(made.objects[0].colors[0], unlit);
     light(&mut made, Eye::Along([1.0, 0.0, 0.0]));
-    assert!((made.objects[0].colors[0][0] - 0.2 * bare[0]).abs() < 1.0e-6);
-    assert_eq!(made.objects[0].colors[0][3], bare[3]);
+    assert!((made.objects[0].colors[0][0] - 0.2 * unlit[0]).abs() < 1.0e-6);
+    assert_eq!(made.objects[0].colors[0][3], unlit[3]);
 }

@@ -1,4 +1,4 @@
-//! Small models made here, one of each format, and one of each kind of mistake with the place that it must be given.
+//! Small models in every format, and one malformed model per error with its position.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -6,12 +6,12 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use base64::Engine as _;
-use fragbuf_scene::{Error, Place, Scene, load};
+use fragbuf_scene::{Error, FilePosition, Scene, load};
 use tempfile::TempDir;
 
 const COLOR: [f32; 4] = [0.5, 0.5, 0.5, 0.25];
 
-/// Writes the files, and loads the first.
+/// Writes the files and loads the first.
 fn loaded(files: &[(&str, &[u8])]) -> Result<Scene, Error> {
     let folder = TempDir::new().unwrap();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.path().join(name)).collect();
@@ -21,19 +21,21 @@ fn loaded(files: &[(&str, &[u8])]) -> Result<Scene, Error> {
     load(&paths[0], COLOR)
 }
 
-/// The file's name, the place and the message of what is malformed.
-fn malformed(files: &[(&str, &[u8])]) -> (String, Place, String) {
+/// Returns the file name, the position and the message of the error.
+fn malformed(files: &[(&str, &[u8])]) -> (String, FilePosition, String) {
     match loaded(files) {
-        Err(Error::Malformed { file, place, message }) => (file.rsplit('/').next().unwrap().to_owned(), place, message),
+        Err(Error::Malformed { file, position, message }) => {
+            (file.rsplit('/').next().unwrap().to_owned(), position, message)
+        }
         other => panic!("{:?}: {other:?}", String::from_utf8_lossy(files[0].1)),
     }
 }
 
-/// Every text is malformed at this line, and the message has this in it.
+/// Checks that every text is an error at this line, with this part in its message.
 fn malformed_lines(name: &str, cases: &[(&str, usize, &str)]) {
     for (text, line, part) in cases {
-        let (file, place, message) = malformed(&[(name, text.as_bytes())]);
-        assert_eq!((file.as_str(), place), (name, Place::Line(*line)), "{text}: {message}");
+        let (file, position, message) = malformed(&[(name, text.as_bytes())]);
+        assert_eq!((file.as_str(), position), (name, FilePosition::Line(*line)), "{text}: {message}");
         assert!(message.contains(part), "{text}: {message}");
     }
 }
@@ -63,12 +65,12 @@ fn obj_without_materials() {
 }
 
 #[test]
-fn obj_mistakes_have_their_lines() {
+fn obj_errors_have_lines() {
     malformed_lines(
         "m.obj",
         &[
-            ("v 0 0\n", 1, "2 numbers"),
-            ("\n# x\nv 0 0 x\n", 3, "`x` is no number"),
+            ("v 0 0\n", 1, "found 2"),
+            ("\n# x\nv 0 0 x\n", 3, "`x` is not a number"),
             ("v 0 0 nan\n", 1, "not finite"),
             ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "2 vertices"),
             ("v 0 0 0\nf 1 1 2\nv 0 0 0\n", 2, "no position 2"),
@@ -76,45 +78,45 @@ fn obj_mistakes_have_their_lines() {
             ("v 0 0 0\nf 1 1 -2\n", 2, "no position -2"),
             ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "no normal 1"),
             ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "no normal 3"),
-            ("v 0 0 0\nf 1 1 a\n", 2, "`a` is no index"),
-            ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is no index"),
-            ("usemtl red\n", 1, "no material `red`"),
+            ("v 0 0 0\nf 1 1 a\n", 2, "`a` is not an index"),
+            ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is not an index"),
+            ("usemtl red\n", 1, "unknown material `red`"),
             ("v 0 0 0\nnonsense\n", 2, "`nonsense`"),
-            ("\u{1}\u{2}\n", 1, "no statement"),
+            ("\u{1}\u{2}\n", 1, "unknown statement"),
         ],
     );
-    let (_, place, message) = malformed(&[("m.obj", b"v 0 0 0\n")]);
-    assert_eq!((place, message.as_str()), (Place::Whole, "there are no triangles in it"));
+    let (_, position, message) = malformed(&[("m.obj", b"v 0 0 0\n")]);
+    assert_eq!((position, message.as_str()), (FilePosition::Whole, "the model has no triangles"));
 }
 
 #[test]
-fn mtl_mistakes_have_their_own_file_and_line() {
+fn mtl_errors_have_their_file_and_line() {
     let cases: [(&str, usize, &str); 6] = [
         ("Kd 1 1 1\n", 1, "before the first `newmtl`"),
         ("newmtl\n", 1, "without a name"),
-        ("newmtl a\nKd 1 1\n", 2, "2 numbers"),
+        ("newmtl a\nKd 1 1\n", 2, "found 2"),
         ("newmtl a\nKd 1 1 2\n", 2, "2 is not from 0 to 1"),
         ("newmtl a\n\nd -0.5\n", 3, "-0.5 is not from 0 to 1"),
-        ("newmtl a\nd\n", 2, "0 numbers"),
+        ("newmtl a\nd\n", 2, "found 0"),
     ];
     for (text, line, part) in cases {
-        let (file, place, message) = malformed(&[("m.obj", b"mtllib l.mtl\n"), ("l.mtl", text.as_bytes())]);
-        assert_eq!((file.as_str(), place), ("l.mtl", Place::Line(line)), "{text}");
+        let (file, position, message) = malformed(&[("m.obj", b"mtllib l.mtl\n"), ("l.mtl", text.as_bytes())]);
+        assert_eq!((file.as_str(), position), ("l.mtl", FilePosition::Line(line)), "{text}");
         assert!(message.contains(part), "{text}: {message}");
     }
     assert!(matches!(loaded(&[("m.obj", b"mtllib none.mtl\n")]), Err(Error::Unreadable { .. })));
 }
 
 fn ply(format: &str, body: &[u8]) -> Vec<u8> {
-    let head = format!(
+    let header = format!(
         "ply\nformat {format} 1.0\ncomment made here\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
          property list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n"
     );
-    [head.as_bytes(), body].concat()
+    [header.as_bytes(), body].concat()
 }
 
-/// The bytes of a body; `order` turns the bytes of each number.
+/// Returns the bytes of a body; `order` reorders the bytes of each number.
 fn binary(index: i32, order: fn(&mut [u8])) -> Vec<u8> {
     let mut body = Vec::new();
     let mut push = |mut bytes: Vec<u8>| {
@@ -147,11 +149,11 @@ fn ply_in_three_encodings_and_compressed() {
         assert_eq!(loaded(&[(name, bytes)]).unwrap(), expected);
     }
     let (_, _, message) = malformed(&[("m.ply.gz", &gz[..gz.len() / 2])]);
-    assert!(message.contains("compression is broken"), "{message}");
+    assert!(message.contains("invalid gzip data"), "{message}");
 }
 
 #[test]
-fn ply_without_colours_has_the_callers() {
+fn ply_without_colours_uses_the_default_colour() {
     let text = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
         property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let scene = loaded(&[("m.ply", text)]).unwrap();
@@ -159,29 +161,29 @@ fn ply_without_colours_has_the_callers() {
 }
 
 #[test]
-fn ply_mistakes_have_their_lines() {
-    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+fn ply_errors_have_lines() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n";
-    let body = |body: &str| format!("{head}{body}");
+    let body = |body: &str| format!("{header}{body}");
     let cases = [
         ("plyx\n".to_owned(), 1, "begins with `ply`"),
-        ("ply\nformat asci 1.0\n".to_owned(), 2, "no format `asci`"),
-        ("ply\nformat ascii 1.0\nelement vertex many\n".to_owned(), 3, "`many` is no count"),
-        ("ply\nformat ascii 1.0\nproperty float x\n".to_owned(), 3, "a property of no element"),
-        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".to_owned(), 4, "no type `half`"),
+        ("ply\nformat asci 1.0\n".to_owned(), 2, "unknown format `asci`"),
+        ("ply\nformat ascii 1.0\nelement vertex many\n".to_owned(), 3, "`many` is not a count"),
+        ("ply\nformat ascii 1.0\nproperty float x\n".to_owned(), 3, "a property before the first element"),
+        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".to_owned(), 4, "unknown type `half`"),
         ("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n".to_owned(), 3, "no `x`"),
         ("ply\nend_header\n".to_owned(), 2, "no `format`"),
         ("ply\nformat ascii 1.0\nelement face 0\nend_header\n".to_owned(), 3, "no list `vertex_indices`"),
         (body("0 0 0\n1 0\n"), 11, "fewer numbers"),
-        (body("0 0 0\n1 0 0 4\n"), 11, "`4` is more"),
-        (body("0 0 0\n1 0 zero\n"), 11, "`zero` is no number"),
+        (body("0 0 0\n1 0 0 4\n"), 11, "`4` follows"),
+        (body("0 0 0\n1 0 zero\n"), 11, "`zero` is not a number"),
         (body("0 0 0\n1 0 inf\n"), 11, "`z` is not finite"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), 13, "no vertex 3"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), 13, "no vertex -1"),
-        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), 13, "no integer"),
-        (body("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), 13, "a face of 2"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), 13, "not an integer"),
+        (body("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), 13, "a face with 2"),
         (body("0 0 0\n1 0 0\n0 1 0\n"), 12, "ends before its last"),
-        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "after the last"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "follows the last"),
     ];
     let cases: Vec<(&str, usize, &str)> =
         cases.iter().map(|(text, line, part)| (text.as_str(), *line, *part)).collect();
@@ -189,17 +191,17 @@ fn ply_mistakes_have_their_lines() {
 }
 
 #[test]
-fn binary_mistakes_have_their_bytes() {
-    let head = ply("binary_little_endian", b"").len();
+fn binary_errors_have_bytes() {
+    let header = ply("binary_little_endian", b"").len();
     let whole = ply("binary_little_endian", &binary(2, |_| {}));
-    let (_, place, message) = malformed(&[("m.ply", &whole[..head + 20])]);
-    assert_eq!(place, Place::Byte(head + 19), "{message}");
-    let (_, place, message) = malformed(&[("m.ply", &ply("binary_little_endian", &binary(3, |_| {})))]);
-    assert_eq!(place, Place::Byte(head + 58), "{message}");
+    let (_, position, message) = malformed(&[("m.ply", &whole[..header + 20])]);
+    assert_eq!(position, FilePosition::Byte(header + 19), "{message}");
+    let (_, position, message) = malformed(&[("m.ply", &ply("binary_little_endian", &binary(3, |_| {})))]);
+    assert_eq!(position, FilePosition::Byte(header + 58), "{message}");
     assert!(message.contains("no vertex 3"), "{message}");
 }
 
-/// A triangle moved by its node, in red glass.
+/// Returns a model with one translucent red triangle, moved by its node.
 fn gltf(count: usize, buffer: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
@@ -234,7 +236,7 @@ fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn gltf_with_its_buffer_in_three_places() {
+fn gltf_buffers_in_all_three_storages() {
     let inside = gltf(3, &uri(&buffer(2)));
     let beside = gltf(3, r#", "uri": "b.bin""#);
     let scenes = [
@@ -252,16 +254,16 @@ fn gltf_with_its_buffer_in_three_places() {
 }
 
 #[test]
-fn gltf_mistakes_are_errors() {
-    let (_, place, message) = malformed(&[("m.gltf", b"{\n\"asset\": {\"version\": }\n}")]);
-    assert_eq!(place, Place::Line(2), "{message}");
+fn malformed_gltf_is_an_error() {
+    let (_, position, message) = malformed(&[("m.gltf", b"{\n\"asset\": {\"version\": }\n}")]);
+    assert_eq!(position, FilePosition::Line(2), "{message}");
     let cases = [
         (gltf(3, &uri(&buffer(3))), "no vertex 3"),
         (gltf(4, &uri(&buffer(2))), "accessor 0: it reaches beyond"),
         (gltf(0, &uri(&buffer(2))), "accessor 0"),
-        (gltf(3, &uri(&buffer(2)[..40])), "40 bytes, and 48 are said"),
-        (gltf(3, ""), "no binary part"),
-        (gltf(3, r#", "uri": "data:;base64,!!""#), "its data is broken"),
+        (gltf(3, &uri(&buffer(2)[..40])), "it has 40 bytes, but declares 48"),
+        (gltf(3, ""), "no binary chunk"),
+        (gltf(3, r#", "uri": "data:;base64,!!""#), "its data is invalid"),
         (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"mesh\": 7"), "nodes[0].mesh"),
         (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"children\": [0]"), "its own descendant"),
     ];
@@ -275,7 +277,7 @@ fn gltf_mistakes_are_errors() {
 }
 
 #[test]
-fn files_that_are_no_models() {
+fn unsupported_files_are_errors() {
     let (_, _, message) = malformed(&[("m.stl", b"solid")]);
     assert!(message.contains(".obj"), "{message}");
     assert!(matches!(load("nowhere.ply".as_ref(), COLOR), Err(Error::Unreadable { .. })));

@@ -1,13 +1,14 @@
-//! Fragments to insert: enough different ones, in the order in which the variant prefers them.
+//! Candidate fragments: enough different ones, in the order in which the variant prefers them.
 //!
-//! In: a subject. Out: candidates, best first, each with what the rasteriser gives for it and the words that it is stored
-//! as. The words are what the program itself makes of the fragment; the order over them is stated here anew.
+//! Input: a subject. Output: candidates, best first, each with the rasteriser's output and the words that are stored for it.
+//! The program under test computes the words. Their order is computed here, independently of the templates.
 
-use fragbuf_interpreter::{Exit, Input, Machine, Program};
+use fragbuf_interpreter::{Bytecode, Exit, InterfaceVariable, Machine};
 use naga::{Binding, BuiltIn, ScalarKind};
 
-use crate::frame::Memory;
-use crate::frame::run_alone;
+use crate::memory::Memory;
+use crate::programs::FragmentPrograms;
+use crate::sequential::{machine_with, run_alone, set_arguments};
 use crate::subject::Subject;
 
 /// One fragment.
@@ -15,38 +16,39 @@ use crate::subject::Subject;
 pub(crate) struct Fragment {
     /// One entry per input of the fragment stage, for the pixel (0, 0).
     pub(crate) inputs: Vec<Vec<u32>>,
-    /// As it is stored: the key first.
+    /// The words that are stored: the key first.
     pub(crate) words: Vec<u32>,
 }
 
-/// Candidates that are tried.
-const TRIED: u32 = 96;
+/// Fragments that are generated.
+const GENERATED: u32 = 96;
 
-/// Candidates that are taken.
+/// Candidates that are chosen from them.
 const RANKS: usize = 24;
 
-/// Admitted fragments of different keys, best first; and one of the same key as each, which differs beside it if it can.
+/// Admitted fragments of different keys, best first; and for each a twin, which has the same key and, if possible, another
+/// payload.
 pub(crate) struct Candidates {
     pub(crate) ranked: Vec<Fragment>,
     pub(crate) twins: Vec<Fragment>,
 }
 
 impl Candidates {
-    /// `Err`: the constraints admit too few, or the criterion hardly tells fragments apart.
+    /// Chooses the candidates. `Err`: the constraints admit too few fragments, or too many have equal keys.
     pub(crate) fn new(subject: &Subject, memory: &mut Memory) -> Result<Self, String> {
         let mut ranked: Vec<Fragment> = Vec::new();
-        for seed in 0..TRIED {
+        for seed in 0..GENERATED {
             ranked.extend(fragment(subject, memory, seed, seed)?);
         }
         ranked.sort_by(|a, b| a.words.cmp(&b.words));
         ranked.dedup_by_key(|fragment| fragment.words[0]);
         if ranked.len() < RANKS {
             return Err(format!(
-                "only {} of {TRIED} tried fragments are admitted and have different keys",
+                "only {} of {GENERATED} generated fragments are admitted and have different keys",
                 ranked.len()
             ));
         }
-        // Spread over the whole range, so that there is room between any two.
+        // Candidates are spread over the whole range, so that there are keys between any two.
         let step = ranked.len() / RANKS;
         let ranked: Vec<Fragment> = ranked.into_iter().step_by(step).take(RANKS).collect();
         let twins = ranked.iter().map(|fragment| twin(subject, memory, fragment)).collect::<Result<_, _>>()?;
@@ -54,8 +56,8 @@ impl Candidates {
     }
 }
 
-/// The same fragment with other attributes, if that leaves its key alone: some words less and some greater, if there are
-/// several, so that words that get mixed up are seen.
+/// Returns the same fragment with other attributes, if it keeps its key. If there are several words, some are less and some
+/// greater, so that mixed-up words are detected.
 fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<Fragment, String> {
     let (same, mut found) = (fragment.clone(), None);
     for seed in 200..232 {
@@ -88,16 +90,16 @@ fn fragment(subject: &Subject, memory: &mut Memory, seed: u32, depth: u32) -> Re
         .inputs
         .iter()
         .map(|input| match is_position(input) {
-            // Depths in an order of their own, with all their bits in use.
-            true => [0.5, 0.5, (depth * 37 % TRIED) as f32 * 0.007_731 + 0.065_1, 1.0].map(f32::to_bits).to_vec(),
+            // Depths are not in the order of seeds, and use all their bits.
+            true => [0.5, 0.5, (depth * 37 % GENERATED) as f32 * 0.007_731 + 0.065_1, 1.0].map(f32::to_bits).to_vec(),
             false => seeded(input, seed),
         })
         .collect();
     Ok(packed(subject, memory, &inputs)?.map(|words| Fragment { inputs, words }))
 }
 
-/// The same fragment at another pixel of the frame.
-pub(crate) fn at_pixel(fragment: &Fragment, program: &Program, x: u32) -> Fragment {
+/// Returns the same fragment at another pixel of the frame.
+pub(crate) fn at_pixel(fragment: &Fragment, program: &Bytecode, x: u32) -> Fragment {
     let mut moved = fragment.clone();
     for (input, words) in program.inputs.iter().zip(&mut moved.inputs) {
         if is_position(input) {
@@ -107,10 +109,10 @@ pub(crate) fn at_pixel(fragment: &Fragment, program: &Program, x: u32) -> Fragme
     moved
 }
 
-/// The greatest depth among fragments, and one that lies just behind it, whatever its key.
+/// Returns the greatest depth of the fragments, and a fragment just behind it, whatever its key.
 pub(crate) fn farthest<'f>(
     fragments: impl Iterator<Item = &'f Fragment>,
-    program: &Program,
+    program: &Bytecode,
 ) -> Option<(f32, Fragment)> {
     let position = program.inputs.iter().position(is_position)?;
     let depth = |fragment: &Fragment| f32::from_bits(fragment.inputs[position][2]);
@@ -120,8 +122,8 @@ pub(crate) fn farthest<'f>(
     Some((depth(last), behind))
 }
 
-/// The fragment stage that packs, and its inputs.
-fn geometry(subject: &Subject) -> Result<(&Program, &crate::subject::FragmentPrograms), String> {
+/// Returns the fragment stage that packs fragments, and its functions.
+fn geometry(subject: &Subject) -> Result<(&Bytecode, &FragmentPrograms), String> {
     let mut passes = subject.passes.iter();
     let found = passes.find_map(|pass| {
         let programs = pass.fragment.as_ref().filter(|programs| programs.pack.is_some())?;
@@ -130,50 +132,40 @@ fn geometry(subject: &Subject) -> Result<(&Program, &crate::subject::FragmentPro
     found.ok_or_else(|| "no pass of the plan stores fragments".to_owned())
 }
 
-/// The words of a fragment that is admitted.
+/// Returns the words of a fragment if it is admitted.
 fn packed(subject: &Subject, memory: &mut Memory, inputs: &[Vec<u32>]) -> Result<Option<Vec<u32>>, String> {
     let (_, programs) = geometry(subject)?;
-    let mut unpack = Machine::new(&programs.unpack);
-    inputs.iter().enumerate().for_each(|(number, words)| unpack.set_input(number, words));
-    ended(&mut unpack, memory)?;
+    let mut unpack = machine_with(&programs.unpack, inputs);
+    run_to_end(&mut unpack, memory)?;
     let fragment = unpack.result().to_vec();
     if let Some(admit) = &programs.admit {
         let mut admit = Machine::new(admit);
-        set_all(&mut admit, &fragment);
-        ended(&mut admit, memory)?;
+        set_arguments(&mut admit, &fragment);
+        run_to_end(&mut admit, memory)?;
         if admit.result() != [1] {
             return Ok(None);
         }
     }
     let Some(pack) = &programs.pack else { return Ok(None) };
     let mut pack = Machine::new(pack);
-    set_all(&mut pack, &fragment);
-    ended(&mut pack, memory)?;
+    set_arguments(&mut pack, &fragment);
+    run_to_end(&mut pack, memory)?;
     Ok(Some(pack.result().to_vec()))
 }
 
-/// Spreads dense words over the inputs of a function of one argument.
-pub(crate) fn set_all(machine: &mut Machine<'_>, words: &[u32]) {
-    let mut at = 0;
-    for (number, input) in machine.program().inputs.iter().enumerate() {
-        machine.set_input(number, &words[at.min(words.len())..]);
-        at += input.words.len();
-    }
-}
-
-fn ended(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<(), String> {
+fn run_to_end(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<(), String> {
     match run_alone(machine, memory)? {
         Exit::Ended => Ok(()),
         other => Err(format!("a function of the description does not end: {other:?}")),
     }
 }
 
-fn is_position(input: &Input) -> bool {
+fn is_position(input: &InterfaceVariable) -> bool {
     matches!(input.binding, Some(Binding::BuiltIn(BuiltIn::Position { .. })))
 }
 
-/// Attribute values: whole numbers, or floats from 0 to 1 in 255ths.
-fn seeded(input: &Input, seed: u32) -> Vec<u32> {
+/// Returns attribute values: whole numbers, or floats from 0 to 1 in 255ths.
+fn seeded(input: &InterfaceVariable, seed: u32) -> Vec<u32> {
     (0..input.words.len() as u32)
         .map(|component| {
             let mixed = (seed * 4 + component + 1).wrapping_mul(0x9e37_79b1) >> 8;

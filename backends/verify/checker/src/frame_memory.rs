@@ -1,25 +1,25 @@
-//! Memory after a frame, as the functions that read a pixel out find it, and what can be wrong with it.
+//! Memory after a frame, as the functions that read a pixel out use it, and the errors of reading.
 //!
-//! In: a plan, the fields of the frame's uniform buffer, and the words of the plan's resources by name. Out: the words by binding.
-//! Nothing here says what a word means.
+//! Input: a plan, the fields of the frame's uniform buffer, and the words of the plan's resources by name. Output: the words
+//! by binding. Nothing here interprets a word.
 
 use std::fmt;
 
 use fragbuf_codegen::{FIRST_BINDING, Plan, SymbolId};
 
-use crate::frame::Memory;
+use crate::memory::Memory;
 
-/// Memory after a frame: what the storage's functions read.
+/// Memory after a frame, which the storage's functions read.
 #[derive(Clone, Debug)]
 pub struct FrameMemory {
     pub(crate) size: [u32; 2],
     pub(crate) memory: Memory,
 }
 
-/// Why a pixel cannot be read out: the storage, or the words, are wrong.
+/// Why a pixel cannot be read out: the storage or the words are wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutError {
-    /// The walk over the pixel comes back to a fragment that it has passed, or one call of it does not end.
+    /// The storage's list of a pixel returns to an earlier fragment or is too long, or one call of it does not end.
     Endless,
     /// A buffer has no such word, or a texture no such texel.
     OutOfBounds,
@@ -28,7 +28,7 @@ pub enum ReadOutError {
 impl fmt::Display for ReadOutError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            ReadOutError::Endless => "reading the pixel out never ends",
+            ReadOutError::Endless => "reading the pixel out does not end",
             ReadOutError::OutOfBounds => "an index is out of bounds",
         })
     }
@@ -37,10 +37,12 @@ impl fmt::Display for ReadOutError {
 impl std::error::Error for ReadOutError {}
 
 impl FrameMemory {
-    /// The memory of a frame of `size` columns and rows. `symbol` gives the fields of the frame's uniform buffer (a field
-    /// without a value is 0, as `first_row` and `iteration` are); `words` gives the words of a resource, none for what the
-    /// frame has not allocated. The words of a texture follow each other texel by texel, row by row from the top, sample by
-    /// sample; of depth with stencil the lowest eight bits are the stencil. Buffers are those of one slice.
+    /// Returns the memory of a frame of `size` columns and rows.
+    ///
+    /// `symbol` gives the fields of the frame's uniform buffer. A field without a value is 0, as `first_row` and `iteration`
+    /// are. `words` gives the words of a resource, and `None` for one that the frame has not allocated. The words of a
+    /// texture are in the order of its texels: row by row from the top, sample by sample. The lowest eight bits of a texel
+    /// of depth and stencil are the stencil. Buffers are those of one slice.
     pub fn new(
         plan: &Plan,
         size: [u32; 2],

@@ -1,20 +1,20 @@
-//! What merging leaves of fragments, where a row states that it makes one of two.
+//! Checks entries that an overflow row has merged from several fragments.
 //!
-//! In: what a pixel holds, the fragments that it is made of, what would be held without merging. Out: whether that is a
-//! merging of them. Colours are not worked out, because they depend on the order of arrival: what must be right is every
-//! other word, which entries have a colour of their own, and how much light all of them together let through.
+//! Input: what a pixel holds, the fragments that it was made from, and what it would hold without merging. Output: whether
+//! the entries are a merge of those fragments. Merged colours depend on the order of arrival, so they are not computed.
+//! Checked are all other words, which entries may have a merged colour, and the transmittance of all entries together.
 
 use fragbuf_model::Format;
-use fragbuf_templates::vocabulary::{Blended, Merges, PromisedKeys};
+use fragbuf_templates::vocabulary::{BlendedEntries, Merges, PromisedKeys};
 
 use crate::subject::Subject;
 
-/// Which entries are made of several fragments, and where their colours lie.
+/// Which entries may be merged, and which of their words are colours.
 #[derive(Clone, Debug)]
 pub(crate) struct Merging {
     keys: PromisedKeys,
-    blended: Blended,
-    /// Words of an entry that hold what is blended.
+    blended: BlendedEntries,
+    /// Words of an entry that hold the blended attribute.
     color: Vec<usize>,
     format: Format,
 }
@@ -22,55 +22,55 @@ pub(crate) struct Merging {
 type Entry = Vec<u32>;
 
 impl Merging {
-    /// How a subject merges; `None`: it does not.
+    /// Returns how a subject merges fragments. `None`: it does not.
     pub(crate) fn new(subject: &Subject) -> Option<Self> {
         let Merges { attribute, keys, blended } = subject.plan.selection.merges()?;
-        let beside = (1..).zip(&subject.plan.layout.beside);
-        let words: Vec<_> = beside.filter(|(_, word)| word.member.name == *attribute).collect();
+        let values = (1..).zip(&subject.plan.layout.values);
+        let words: Vec<_> = values.filter(|(_, word)| word.member.name == *attribute).collect();
         let format = words.first()?.1.member.format;
         Some(Merging { keys: *keys, blended: *blended, color: words.iter().map(|(at, _)| *at).collect(), format })
     }
 
-    /// Whether `kept` is a merging of `left`, of which `wanted` would stay without.
-    pub(crate) fn agrees(&self, kept: &[Entry], left: &[Entry], wanted: &[Entry]) -> bool {
-        let has_promised_keys = match self.keys {
-            PromisedKeys::All => keys(kept) == keys(wanted),
-            PromisedKeys::Best => nearest(kept) == nearest(left),
+    /// Returns whether `kept` is a merge of `fragments`, of which `expected` would be kept without merging.
+    pub(crate) fn allows(&self, kept: &[Entry], fragments: &[Entry], expected: &[Entry]) -> bool {
+        let has_expected_keys = match self.keys {
+            PromisedKeys::All => keys(kept) == keys(expected),
+            PromisedKeys::Best => nearest(kept) == nearest(fragments),
         };
-        has_promised_keys
-            && is_contained(&self.masked(kept), &self.masked(left))
-            && self.is_blended_where_it_may(kept, left, wanted)
-            && kept.len() == wanted.len()
-            && self.lets_through_as_much(kept, left)
+        has_expected_keys
+            && is_contained(&self.masked(kept), &self.masked(fragments))
+            && self.merges_allowed_entries(kept, fragments, expected)
+            && kept.len() == expected.len()
+            && self.has_same_transmittance(kept, fragments)
     }
 
-    /// Whether all entries but those that may be blended are whole fragments.
-    fn is_blended_where_it_may(&self, kept: &[Entry], left: &[Entry], wanted: &[Entry]) -> bool {
-        if self.blended == Blended::Any {
+    /// Returns whether all entries but those that may be merged are whole fragments.
+    fn merges_allowed_entries(&self, kept: &[Entry], fragments: &[Entry], expected: &[Entry]) -> bool {
+        if self.blended == BlendedEntries::Any {
             return true;
         }
-        if left.len() == wanted.len() {
-            return is_contained(kept, left);
+        if fragments.len() == expected.len() {
+            return is_contained(kept, fragments);
         }
-        let worst = wanted.iter().map(|entry| entry[0]).max();
-        let is_blended = |at: usize| {
+        let worst = expected.iter().map(|entry| entry[0]).max();
+        let is_merged = |at: usize| {
             let others = [&kept[..at], &kept[at + 1..]].concat();
-            Some(kept[at][0]) == worst && is_contained(&others, left)
+            Some(kept[at][0]) == worst && is_contained(&others, fragments)
         };
-        (0..kept.len()).any(is_blended)
+        (0..kept.len()).any(is_merged)
     }
 
-    /// Whether the product of the transmittances is what it was, within the rounding of every merging.
-    fn lets_through_as_much(&self, kept: &[Entry], left: &[Entry]) -> bool {
-        let through = |entries: &[Entry]| entries.iter().map(|entry| 1.0 - self.alpha(entry)).product::<f64>();
+    /// Returns whether the product of the transmittances is unchanged, within the rounding of every merge.
+    fn has_same_transmittance(&self, kept: &[Entry], fragments: &[Entry]) -> bool {
+        let transmittance = |entries: &[Entry]| entries.iter().map(|entry| 1.0 - self.alpha(entry)).product::<f64>();
         let step = match self.format {
             Format::Rgba8 => 1.0 / 255.0,
             Format::Rgba16 => 1.0 / 65535.0,
             _ => 1.0e-6,
         };
-        let mergings = left.len().saturating_sub(kept.len()) as f64;
-        // The products are not taken in the same order.
-        (through(kept) - through(left)).abs() <= mergings * 0.51 * step + 1.0e-9
+        let merges = fragments.len().saturating_sub(kept.len()) as f64;
+        // The factors of the two products are in different orders.
+        (transmittance(kept) - transmittance(fragments)).abs() <= merges * 0.51 * step + 1.0e-9
     }
 
     fn alpha(&self, entry: &[u32]) -> f64 {
@@ -82,7 +82,7 @@ impl Merging {
         }
     }
 
-    /// The entries without their colours.
+    /// Returns the entries with their colours set to zero.
     fn masked(&self, entries: &[Entry]) -> Vec<Entry> {
         let masked = |entry: &Entry| -> Entry {
             let words = entry.iter().enumerate();
@@ -102,7 +102,7 @@ fn nearest(entries: &[Entry]) -> Option<u32> {
     entries.iter().map(|entry| entry[0]).min()
 }
 
-/// Whether every entry of `some` stands in `all`, as often at least.
+/// Returns whether `all` contains every entry of `some` at least as often.
 fn is_contained(some: &[Entry], all: &[Entry]) -> bool {
     let times = |entries: &[Entry], entry: &Entry| entries.iter().filter(|other| *other == entry).count();
     some.iter().all(|entry| times(some, entry) <= times(all, entry))

@@ -1,41 +1,42 @@
-//! What a machine meets between two states of a search: memory that answers one event and stops at the next.
+//! The memory that a machine uses between two states of a search: it answers one event and stops at the next.
 //!
-//! In: the words of a state and the answer to the event that the machine stands before. Out: the machine at its next event.
-//! Nothing here decides which event happens.
+//! Input: the words of a state and the reply to the event at which the machine has stopped. Output: the machine at its next
+//! event. The search chooses which event is performed.
 
-use fragbuf_interpreter::{Access, Event, Place, Reply, Shared};
+use fragbuf_interpreter::{Access, Event, Reply, SharedMemory, WordAddress};
 
-use crate::frame::WIDTH;
-use crate::state::{Ground, Home, joined};
-use crate::subject::Subject;
-use crate::texels::texel;
+use crate::context::{BufferLocation, SearchContext};
+use crate::memory::{WIDTH, memory_index, texel};
 
-/// Answers one event, then stops. What commutes happens at once: no order of it can be told from another.
+/// Memory that answers one event, then stops. Accesses that commute are performed at once, because no program can observe
+/// their order.
 pub(crate) struct Pausing<'a, 'p> {
-    pub(crate) ground: &'a Ground<'p>,
+    pub(crate) context: &'a SearchContext<'p>,
     pub(crate) reply: Option<u64>,
     pub(crate) words: &'a mut [u32],
-    pub(crate) is_idle: bool,
+    /// Whether accesses that commute have no effect, as those of a helper invocation.
+    pub(crate) is_helper: bool,
 }
 
-impl Shared for Pausing<'_, '_> {
+impl SharedMemory for Pausing<'_, '_> {
     fn length(&self, buffer: u16) -> u32 {
-        match self.ground.homes[usize::from(buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].len() as u32,
-            Home::Moving { words, .. } => words as u32,
+        match self.context.locations[usize::from(buffer)] {
+            BufferLocation::ReadOnly(index) => self.context.read_only[index].len() as u32,
+            BufferLocation::State { words, .. } => words as u32,
         }
     }
 
-    fn constant(&self, place: Place) -> u32 {
-        match self.ground.homes[usize::from(place.buffer)] {
-            Home::Fixed(number) => self.ground.fixed[number].get(place.word as usize).copied().unwrap_or(0),
-            Home::Moving { first, .. } => self.words.get(first + place.word as usize).copied().unwrap_or(0),
-        }
+    fn constant(&self, address: WordAddress) -> u32 {
+        let word = match self.context.locations[usize::from(address.buffer)] {
+            BufferLocation::ReadOnly(index) => self.context.read_only[index].get(address.word as usize),
+            BufferLocation::State { first, .. } => self.words.get(first + address.word as usize),
+        };
+        word.copied().unwrap_or(0)
     }
 
-    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
-        let texture = self.ground.program.textures.get(usize::from(texture))?;
-        texel(self.ground.fixed.get(Subject::memory_of(texture.binding))?, place)
+    fn texel(&self, texture: u16, position: [u32; 3]) -> Option<[u32; 4]> {
+        let texture = self.context.program.textures.get(usize::from(texture))?;
+        texel(self.context.read_only.get(memory_index(texture.binding))?, position)
     }
 
     fn extent(&self, _texture: u16) -> [u32; 3] {
@@ -45,24 +46,24 @@ impl Shared for Pausing<'_, '_> {
     fn event(&mut self, event: &Event) -> Reply {
         match event {
             Event::Access(access) => {
-                if let Home::Moving { first, commutes: true, .. } = self.ground.homes[usize::from(access.place.buffer)]
-                {
-                    if self.is_idle {
+                let location = self.context.locations[usize::from(access.address.buffer)];
+                if let BufferLocation::State { first, commutes: true, .. } = location {
+                    if self.is_helper {
                         return Reply::Done(0);
                     }
-                    return Reply::Done(apply(access, &mut self.words[first + access.place.word as usize..]));
+                    return Reply::Done(perform(access, &mut self.words[first + access.address.word as usize..]));
                 }
             }
-            Event::Fence if !self.ground.has_fences => return Reply::Done(0),
+            Event::Fence if !self.context.has_fences => return Reply::Done(0),
             _ => {}
         }
         self.reply.take().map_or(Reply::Stop, Reply::Done)
     }
 }
 
-/// Lets an access happen at once; the old value.
-pub(crate) fn apply(access: &Access, words: &mut [u32]) -> u64 {
-    let old = joined(words, access.words);
+/// Performs an access at once; returns the old value.
+pub(crate) fn perform(access: &Access, words: &mut [u32]) -> u64 {
+    let old = value(words, access.words);
     if access.writes() {
         let new = access.new_value(old);
         words[0] = new as u32;
@@ -71,4 +72,10 @@ pub(crate) fn apply(access: &Access, words: &mut [u32]) -> u64 {
         }
     }
     old
+}
+
+/// Returns the value of the first word, or of the first two.
+pub(crate) fn value(words: &[u32], count: u8) -> u64 {
+    let low = u64::from(words[0]);
+    if count == 2 { low | u64::from(words[1]) << 32 } else { low }
 }

@@ -1,4 +1,4 @@
-// What the checker asks of a storage at every instant. The function is called by name; the entry point only keeps it.
+// Reads the bound of a storage at an instant. The checker calls the function by name; the entry point only keeps it linked.
 
 @compute @workgroup_size(1)
 fn read_bound() {

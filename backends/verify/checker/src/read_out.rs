@@ -1,43 +1,43 @@
-//! What a pixel holds, read through the storage's own functions: `storage_first`, `storage_next`, `storage_read`.
+//! Reads what a pixel holds through the storage's own functions: `storage_first`, `storage_next`, `storage_read`.
 //!
-//! In: a plan, and the words of its resources after a frame, whatever device drew it. Out: the fragments of a pixel, each as
-//! its words in memory, the key first, in the order in which the storage gives them. The functions are linked into a compute
-//! pass and run by the interpreter, so no layout of any storage is stated here, and a user's storage is read like ours.
+//! Input: a plan, and the words of its resources after a frame of any device. Output: the fragments of a pixel, each as its
+//! words in memory, the key first, in the order in which the storage gives them. The functions are linked into a compute
+//! pass that the interpreter runs. So no storage layout is repeated here, and a user's storage is read in the same way.
 
 use std::collections::BTreeSet;
 
-use fragbuf_targets::{Checked, check};
 use fragbuf_codegen::{FIRST_BINDING, Form, Linking, Plan, Profile, link};
-use fragbuf_interpreter::{Exit, Machine, Program, Texture, Unsupported};
-use fragbuf_model::{Diagnostics, Origin};
+use fragbuf_interpreter::{Bytecode, Exit, Machine, Texture, Unsupported};
+use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, codes};
+use fragbuf_targets::{Checked, check};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Element, Fact, TextureFormat};
+use fragbuf_templates::vocabulary::{Capability, Element, TextureFormat};
 
-use crate::frame::{Memory, with_buffers};
 use crate::frame_memory::{FrameMemory, ReadOutError};
-use crate::question::{question, row};
-use crate::sampled::{Reader, Sampled, is_read};
-use crate::subject::{Subject, options, refused};
+use crate::memory::{Memory, memory_index, with_buffers};
+use crate::probe::{probe_pass, probe_row};
+use crate::programs::{diagnostics, options};
+use crate::sampled::{Reader, SampledTexture, is_readable};
 
-/// The passes, each a file.
+/// The probe passes; each is a file.
 const READ_OUT: &str = "read_out";
 const READ_BOUND: &str = "read_bound";
 
-/// The functions that read a pixel out, ready to run. They belong to one plan, and to frames drawn with it.
+/// The functions that read a pixel out, compiled. They belong to one plan, and to frames drawn with it.
 ///
 /// ```
 /// use fragbuf_checker::{FrameMemory, ReadOut};
 /// use fragbuf_codegen::{Profile, plan};
-/// use fragbuf_model::{Draft, Origin, Selection, check};
+/// use fragbuf_model::{Draft, SourceSpan, Selection, check};
 /// use fragbuf_templates::Registry;
 ///
 /// let registry = Registry::builtin();
-/// let draft = Draft::from_technique("kb", &Origin::new("mine", 1, 1));
+/// let draft = Draft::from_technique("kb", &SourceSpan::new("mine", 1, 1));
 /// let variant = check(&draft, &registry).expect("a legal description");
 /// let plan = plan(&variant, &Selection::first(&variant), &registry).expect("a plan");
 /// let read_out = ReadOut::new(&plan, Profile::Native, &registry).expect("programs");
 ///
-/// // A frame of one pixel and k = 2 of which nothing is drawn: this storage's empty slots are all ones.
+/// // An empty frame of one pixel and k = 2: every bit of this storage's empty slots is set.
 /// let symbol = |name: &str| [("width", 1), ("height", 1), ("k", 2)].into_iter().find(|one| one.0 == name).map(|one| one.1);
 /// let mut frame = FrameMemory::new(&plan, [1, 1], symbol, |_| Some(vec![u32::MAX; 4]));
 /// assert_eq!(read_out.pixel(&mut frame, [0, 0]), Ok(Vec::new()));
@@ -45,69 +45,70 @@ const READ_BOUND: &str = "read_bound";
 #[derive(Debug)]
 pub struct ReadOut {
     /// From a position in the frame to the pixel's index.
-    index: Program,
-    /// The cursor after so many fragments of a pixel. A walk is one invocation, because a storage may count along the way.
-    walk: Program,
+    index: Bytecode,
+    /// From a pixel and a number to the cursor after so many fragments. The walk is one invocation, because a storage may
+    /// count fragments along the way.
+    walk: Bytecode,
     /// From a cursor to a fragment.
-    read: Program,
-    /// The key that no fragment of the k best exceeds, where the storage promises one.
-    pub(crate) bound: Option<Program>,
+    read: Bytecode,
+    /// The key that no fragment of the k best exceeds, where the storage provides one.
+    pub(crate) bound: Option<Bytecode>,
     /// The formats of textures, by the plan's resources.
     formats: Vec<Option<TextureFormat>>,
 }
 
-/// Fragments of a pixel that are read at most: a walk that goes on behind them is said to have no end.
+/// The most fragments that are read from a pixel. A longer walk is reported as endless.
 const LONGEST: usize = 1 << 14;
 
 impl ReadOut {
-    /// Links and compiles the functions. The texts are those of the profile; of what a pixel holds they say the same.
+    /// Links and compiles the functions. The source is that of the profile, and all profiles read the same fragments.
     pub fn new(plan: &Plan, profile: Profile, registry: &Registry) -> Result<Self, Diagnostics> {
-        let origin = &plan.variant.name.origin;
-        let has_bound = plan.selection.offers().contains(&Fact::BoundAnyInstant);
+        let span = &plan.variant.name.span;
+        let has_bound = plan.selection.provides().contains(&Capability::ConservativeBound);
         let registry = registry
             .clone()
-            .with(row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
-            .with(row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"));
-        let asked = [(READ_OUT, true), (READ_BOUND, has_bound)].into_iter().filter(|(_, is_asked)| *is_asked);
-        let passes = asked.map(|(anchor, _)| question(plan, anchor)).collect();
+            .with(probe_row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
+            .with(probe_row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"));
+        let names = std::iter::once(READ_OUT).chain(has_bound.then_some(READ_BOUND));
+        let passes = names.map(|name| probe_pass(plan, name)).collect();
         let linking = Linking { profile, form: Form::Program, prefix: String::new(), group: 0 };
-        let texts = link(&Plan { passes, ..plan.clone() }, &linking, &registry)?.passes.into_iter();
-        let checked = texts.map(|text| check(text, profile, origin)).collect::<Result<Vec<_>, _>>()?;
+        let sources = link(&Plan { passes, ..plan.clone() }, &linking, &registry)?.passes.into_iter();
+        let checked = sources.map(|source| check(source, profile, span)).collect::<Result<Vec<_>, _>>()?;
         let formats: Vec<_> = plan.resources.iter().map(|planned| format(planned.resource.element)).collect();
-        let ask = |anchor: &str, name: &str| {
-            let of_pass = checked.iter().filter(|checked| checked.pass().anchor == anchor);
-            of_pass.map(|checked| function(checked, name, &formats, origin)).next().transpose()
+        let compiled = |pass: &str, name: &str| {
+            let of_pass = checked.iter().filter(|checked| checked.pass().name == pass);
+            of_pass.map(|checked| function(checked, name, &formats, span)).next().transpose()
         };
-        let needed = |name: &str| ask(READ_OUT, name)?.ok_or_else(Diagnostics::new);
+        let required = |name: &str| compiled(READ_OUT, name)?.ok_or_else(|| missing(READ_OUT, name, span));
         Ok(ReadOut {
-            index: needed("pixel_index")?,
-            walk: needed("walk_to")?,
-            read: needed("storage_read")?,
-            bound: ask(READ_BOUND, "storage_bound")?,
+            index: required("pixel_index")?,
+            walk: required("walk_to")?,
+            read: required("storage_read")?,
+            bound: compiled(READ_BOUND, "storage_bound")?,
             formats,
         })
     }
 
-    /// The fragments of the pixel at a column and a row of the frame. Losses that the storage counts while it is read are
-    /// counted in `frame`, once.
+    /// Returns the fragments of the pixel at a column and a row of the frame. A loss that the storage counts while it is
+    /// read is counted in `frame`, once.
     pub fn pixel(&self, frame: &mut FrameMemory, at: [u32; 2]) -> Result<Vec<Vec<u32>>, ReadOutError> {
         let pixel = self.index(frame, at)?;
         self.entries(&mut frame.memory, frame.size, pixel)
     }
 
-    /// `storage_bound` of the pixel: no further fragment of a greater key is kept. `None`: the storage states no bound.
+    /// Returns `storage_bound` of the pixel: no further fragment with a greater key is kept. `None`: the storage has no bound.
     pub fn bound(&self, frame: &mut FrameMemory, at: [u32; 2]) -> Result<Option<u32>, ReadOutError> {
         let Some(bound) = &self.bound else { return Ok(None) };
         let pixel = self.index(frame, at)?;
-        Ok(self.ask(bound, &[&[pixel]], &mut frame.memory, frame.size)?.first().copied())
+        Ok(self.call(bound, &[&[pixel]], &mut frame.memory, frame.size)?.first().copied())
     }
 
     fn index(&self, frame: &mut FrameMemory, at: [u32; 2]) -> Result<u32, ReadOutError> {
-        let middle = at.map(|at| (at as f32 + 0.5).to_bits());
-        Ok(self.ask(&self.index, &[&middle], &mut frame.memory, frame.size)?[0])
+        let centre = at.map(|at| (at as f32 + 0.5).to_bits());
+        Ok(self.call(&self.index, &[&centre], &mut frame.memory, frame.size)?[0])
     }
 
-    /// The fragments of the pixel of this index.
+    /// Returns the fragments of the pixel of this index.
     pub(crate) fn entries(
         &self,
         memory: &mut Memory,
@@ -115,56 +116,58 @@ impl ReadOut {
         pixel: u32,
     ) -> Result<Vec<Vec<u32>>, ReadOutError> {
         let mut entries = Vec::new();
-        let mut passed = BTreeSet::new();
-        // No two entries share a word, so there are no more of them than words.
+        let mut visited = BTreeSet::new();
+        // No two entries share a word, so a pixel has no more entries than memory has words.
         let most = memory.iter().map(Vec::len).sum::<usize>().min(LONGEST);
         loop {
-            // Of what walks count only that of the last is kept, which goes through to the end.
+            // Each walk starts again and may count losses. Only the counts of the last walk, which reaches the end, are kept.
             let before = self.written(memory);
-            let cursor = self.ask(&self.walk, &[&[pixel], &[entries.len() as u32]], memory, size)?[0];
+            let cursor = self.call(&self.walk, &[&[pixel], &[entries.len() as u32]], memory, size)?[0];
             if cursor == u32::MAX {
                 return Ok(entries);
             }
-            if !passed.insert(cursor) || entries.len() == most {
+            if !visited.insert(cursor) || entries.len() == most {
                 return Err(ReadOutError::Endless);
             }
-            before.into_iter().for_each(|(home, words)| memory[home] = words);
-            entries.push(self.ask(&self.read, &[&[pixel], &[cursor]], memory, size)?);
+            before.into_iter().for_each(|(index, words)| memory[index] = words);
+            entries.push(self.call(&self.read, &[&[pixel], &[cursor]], memory, size)?);
         }
     }
 
-    /// What a walk may change, as it is.
+    /// Copies the buffers that a walk may write.
     fn written(&self, memory: &Memory) -> Vec<(usize, Vec<u32>)> {
         let written = self.walk.buffers.iter().filter(|buffer| buffer.is_written);
-        let homes = written.map(|buffer| Subject::memory_of(buffer.binding));
-        homes.filter_map(|home| Some((home, memory.get(home)?.clone()))).collect()
+        let indices = written.map(|buffer| memory_index(buffer.binding));
+        indices.filter_map(|index| Some((index, memory.get(index)?.clone()))).collect()
     }
 
-    fn ask(
+    /// Calls one of the functions; returns its result.
+    fn call(
         &self,
-        program: &Program,
+        program: &Bytecode,
         arguments: &[&[u32]],
         memory: &mut Memory,
         size: [u32; 2],
     ) -> Result<Vec<u32>, ReadOutError> {
         let mut machine = Machine::new(program);
         arguments.iter().enumerate().for_each(|(number, words)| machine.set_input(number, words));
-        let homes: Vec<usize> = program.textures.iter().map(|one| Subject::memory_of(one.binding)).collect();
-        let lent = |home: &usize| memory.get_mut(*home).map(std::mem::take).unwrap_or_default();
-        let words: Vec<Vec<u32>> = homes.iter().map(lent).collect();
-        let bound = homes.iter().zip(&words).map(|(home, words)| Sampled::new(words, self.format(*home), size));
-        let textures: Vec<Sampled<'_>> = bound.collect();
+        let indices: Vec<usize> = program.textures.iter().map(|texture| memory_index(texture.binding)).collect();
+        let taken = |index: &usize| memory.get_mut(*index).map(std::mem::take).unwrap_or_default();
+        let words: Vec<Vec<u32>> = indices.iter().map(taken).collect();
+        let textures = indices.iter().zip(&words);
+        let textures = textures.map(|(index, words)| SampledTexture::new(words, self.format(*index), size));
+        let textures: Vec<SampledTexture<'_>> = textures.collect();
         let exit = with_buffers(program, memory, |buffers| machine.run(&mut Reader::new(buffers, &textures)));
-        homes.into_iter().zip(words).for_each(|(home, words)| memory[home] = words);
-        match (machine.fault.take(), exit) {
+        indices.into_iter().zip(words).for_each(|(index, words)| memory[index] = words);
+        match (machine.out_of_bounds.take(), exit) {
             (Some(_), _) => Err(ReadOutError::OutOfBounds),
             (None, Exit::Ended) => Ok(machine.result().to_vec()),
             (None, _) => Err(ReadOutError::Endless),
         }
     }
 
-    fn format(&self, home: usize) -> Option<TextureFormat> {
-        home.checked_sub(FIRST_BINDING as usize).and_then(|index| *self.formats.get(index)?)
+    fn format(&self, index: usize) -> Option<TextureFormat> {
+        index.checked_sub(FIRST_BINDING as usize).and_then(|index| *self.formats.get(index)?)
     }
 }
 
@@ -175,23 +178,29 @@ fn format(element: Element) -> Option<TextureFormat> {
     }
 }
 
-/// A function of a pass, if it reads no textures but those that can be read here.
+fn missing(pass: &str, function: &str, span: &SourceSpan) -> Diagnostics {
+    let message = format!("the linked program has no pass `{pass}` to read `{function}` from");
+    Diagnostic::new(codes::INTERNAL, span, message, "report it with the description").into()
+}
+
+/// Compiles a function of a pass if all textures that it reads have readable formats.
 fn function(
     checked: &Checked,
     name: &str,
     formats: &[Option<TextureFormat>],
-    origin: &Origin,
-) -> Result<Program, Diagnostics> {
-    let program = Program::function(checked.module(), checked.info(), name, &options(checked));
-    program.and_then(|program| readable(program, formats)).map_err(|faults| refused(checked, &faults, origin))
+    span: &SourceSpan,
+) -> Result<Bytecode, Diagnostics> {
+    let program = Bytecode::function(checked.module(), checked.info(), name, &options(checked));
+    let readable = program.and_then(|program| with_readable_textures(program, formats));
+    readable.map_err(|unsupported| diagnostics(checked, &unsupported, span))
 }
 
-fn readable(program: Program, formats: &[Option<TextureFormat>]) -> Result<Program, Vec<Unsupported>> {
+fn with_readable_textures(program: Bytecode, formats: &[Option<TextureFormat>]) -> Result<Bytecode, Vec<Unsupported>> {
     let format = |texture: &Texture| {
         let (_, binding) = texture.binding?;
         *formats.get(binding.checked_sub(FIRST_BINDING)? as usize)?
     };
-    match program.textures.iter().all(|texture| format(texture).is_some_and(is_read)) {
+    match program.textures.iter().all(|texture| format(texture).is_some_and(is_readable)) {
         true => Ok(program),
         false => program.without_textures(),
     }

@@ -1,4 +1,4 @@
-// What a pixel holds, one fragment at a time: a walk is one invocation, because storages may count along the way.
+// Reads what a pixel holds, one fragment at a time. A walk is one invocation, because storages may count along the way.
 
 @compute @workgroup_size(1)
 fn read_out() {
@@ -7,7 +7,7 @@ fn read_out() {
     let entry = storage_read(pixel, cursor);
 }
 
-/// The cursor after `number` fragments of the pixel, or END.
+/// Returns the cursor after `number` fragments of the pixel, or END.
 fn walk_to(pixel: u32, number: u32) -> u32 {
     var cursor = storage_first(pixel);
     for (var passed = 0u; passed < number && cursor != END; passed++) {

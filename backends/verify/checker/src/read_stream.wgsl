@@ -1,5 +1,5 @@
-// What the checker asks of a storage that hands fragments on: the colour of what has left, and what two fragments that
-// follow each other add to one. The functions are called by name; the entry point only keeps them.
+// Reads the colour that a stream has emitted, and composites two consecutive fragments onto it. The checker calls the
+// functions by name; the entry point only keeps them linked.
 
 @compute @workgroup_size(1)
 fn read_stream() {

@@ -1,88 +1,93 @@
-//! What a check says: verdicts, and a failure's schedule as a person can follow it.
+//! The schedule of a failure, in a form that a person can follow.
 //!
-//! In: steps of a search. Out: one line per step, with the fragment, what it did to which word, and the line of the
-//! template that did it. Plain data; how it is drawn is the command line's affair.
+//! Input: steps of a search. Output: one line per step, with the fragment, what it did to which word, and the template line
+//! that did it. This is plain data; the command line prints it.
 
-use fragbuf_codegen::{FIRST_BINDING, LineOrigin};
-use fragbuf_interpreter::{Atomic, Event, Machine, Operation, Program};
+use fragbuf_codegen::{FIRST_BINDING, LineSource};
+use fragbuf_frame::COUNTERS_RESOURCE;
+use fragbuf_interpreter::{Atomic, Bytecode, Event, Machine, Operation};
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Element;
 
-use crate::explore::{Failure, What};
-use crate::state::{Ground, Mishap, Status};
-use crate::subject::{Source, Subject};
-use crate::trial::Trial;
+use crate::case_run::CaseRun;
+use crate::case_setup::CaseSetup;
+use crate::context::SearchContext;
+use crate::memory::memory_index;
+use crate::programs::CheckedSource;
+use crate::search::{Failure, FailureKind};
+use crate::state::{State, Status, StepError};
 
 /// A failure, step by step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schedule {
-    /// The case: what is there before, and how the new fragments lie to it.
+    /// The case: the initial fragments, and how the new ones compare with them.
     pub case: String,
-    /// The fragments that come at once, as (name, words).
+    /// The concurrent fragments, as (name, words).
     pub fragments: Vec<(String, String)>,
-    /// What is there before, in the order of arrival.
-    pub prior: Vec<String>,
+    /// The fragments that the pixel initially holds, in order of arrival.
+    pub initial_fragments: Vec<String>,
     /// The steps.
-    pub steps: Vec<Line>,
-    /// What is wrong after the last.
-    pub fault: String,
+    pub steps: Vec<ScheduleStep>,
+    /// What is wrong after the last step.
+    pub violation: String,
 }
 
 /// One step.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Line {
+pub struct ScheduleStep {
     /// The fragment's name: A, B, …
     pub fragment: String,
     /// What it does.
     pub action: String,
-    /// The template, the description or the text, and the line.
-    pub place: String,
+    /// The file and line: of a template, of the description or of the shader.
+    pub location: String,
 }
 
-/// Names of memory and of values, for one trial.
+/// Names of memory and of values, for one case.
 pub(crate) struct Names<'a> {
     pub(crate) resource: &'a dyn Fn(usize, u32) -> String,
     pub(crate) value: &'a dyn Fn(u64) -> String,
 }
 
-/// The steps of a failure, run again and written down.
-pub(crate) fn lines(
-    ground: &Ground<'_>,
-    first: &crate::state::State,
+/// Runs the steps of a failure again and describes them.
+pub(crate) fn steps(
+    context: &SearchContext<'_>,
+    first: &State,
     failure: &Failure,
-    source: &Source,
+    source: &CheckedSource,
     names: &Names<'_>,
-) -> Vec<Line> {
-    let mut machine = Machine::new(ground.program);
+) -> Vec<ScheduleStep> {
+    let mut machine = Machine::new(context.program);
     let mut state = first.clone();
-    let mut lines = Vec::new();
+    let mut steps = Vec::new();
     for (fragment, choice) in &failure.steps {
         let Status::Before { event, at, .. } = state.fragments[*fragment].clone() else { break };
-        let stepped = ground.step(&mut machine, &state, *fragment, *choice);
-        let (seen, next) = match stepped {
-            Ok((next, seen)) => (seen, Some(next)),
+        let (observed, next) = match context.step(&mut machine, &state, *fragment, *choice) {
+            Ok((next, observed)) => (observed, Some(next)),
             Err(_) => (0, None),
         };
-        let is_helper = ground.helper == Some(*fragment);
-        let mut action = said(&event, seen, *choice, ground.program, names);
+        let is_helper = context.helper == Some(*fragment);
+        let mut action = action(&event, observed, *choice, context.program, names);
         if is_helper && !matches!(event, Event::Access(access) if !access.writes()) {
             action.push_str(", without effect: a helper invocation");
         }
-        lines.push(Line { fragment: letter(*fragment), action, place: place(ground.program, at, source) });
+        let location = location(context.program, at, source);
+        steps.push(ScheduleStep { fragment: letter(*fragment), action, location });
         match next {
             Some(next) => state = next,
             None => break,
         }
     }
-    lines
+    steps
 }
 
-/// A, B, C, …
+/// Returns the name of a fragment: A, B, C, …
 pub(crate) fn letter(fragment: usize) -> String {
     char::from_u32('A' as u32 + fragment as u32).map_or_else(|| fragment.to_string(), String::from)
 }
 
-fn said(event: &Event, seen: u64, choice: u32, program: &Program, names: &Names<'_>) -> String {
+/// Describes an event and the value that it observed.
+fn action(event: &Event, observed: u64, choice: u32, program: &Bytecode, names: &Names<'_>) -> String {
     let access = match event {
         Event::Access(access) => access,
         Event::Fence => return "fence".to_owned(),
@@ -90,41 +95,41 @@ fn said(event: &Event, seen: u64, choice: u32, program: &Program, names: &Names<
         Event::CriticalEnd => return "leaves the critical section".to_owned(),
         Event::Barrier => return "barrier".to_owned(),
     };
-    let memory = Subject::memory_of(program.buffers[usize::from(access.place.buffer)].binding);
-    let place = (names.resource)(memory, access.place.word);
+    let memory = memory_index(program.buffers[usize::from(access.address.buffer)].binding);
+    let word = (names.resource)(memory, access.address.word);
     let value = |value: u64| (names.value)(value);
     match access.operation {
-        Operation::Load if choice > 0 => format!("reads {place}: still {}", value(seen)),
-        Operation::Load => format!("reads {place}: {}", value(seen)),
+        Operation::Load if choice > 0 => format!("reads {word}: still {}", value(observed)),
+        Operation::Load => format!("reads {word}: {}", value(observed)),
         Operation::Store if choice > 0 => {
-            format!("writes {} to {place}, overtaken by a later write", value(access.value))
+            format!("writes {} to {word}, overtaken by a later write", value(access.value))
         }
-        Operation::Store => format!("writes {} to {place}", value(access.value)),
+        Operation::Store => format!("writes {} to {word}", value(access.value)),
         Operation::Atomic(function) => {
-            let what = match function {
-                Atomic::Exchange => format!("exchanges {place} for {}", value(access.value)),
+            let action = match function {
+                Atomic::Exchange => format!("exchanges {word} for {}", value(access.value)),
                 Atomic::CompareExchange => {
-                    format!("exchanges {place} for {} if it is {}", value(access.value), value(access.expected))
+                    format!("exchanges {word} for {} if it is {}", value(access.value), value(access.expected))
                 }
-                other => format!("atomic {} of {} on {place}", word(other), value(access.value)),
+                other => format!("atomic {} of {} on {word}", function_name(other), value(access.value)),
             };
-            format!("{what}: it was {}", value(seen))
+            format!("{action}: it was {}", value(observed))
         }
     }
 }
 
-fn word(function: Atomic) -> String {
+fn function_name(function: Atomic) -> String {
     format!("{function:?}").to_lowercase()
 }
 
-/// The line of a template or of the user's that an instruction comes from; generated accessors are passed over.
-pub(crate) fn place(program: &Program, at: u32, source: &Source) -> String {
+/// Returns the line of a template or of the user's source that an instruction comes from. Generated accessors are skipped.
+fn location(program: &Bytecode, at: u32, source: &CheckedSource) -> String {
     let lines = program.trace(at).into_iter().map(|span| span.location(&source.text).line_number as usize);
     let lines: Vec<usize> = lines.collect();
     for line in &lines {
-        match source.lines.origin(*line) {
-            LineOrigin::Source { name, line } if !name.starts_with("generated/") => return format!("{name}:{line}"),
-            LineOrigin::User(origin) => return origin.to_string(),
+        match source.lines.source(*line) {
+            LineSource::Source { name, line } if !name.starts_with("generated/") => return format!("{name}:{line}"),
+            LineSource::Description(span) => return span.to_string(),
             _ => {}
         }
     }
@@ -132,87 +137,88 @@ pub(crate) fn place(program: &Program, at: u32, source: &Source) -> String {
     lines.first().map_or_else(String::new, |line| format!("{file}:{line}"))
 }
 
-/// What went wrong, in words.
-pub(crate) fn fault(what: &What, ground: &Ground<'_>, source: &Source) -> String {
-    match what {
-        What::Outcome(text) => text.clone(),
-        What::Instant(text) => format!("at this instant {text}"),
-        What::Race(one, other) => format!(
-            "a data race: {} and {} are about to touch the same word, one of them writes, and not both by atomic operations",
+/// Describes what went wrong.
+pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source: &CheckedSource) -> String {
+    let letters = |fragments: &[usize]| fragments.iter().map(|one| letter(*one)).collect::<Vec<_>>().join(", ");
+    match kind {
+        FailureKind::FinalState(text) => text.clone(),
+        FailureKind::Instant(text) => format!("at this instant, {text}"),
+        FailureKind::DataRace(one, other) => format!(
+            "data race: {} and {} access the same word, at least one writes, and at least one access is not atomic",
             letter(*one),
             letter(*other)
         ),
-        What::Waiting(fragments) => {
-            let names: Vec<String> = fragments.iter().map(|fragment| letter(*fragment)).collect();
-            format!("{} waits for ever: nobody is left to change what it waits for", names.join(", "))
+        FailureKind::Deadlock(fragments) => {
+            format!("deadlock: {} waits for a value that no running fragment can change", letters(fragments))
         }
-        What::Circling(fragments) => {
-            let names: Vec<String> = fragments.iter().map(|fragment| letter(*fragment)).collect();
-            format!("from here no order of steps lets all of {} end: they go round for ever", names.join(", "))
+        FailureKind::Livelock(fragments) => {
+            format!("livelock: no schedule from this state lets {} all finish", letters(fragments))
         }
-        What::Mishap(fragment, mishap) => {
-            let what = match mishap {
-                Mishap::OutOfBounds(at) => format!("goes out of bounds at {}", place(ground.program, *at, source)),
-                Mishap::Endless => "goes round for ever without touching memory".to_owned(),
-                Mishap::Barrier => "waits at a barrier".to_owned(),
+        FailureKind::Step(fragment, error) => {
+            let action = match error {
+                StepError::OutOfBounds(at) => {
+                    format!("accesses an index out of bounds at {}", location(context.program, *at, source))
+                }
+                StepError::Endless => "loops without end and without accessing memory".to_owned(),
+                StepError::Barrier => "reaches a barrier".to_owned(),
             };
-            format!("{} {what}", letter(*fragment))
+            format!("{} {action}", letter(*fragment))
         }
     }
 }
 
-/// The schedule of a failure in one round of a trial: the rounds before it, and its own steps.
-pub(crate) fn schedule(trial: &Trial<'_>, round: usize, failure: &Failure) -> Schedule {
-    let subject = trial.subject;
-    let source = &subject.passes[trial.case.pass].source;
-    let resource = |memory: usize, word: u32| resource(subject, &trial.case, memory, word);
-    let value = |value: u64| value_name(trial, value);
+/// Returns the schedule of a failure in one iteration of a case: the iterations before it, and its own steps.
+pub(crate) fn schedule(run: &CaseRun<'_>, iteration: usize, failure: &Failure) -> Schedule {
+    let setup = &run.setup;
+    let source = &setup.runnable().source;
+    let resource = |memory: usize, word: u32| resource_name(setup, memory, word);
+    let value = |value: u64| value_name(setup, value);
     let names = Names { resource: &resource, value: &value };
-    let mut steps = Vec::new();
-    let mut chain = vec![(round, failure.clone())];
-    while let Some((before, taken)) = chain.last().and_then(|(round, _)| trial.rounds[*round].before.clone()) {
-        chain.push((before, Failure { steps: taken, what: failure.what.clone() }));
+    let mut chain = vec![(iteration, failure.clone())];
+    while let Some((before, taken)) = chain.last().and_then(|(at, _)| run.iterations[*at].before.clone()) {
+        chain.push((before, Failure { steps: taken, kind: failure.kind.clone() }));
     }
-    for (round, failure) in chain.iter().rev() {
-        let round = &trial.rounds[*round];
-        if let Ok(first) = &round.first {
-            steps.extend(lines(&round.ground, first, failure, source, &names));
+    let mut all = Vec::new();
+    for (at, failure) in chain.iter().rev() {
+        let iteration = &run.iterations[*at];
+        if let Ok(first) = &iteration.first {
+            all.extend(steps(&iteration.context, first, failure, source, &names));
         }
     }
     let words = |words: &[u32]| words.iter().map(|word| format!("{word:08x}")).collect::<Vec<_>>().join(" ");
-    let rounds = if chain.len() > 1 { format!(", drawn {} times", chain.len()) } else { String::new() };
+    let drawn = if chain.len() > 1 { format!(", drawn {} times", chain.len()) } else { String::new() };
     Schedule {
-        case: format!("{}{rounds}", trial.case.what),
-        fragments: trial.case.new.iter().enumerate().map(|(at, new)| (letter(at), words(&new.words))).collect(),
-        prior: trial.case.prior.iter().map(|prior| words(&prior.words)).collect(),
-        steps,
-        fault: fault(&failure.what, &trial.rounds[round].ground, source),
+        case: format!("{}{drawn}", setup.case.description),
+        fragments: setup.case.new.iter().enumerate().map(|(at, new)| (letter(at), words(&new.words))).collect(),
+        initial_fragments: setup.case.prior.iter().map(|prior| words(&prior.words)).collect(),
+        steps: all,
+        violation: violation(&failure.kind, &run.iterations[iteration].context, source),
     }
 }
 
-/// `keys[slot 0, pixel 1]`
-fn resource(subject: &Subject, case: &crate::case::Case, memory: usize, word: u32) -> String {
+/// Returns the name of a word, such as `keys[slot 0, pixel 1]`.
+fn resource_name(setup: &CaseSetup<'_>, memory: usize, word: u32) -> String {
+    let plan = &setup.subject.plan;
     let index = memory.checked_sub(FIRST_BINDING as usize);
-    let Some(planned) = index.and_then(|index| subject.plan.resources.get(index)) else {
+    let Some(planned) = index.and_then(|index| plan.resources.get(index)) else {
         return format!("binding {memory}, word {word}");
     };
-    if planned.resource.name == "counters" {
+    if planned.resource.name == COUNTERS_RESOURCE {
         return COUNTERS
             .get(word as usize)
             .map_or_else(|| format!("counter {word}"), |(name, _, _)| format!("the counter {name}"));
     }
-    let layout = &subject.plan.layout;
-    let mut fields: Vec<&str> = layout.beside.iter().map(|word| word.field.as_str()).collect();
+    let mut fields: Vec<&str> = plan.layout.values.iter().map(|word| word.field.as_str()).collect();
     match planned.resource.element {
         Element::Entry => fields.insert(0, "key"),
-        Element::Beside => {}
+        Element::Value => {}
         _ => fields.clear(),
     }
     let width = fields.len().max(1) as u32;
     let mut element = word / width;
     let mut parts = Vec::new();
     for (extent, length) in planned.resource.extents.iter().zip(&planned.lengths).rev() {
-        let length = case.room.values.word(length, &extent.name).unwrap_or(u32::MAX).max(1);
+        let length = setup.case.pool.values.word(length, &extent.name).unwrap_or(u32::MAX).max(1);
         parts.push(format!("{} {}", extent.name, element % length));
         element /= length;
     }
@@ -222,13 +228,13 @@ fn resource(subject: &Subject, case: &crate::case::Case, memory: usize, word: u3
     format!("{}{index}{field}", planned.resource.name)
 }
 
-/// A value, and whose it is.
-fn value_name(trial: &Trial<'_>, value: u64) -> String {
-    let layout = &trial.subject.plan.layout;
+/// Prints a value, with the fragment that it belongs to.
+fn value_name(setup: &CaseSetup<'_>, value: u64) -> String {
+    let layout = &setup.subject.plan.layout;
     let fields: Vec<&str> =
-        std::iter::once("key").chain(layout.beside.iter().map(|word| word.field.as_str())).collect();
-    let prior = (1..).zip(&trial.case.prior).map(|(number, fragment)| (format!("{number}"), fragment));
-    let new = trial.case.new.iter().enumerate().map(|(at, fragment)| (letter(at), fragment));
+        std::iter::once("key").chain(layout.values.iter().map(|word| word.field.as_str())).collect();
+    let prior = (1..).zip(&setup.case.prior).map(|(number, fragment)| (format!("{number}"), fragment));
+    let new = setup.case.new.iter().enumerate().map(|(at, fragment)| (letter(at), fragment));
     for (name, fragment) in new.chain(prior) {
         if let Some(at) = fragment.words.iter().position(|word| u64::from(*word) == value) {
             return format!("{value:08x} ({name}'s {})", fields.get(at).copied().unwrap_or("word"));

@@ -1,25 +1,26 @@
-//! Textures as functions that read a pixel out see them: texel by texel and sample by sample.
+//! Textures as the functions that read a pixel out load them: texel by texel and sample by sample.
 //!
-//! In: the words of a texture, its format and its size. Out: four numbers of a texel. Nothing is filtered or written.
+//! Input: the words of a texture, its format and its size. Output: the four components of a texel. Nothing is filtered or
+//! written.
 
-use fragbuf_interpreter::{Event, Place, Reply, Sequential, Shared};
+use fragbuf_interpreter::{Event, Reply, Sequential, SharedMemory, WordAddress};
 use fragbuf_templates::vocabulary::TextureFormat;
 
-/// A texture's words.
-pub(crate) struct Sampled<'a> {
+/// The words of a texture, with its format and size.
+pub(crate) struct SampledTexture<'a> {
     words: &'a [u32],
     format: Option<TextureFormat>,
     size: [u32; 2],
 }
 
-/// Whether texels of this format are whole words, halves of one, or floats: what a storage keeps fragments in.
-pub(crate) fn is_read(format: TextureFormat) -> bool {
+/// Returns whether texels of this format are whole words, halves of one, or floats: the formats that storages keep fragments in.
+pub(crate) fn is_readable(format: TextureFormat) -> bool {
     !matches!(format, TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float)
 }
 
-impl<'a> Sampled<'a> {
+impl<'a> SampledTexture<'a> {
     pub(crate) fn new(words: &'a [u32], format: Option<TextureFormat>, size: [u32; 2]) -> Self {
-        Sampled { words, format, size }
+        SampledTexture { words, format, size }
     }
 
     fn texel(&self, [x, y, sample]: [u32; 3]) -> Option<[u32; 4]> {
@@ -41,7 +42,7 @@ impl<'a> Sampled<'a> {
         })
     }
 
-    /// Columns, rows, samples.
+    /// Returns columns, rows and samples.
     fn extent(&self) -> [u32; 3] {
         let [width, height] = self.size;
         let words = width as usize * height as usize * self.format.map_or(1, TextureFormat::words) as usize;
@@ -49,34 +50,34 @@ impl<'a> Sampled<'a> {
     }
 }
 
-/// The memory of one invocation that runs by itself.
+/// The memory of one invocation that runs while no other does.
 pub(crate) struct Reader<'a> {
     buffers: Sequential<'a>,
-    textures: &'a [Sampled<'a>],
+    textures: &'a [SampledTexture<'a>],
 }
 
 impl<'a> Reader<'a> {
-    /// Buffers and textures by the program's numbers.
-    pub(crate) fn new(buffers: &'a mut [Vec<u32>], textures: &'a [Sampled<'a>]) -> Self {
+    /// Takes buffers and textures in the order of the program's numbers.
+    pub(crate) fn new(buffers: &'a mut [Vec<u32>], textures: &'a [SampledTexture<'a>]) -> Self {
         Reader { buffers: Sequential { buffers }, textures }
     }
 }
 
-impl Shared for Reader<'_> {
+impl SharedMemory for Reader<'_> {
     fn length(&self, buffer: u16) -> u32 {
         self.buffers.length(buffer)
     }
 
-    fn constant(&self, place: Place) -> u32 {
-        self.buffers.constant(place)
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.buffers.constant(address)
     }
 
-    fn texel(&self, texture: u16, place: [u32; 3]) -> Option<[u32; 4]> {
-        self.textures.get(usize::from(texture))?.texel(place)
+    fn texel(&self, texture: u16, position: [u32; 3]) -> Option<[u32; 4]> {
+        self.textures.get(usize::from(texture))?.texel(position)
     }
 
     fn extent(&self, texture: u16) -> [u32; 3] {
-        self.textures.get(usize::from(texture)).map_or([0; 3], Sampled::extent)
+        self.textures.get(usize::from(texture)).map_or([0; 3], SampledTexture::extent)
     }
 
     fn event(&mut self, event: &Event) -> Reply {

@@ -1,46 +1,48 @@
-//! A whole check: every case of a variant on a target, and the tier that follows from what held.
+//! Checks a variant on a target, with every case.
 //!
-//! In: a variant, a target, how far to go. Out: a [`Report`]; the first failure that no row states ends it.
+//! Input: a variant, a target, the limits of the check. Output: a [`Report`]. The first failure that the declared hazards do
+//! not permit ends the check.
 
-use fragbuf_targets::Target;
 use fragbuf_model::{Diagnostics, Selection, Variant};
+use fragbuf_targets::Target;
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Fact, Kind};
+use fragbuf_templates::vocabulary::{Capability, Kind};
 
 use crate::case::{Case, cases};
+use crate::case_run::{CaseResult, CaseRun};
+use crate::case_setup::{CaseSetup, SearchOptions};
 use crate::fragments::Candidates;
 use crate::frame::Frame;
+use crate::kept_set::KeptSet;
 use crate::model::Model;
-use crate::promise::Promise;
+use crate::pool_case::ample_values;
 use crate::report::{Schedule, schedule};
-use crate::room::plenty;
-use crate::subject::{Subject, Tries};
-use crate::trial::{Outcome, Search, Trial};
+use crate::subject::{RetryLimit, Subject};
 
-/// How far to go.
+/// The limits of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Numbers of fragments that come at once. Of a row that races by design none behind the first with which it fails as
-    /// stated is tried.
+    /// Numbers of concurrent fragments. For a row that is racy by design, the check stops at the first number that shows a
+    /// declared hazard.
     pub fragments: Vec<u32>,
-    /// Numbers of entries; more than the variant's capacity are left out.
+    /// Values of k. Those above the variant's capacity are left out.
     pub entries: Vec<u32>,
-    /// How memory behaves.
+    /// The memory model.
     pub model: Model,
-    /// This many single schedules by chance in place of all orders.
-    pub seeds: Option<u32>,
-    /// States of one case.
+    /// The number of random schedules per case, instead of all interleavings.
+    pub random_schedules: Option<u32>,
+    /// The most states of one case.
     pub states: usize,
 }
 
 impl Default for Limits {
-    /// Two and three fragments, one to three entries, every order, memory at once.
+    /// Returns limits of two and three fragments, one to three entries, every interleaving and sequential memory.
     fn default() -> Self {
         Limits {
             fragments: vec![2, 3],
             entries: vec![1, 2, 3],
             model: Model::Sequential,
-            seeds: None,
+            random_schedules: None,
             states: 4_000_000,
         }
     }
@@ -49,31 +51,31 @@ impl Default for Limits {
 /// What a check found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// Cases that were tried.
+    /// Cases that were checked.
     pub cases: usize,
-    /// States that were visited, or steps of walks.
+    /// States that were visited, or steps of random schedules.
     pub states: usize,
-    /// Whether every order of every case was tried.
-    pub is_whole: bool,
-    /// The first failure that no row states; where there is none, the first that one does.
+    /// Whether every interleaving of every case was explored.
+    pub is_exhaustive: bool,
+    /// The first failure that the declared hazards do not permit. If there is none, the first that they permit.
     pub failure: Option<Schedule>,
-    /// What can go wrong by design, as (name, what); a failure is then as stated.
+    /// The declared hazards, as (name, description).
     pub hazards: Vec<(String, String)>,
-    /// Whether the failure is one of those; then all there are are.
-    pub is_stated: bool,
-    /// Whether what the storage must keep is known; else that is not judged.
-    pub is_judged: bool,
+    /// Whether the declared hazards permit the failure. Then they permit all failures that were found.
+    pub is_declared: bool,
+    /// Whether the rows declare which fragments are kept. Otherwise the set of kept fragments is not checked.
+    pub is_kept_set_checked: bool,
 }
 
 /// Why there is no report.
 #[derive(Clone, Debug)]
 pub enum Error {
-    /// The description is at fault, or the target cannot express it.
+    /// The description is wrong, or the target cannot express it.
     Description(Diagnostics),
-    /// The checker cannot run it, in words.
+    /// The checker cannot run it, for this reason.
     Unable(String),
-    /// There is nothing to interleave, and why: not a failure.
-    NothingToTry(String),
+    /// No shader shares memory between fragments, for this reason. This is not a failure.
+    NotApplicable(String),
 }
 
 impl From<Diagnostics> for Error {
@@ -83,41 +85,41 @@ impl From<Diagnostics> for Error {
 }
 
 impl Report {
-    /// Nothing tried, nothing found.
+    /// Returns the report of no cases.
     pub(crate) fn new(limits: &Limits) -> Self {
         Report {
             cases: 0,
             states: 0,
-            is_whole: limits.seeds.is_none(),
+            is_exhaustive: limits.random_schedules.is_none(),
             failure: None,
             hazards: Vec::new(),
-            is_stated: false,
-            is_judged: true,
+            is_declared: false,
+            is_kept_set_checked: true,
         }
     }
 
-    /// Takes note of what a trial found; whether it is a failure that no row states.
-    fn takes_in(&mut self, trial: &Trial<'_>, found: Outcome) -> bool {
-        self.states += found.states;
-        self.is_whole &= found.is_whole;
-        if let Some((round, failure)) = found.failure {
-            self.is_stated = false;
-            self.failure = Some(schedule(trial, round, &failure));
+    /// Records the result of a case; returns whether it is a failure that the declared hazards do not permit.
+    fn record(&mut self, run: &CaseRun<'_>, result: CaseResult) -> bool {
+        self.states += result.states;
+        self.is_exhaustive &= result.is_exhaustive;
+        if let Some((iteration, failure)) = result.failure {
+            self.is_declared = false;
+            self.failure = Some(schedule(run, iteration, &failure));
             return true;
         }
-        // What is stated is shown, and the search for what is not goes on.
-        if let (None, Some((round, failure))) = (&self.failure, found.stated) {
-            self.is_stated = true;
-            self.failure = Some(schedule(trial, round, &failure));
+        // The first declared hazard is reported unless a later case fails.
+        if let (None, Some((iteration, failure))) = (&self.failure, result.hazard) {
+            self.is_declared = true;
+            self.failure = Some(schedule(run, iteration, &failure));
         }
         false
     }
 }
 
-const LEFT_TO_TESTS: &str = "depth test, stencil and blending decide what stays, in the order of submission, and they are the \
-    device's: no shader that stores touches memory that fragments share";
+const FIXED_FUNCTION: &str = "fixed-function depth test, stencil test and blending select the fragments in submission order; \
+    no storing shader accesses memory that fragments share";
 
-/// Checks a variant on a target. `progress` is told what is being tried.
+/// Checks a variant on a target. `progress` receives the description of each case before it runs.
 pub fn check_variant(
     variant: &Variant,
     target: &Target,
@@ -126,63 +128,63 @@ pub fn check_variant(
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report, Error> {
     let mut report = Report::new(limits);
-    if Selection::first(variant).offers().contains(&Fact::FixedFunction) {
-        return Err(Error::NothingToTry(LEFT_TO_TESTS.to_owned()));
+    if Selection::first(variant).provides().contains(&Capability::FixedFunction) {
+        return Err(Error::NotApplicable(FIXED_FUNCTION.to_owned()));
     }
-    for tries in [Tries::AsStated, Tries::Least] {
-        let Some(mut subject) = Subject::new(variant, target, registry, tries)? else { continue };
-        admit_some(&mut subject).map_err(Error::Unable)?;
-        report.is_judged = !Promise::new(&subject, None).is_unknown();
+    for retries in [RetryLimit::AsDeclared, RetryLimit::Minimum] {
+        let Some(mut subject) = Subject::new(variant, target, registry, retries)? else { continue };
+        choose_uniform(&mut subject).map_err(Error::Unable)?;
+        report.is_kept_set_checked = !KeptSet::new(&subject, None).is_unknown();
         let hazards = subject.plan.hazards.iter();
-        report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.what.to_string())).collect();
-        try_all(&subject, limits, tries, &mut report, progress).map_err(Error::Unable)?;
-        if report.failure.is_some() && !report.is_stated {
+        report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.description.to_string())).collect();
+        check_all(&subject, limits, retries, &mut report, progress).map_err(Error::Unable)?;
+        if report.failure.is_some() && !report.is_declared {
             break;
         }
     }
     Ok(report)
 }
 
-/// Values of uniforms that are tried, until the description's constraints admit fragments enough.
+/// Values of uniforms, in the order in which they are considered.
 const UNIFORMS: [f32; 4] = [1.0, 0.0, 0.5, -1.0];
 
-/// Gives the uniforms a value by which the constraints admit fragments enough.
-fn admit_some(subject: &mut Subject) -> Result<(), String> {
+/// Sets the uniforms to a value with which the constraints admit enough fragments.
+fn choose_uniform(subject: &mut Subject) -> Result<(), String> {
     let mut problem = String::new();
     for uniform in UNIFORMS {
         subject.uniform = uniform;
-        let mut frame = Frame::new(subject, plenty(subject)?)?;
+        let mut frame = Frame::new(subject, ample_values(subject)?)?;
         match Candidates::new(subject, &mut frame.memory) {
             Ok(_) => return Ok(()),
             Err(error) => problem = error,
         }
     }
     Err(format!(
-        "{problem}, whether uniforms are {}: check the storage with constraints that admit more",
+        "{problem}, with uniforms of {}: check the storage with constraints that admit more fragments",
         UNIFORMS.map(|uniform| uniform.to_string()).join(", ")
     ))
 }
 
-fn try_all(
+/// Runs every case, until one fails.
+fn check_all(
     subject: &Subject,
     limits: &Limits,
-    tries: Tries,
+    retries: RetryLimit,
     report: &mut Report,
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
-    let mut frame = Frame::new(subject, plenty(subject)?)?;
+    let mut frame = Frame::new(subject, ample_values(subject)?)?;
     let candidates = Candidates::new(subject, &mut frame.memory)?;
-    let search = Search {
+    let options = SearchOptions {
         model: limits.model,
-        seeds: limits.seeds,
+        random_schedules: limits.random_schedules,
         limit: limits.states,
-        may_give_up: tries == Tries::Least,
+        may_time_out: retries == RetryLimit::Minimum,
         one_by_one: false,
     };
-    let races = subject.permits().any(|permits| permits.needs_race);
-    let searches = [Some(search), races.then(|| search.without_races())];
-    let drawn = subject.passes.iter().filter(|pass| pass.pass.kind == Kind::Geometry).count();
-    if drawn == 0 {
+    let has_races = subject.permits().any(|permits| permits.needs_race);
+    let searches = [Some(options), has_races.then(|| options.without_races())];
+    if !subject.passes.iter().any(|pass| pass.pass.kind == Kind::Geometry) {
         return Err("no pass of the plan draws the scene".to_owned());
     }
     let capacity = subject.plan.capacity();
@@ -192,24 +194,28 @@ fn try_all(
     };
     for &count in &limits.fragments {
         for &k in &entries {
-            for case in cases(subject, &candidates, (count, k), search.may_give_up)? {
+            for case in cases(subject, &candidates, (count, k), options.may_time_out)? {
                 let k = k.map_or(String::new(), |k| format!("k = {k}, "));
-                progress(&format!("{k}{}", case.what));
-                let case = Case { what: format!("{k}{}", case.what), ..case };
+                let case = Case { description: format!("{k}{}", case.description), ..case };
+                progress(&case.description);
                 report.cases += 1;
-                for search in searches.iter().flatten() {
-                    let mut trial = Trial::new(subject, case.clone(), &candidates.ranked[11], search)?;
-                    let found = trial.run(search)?;
-                    if report.takes_in(&trial, found) {
+                for options in searches.iter().flatten() {
+                    let setup = CaseSetup::new(subject, case.clone(), &candidates.ranked[NEIGHBOUR], options);
+                    let mut run = CaseRun::new(setup, options)?;
+                    let result = run.run(options)?;
+                    if report.record(&run, result) {
                         return Ok(());
                     }
                 }
             }
         }
-        // Races show with few fragments, and more of them have orders beyond counting.
+        // Few fragments show races, and more fragments have too many interleavings.
         if subject.is_racy() && report.failure.is_some() {
             return Ok(());
         }
     }
     Ok(())
 }
+
+/// The rank of the neighbour's fragment, which no case uses.
+const NEIGHBOUR: usize = 11;

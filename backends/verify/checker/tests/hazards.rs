@@ -1,35 +1,35 @@
-//! What rows state that may go wrong: all of it does, and nothing else.
+//! The hazards that rows declare: each of them occurs, and no other failure does.
 
 use fragbuf_checker::{Limits, Model, Report};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Kept, Permits, Row};
+use fragbuf_templates::vocabulary::{KeptFragments, Permits, Row};
 
 use crate::subjects::{limits, report};
 
 /// Technique, changes, storage.
 type Racy = (&'static str, &'static [(&'static str, &'static str)], &'static str);
 
-/// Every technique whose rows state hazards of races, so that each of them shows.
-const STATED: [Racy; 4] = [
+/// Every technique whose rows declare hazards that need a race, with a description that shows each of them.
+const RACY: [Racy; 4] = [
     ("kb", &[], "sorted_array"),
     // An entry of several words, so that it can be torn.
     ("kb_mdt32", &[("fragment.color", "vec4")], "distinct_cascade"),
-    ("kb_multi", &[("fragment.color", "vec4"), ("k", "2")], "repeated_array"),
-    ("kb_mha", &[("storage.retries", "0"), ("k", "2")], "checked_array"),
+    ("kb_multi", &[("fragment.color", "vec4"), ("k", "2")], "multipass_array"),
+    ("kb_mha", &[("storage.retries", "0"), ("k", "2")], "checksummed_array"),
 ];
 
 fn checked((key, set, _): &Racy, model: Model, registry: &Registry) -> Report {
     let report = report(key, set, "wgsl", &limits(2, model), registry).unwrap();
-    assert!(report.is_whole || !report.is_stated, "{key} has states beyond the limit");
+    assert!(report.is_exhaustive || !report.is_declared, "{key} has states beyond the limit");
     report
 }
 
-/// Whether what goes wrong under one of the models is not stated.
+/// Returns whether a failure under one of the models is not a declared hazard.
 fn fails(racy: &Racy, registry: &Registry) -> bool {
-    [Model::Sequential, Model::Late].into_iter().any(|model| !checked(racy, model, registry).is_stated)
+    [Model::Sequential, Model::Relaxed].into_iter().any(|model| !checked(racy, model, registry).is_declared)
 }
 
-/// The registry with a row of the storage's that `change` has changed.
+/// Returns the registry with a changed storage row.
 fn with(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
     let registry = Registry::builtin();
     let mut row = registry.row("storage", key).unwrap().clone();
@@ -38,27 +38,27 @@ fn with(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
 }
 
 #[test]
-fn whatever_goes_wrong_is_stated() {
-    for racy in &STATED {
-        for model in [Model::Sequential, Model::Late] {
+fn every_failure_matches_a_declared_hazard() {
+    for racy in &RACY {
+        for model in [Model::Sequential, Model::Relaxed] {
             let report = checked(racy, model, &Registry::builtin());
-            assert!(report.failure.is_some() && report.is_stated, "{} {model:?}: {:#?}", racy.0, report.failure);
+            assert!(report.failure.is_some() && report.is_declared, "{} {model:?}: {:#?}", racy.0, report.failure);
         }
     }
 }
 
-/// By default no more fragments are tried than race; three do nothing that two do not.
+/// By default the check stops at two fragments. Three show no other hazards.
 #[test]
-fn what_three_fragments_do_is_stated_too() {
+fn three_fragments_show_only_declared_hazards() {
     let limits = Limits { fragments: vec![3], entries: vec![1, 2], ..limits(2, Model::Sequential) };
     let report = report("kb", &[], "wgsl", &limits, &Registry::builtin()).unwrap();
-    assert!(report.is_whole && report.is_stated, "{:#?}", report.failure);
+    assert!(report.is_exhaustive && report.is_declared, "{:#?}", report.failure);
     assert!(report.cases > 50 && report.states > 500_000, "{} cases, {} states", report.cases, report.states);
 }
 
 #[test]
-fn a_row_that_states_fewer_hazards_than_it_has_fails() {
-    for racy in &STATED {
+fn a_row_with_an_undeclared_hazard_fails() {
+    for racy in &RACY {
         let hazards = Registry::builtin().row("storage", racy.2).unwrap().hazards.clone();
         assert!(hazards.len() > 1);
         for hazard in hazards {
@@ -69,62 +69,62 @@ fn a_row_that_states_fewer_hazards_than_it_has_fails() {
     }
 }
 
-/// What a hazard permits is excused, whatever its name is; a name alone excuses nothing.
+/// The permits of a hazard count, whatever its name is. A name alone permits nothing.
 #[test]
-fn a_hazard_that_permits_nothing_excuses_nothing() {
+fn a_hazard_without_permits_permits_nothing() {
     let renamed = with("sorted_array", |row| {
         row.hazards.iter_mut().for_each(|hazard| hazard.name = format!("my-{}", hazard.name).into());
     });
-    assert!(!fails(&STATED[0], &renamed));
+    assert!(!fails(&RACY[0], &renamed));
     let named = with("sorted_array", |row| {
         row.hazards.iter_mut().for_each(|hazard| hazard.permits = Permits::NOTHING);
     });
-    assert!(fails(&STATED[0], &named));
+    assert!(fails(&RACY[0], &named));
 }
 
-/// What stays is what the row says in its own words: the checker has no list of promises.
+/// The row's own formula decides which fragments are kept: the checker has no list of rules.
 #[test]
-fn a_row_keeps_what_it_says() {
-    let holds = |kept: Kept| {
+fn the_kept_set_is_what_the_row_declares() {
+    let holds = |kept: KeptFragments| {
         let registry = with("depth_ranges", |row| row.keeps = Some(kept));
         let set = [("sync", "spin_lock")];
         let report = report("depth_partition", &set, "spirv", &limits(2, Model::Sequential), &registry).unwrap();
-        assert!(report.is_judged);
+        assert!(report.is_kept_set_checked);
         report.failure.is_none()
     };
-    assert!(holds(Kept::best_of_each("min(k - 1, depth_millionths * k / 1000000)")));
-    assert!(!holds(Kept::best_of_each("min(k, depth_millionths * (k + 1) / 1000000)")));
-    assert!(!holds(Kept::best_of_each("key")));
-    for kept in [Kept::best(), Kept::worst()] {
+    assert!(holds(KeptFragments::best_of_each("min(k - 1, depth_millionths * k / 1000000)")));
+    assert!(!holds(KeptFragments::best_of_each("min(k, depth_millionths * (k + 1) / 1000000)")));
+    assert!(!holds(KeptFragments::best_of_each("key")));
+    for kept in [KeptFragments::best(), KeptFragments::worst()] {
         assert!(!holds(kept.clone()), "{kept:?}");
     }
 }
 
-/// What is no hazard of the row's fails, stated hazards or not.
+/// A failure beyond the declared hazards is not excused by them.
 #[test]
 fn a_racy_row_that_is_wrong_beyond_its_hazards_fails() {
     let changes = [
         // Words that no fragment has.
         ("carried = resident;", "carried = packed_of_key(resident.key + 1u);"),
-        // More is counted than there is.
+        // More fragments are counted than arrived.
         (
             "on_lost(pixel, carried, DISPLACED);",
             "on_lost(pixel, carried, DISPLACED); on_lost(pixel, carried, DISPLACED);",
         ),
-        // A loss that no race excuses.
+        // A loss that no hazard permits.
         ("on_lost(pixel, carried, DISPLACED);", "on_lost(pixel, carried, POOL_EXHAUSTED);"),
     ];
     for (before, after) in changes {
         let registry = with("sorted_array", |row| {
             let template = row.template.as_mut().unwrap();
-            assert!(template.text.contains(before));
-            template.text = template.text.replace(before, after).into();
+            assert!(template.source.contains(before));
+            template.source = template.source.replace(before, after).into();
         });
-        assert!(!checked(&STATED[0], Model::Sequential, &registry).is_stated, "{after}");
+        assert!(!checked(&RACY[0], Model::Sequential, &registry).is_declared, "{after}");
     }
 }
 
-/// Rows that merge or blend what is displaced, on a storage that can be asked for it.
+/// Rows that merge displaced fragments into kept ones, each with a technique that supports it.
 const MERGING: [(&str, &str); 2] = [("merge_last", "kplus_array"), ("merge_closest", "kb_ps")];
 
 fn blended(overflow: &str, key: &str, registry: &Registry) -> Report {
@@ -132,7 +132,7 @@ fn blended(overflow: &str, key: &str, registry: &Registry) -> Report {
     report(key, &set, "spirv", &limits(2, Model::Sequential), registry).unwrap()
 }
 
-/// The registry with one overflow row's text changed.
+/// Returns the registry with one changed overflow row.
 fn with_overflow(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
     let registry = Registry::builtin();
     let mut row = registry.row("overflow", key).unwrap().clone();
@@ -142,29 +142,30 @@ fn with_overflow(key: &str, change: impl FnOnce(&mut Row)) -> Registry {
 
 fn replace(row: &mut Row, before: &str, after: &str) {
     let template = row.template.as_mut().unwrap();
-    assert!(template.text.contains(before), "{before}");
-    template.text = template.text.replace(before, after).into();
+    assert!(template.source.contains(before), "{before}");
+    template.source = template.source.replace(before, after).into();
 }
 
 #[test]
-fn who_merges_must_say_so_and_do_it() {
+fn a_row_that_merges_must_declare_and_do_it() {
     for (overflow, key) in MERGING {
         let registry = with_overflow(overflow, |row| row.merges = None);
-        let unsaid = blended(overflow, key, &registry);
-        assert!(unsaid.failure.is_some() && !unsaid.is_stated, "{overflow}");
-        // What is displaced is forgotten: no word but a colour tells.
+        let undeclared = blended(overflow, key, &registry);
+        assert!(undeclared.failure.is_some() && !undeclared.is_declared, "{overflow}");
+        // Displaced fragments are dropped, which changes no word but a colour.
         let registry = with_overflow(overflow, |row| replace(row, "reason == DISPLACED", "reason == POOL_EXHAUSTED"));
         let dropped = blended(overflow, key, &registry);
-        assert!(dropped.failure.is_some() && !dropped.is_stated, "{overflow}");
+        assert!(dropped.failure.is_some() && !dropped.is_declared, "{overflow}");
     }
 }
 
-/// A tail of plain words is the critical section's: whoever gives up the lock must leave it alone.
+/// The tail has plain words, so a fragment may access it only inside the critical section.
 #[test]
 fn a_tail_that_is_blended_outside_the_lock_is_a_race() {
     assert_eq!(blended("tail_blend", "kb_ps", &Registry::builtin()).failure, None);
     let registry = with_overflow("tail_blend", |row| replace(row, "reason == DISPLACED", "reason != POOL_EXHAUSTED"));
     let report = blended("tail_blend", "kb_ps", &registry);
-    let fault = report.failure.filter(|_| !report.is_stated).map(|schedule| schedule.fault).unwrap_or_default();
-    assert!(fault.contains("race"), "{fault}");
+    let failure = report.failure.filter(|_| !report.is_declared);
+    let violation = failure.map(|schedule| schedule.violation).unwrap_or_default();
+    assert!(violation.contains("data race"), "{violation}");
 }

@@ -1,17 +1,17 @@
-//! The models of memory themselves, by the small programs that tell models apart.
+//! Litmus tests: small programs that distinguish the memory models.
 
 use fragbuf_checker::{Error, Limits, Model, Report, Shader, check_shader};
 
-fn run(text: &str, invocations: u32, model: Model) -> Report {
-    let shader = Shader { file: "litmus.wgsl", text, entry: "main", fill: &[] };
+fn run(source: &str, invocations: u32, model: Model) -> Report {
+    let shader = Shader { file: "litmus.wgsl", source, entry: "main", fill: &[] };
     let limits = Limits { fragments: vec![invocations], model, ..Limits::default() };
     let report = check_shader(&shader, &limits).unwrap();
-    assert!(report.is_whole || report.failure.is_some());
+    assert!(report.is_exhaustive || report.failure.is_some());
     report
 }
 
-fn holds(text: &str, model: Model) -> bool {
-    run(text, 2, model).failure.is_none()
+fn holds(source: &str, model: Model) -> bool {
+    run(source, 2, model).failure.is_none()
 }
 
 const HEAD: &str = "
@@ -21,7 +21,7 @@ const HEAD: &str = "
 fn memory_fence() {}
 ";
 
-/// Two invocations and what must not be seen in the end.
+/// Returns a program of two invocations, and the property of its final states.
 fn litmus(first: &str, second: &str, holds: &str) -> String {
     format!(
         "{HEAD}
@@ -34,126 +34,128 @@ fn holds() -> bool {{ return {holds}; }}"
 }
 
 #[test]
-fn a_message_passed_without_fences_may_come_before_what_it_announces() {
-    let text = |fence: &str| {
+fn message_passing_needs_fences() {
+    let program = |fence: &str| {
         litmus(
             &format!("atomicStore(&x, 1u); {fence} atomicStore(&y, 1u);"),
             &format!("seen[0] = atomicLoad(&y); {fence} seen[1] = atomicLoad(&x);"),
             "!(seen[0] == 1u && seen[1] == 0u)",
         )
     };
-    assert!(holds(&text(""), Model::Sequential));
-    assert!(!holds(&text(""), Model::Late));
-    assert!(holds(&text("memory_fence();"), Model::Late));
+    assert!(holds(&program(""), Model::Sequential));
+    assert!(!holds(&program(""), Model::Relaxed));
+    assert!(holds(&program("memory_fence();"), Model::Relaxed));
 }
 
 #[test]
-fn one_fence_of_the_two_is_not_enough() {
+fn message_passing_needs_both_fences() {
     let writer = "atomicStore(&x, 1u); memory_fence(); atomicStore(&y, 1u);";
     let reader = "seen[0] = atomicLoad(&y); memory_fence(); seen[1] = atomicLoad(&x);";
     let wrong = "!(seen[0] == 1u && seen[1] == 0u)";
-    assert!(!holds(&litmus(writer, &reader.replace("memory_fence();", ""), wrong), Model::Late));
-    assert!(!holds(&litmus(&writer.replace("memory_fence();", ""), reader, wrong), Model::Late));
+    assert!(!holds(&litmus(writer, &reader.replace("memory_fence();", ""), wrong), Model::Relaxed));
+    assert!(!holds(&litmus(&writer.replace("memory_fence();", ""), reader, wrong), Model::Relaxed));
 }
 
 #[test]
-fn both_may_miss_the_others_store() {
-    let text = litmus(
+fn store_buffering_is_relaxed() {
+    let program = litmus(
         "atomicStore(&x, 1u); seen[0] = atomicLoad(&y);",
         "atomicStore(&y, 1u); seen[1] = atomicLoad(&x);",
         "seen[0] == 1u || seen[1] == 1u",
     );
-    assert!(holds(&text, Model::Sequential));
-    assert!(!holds(&text, Model::Late));
+    assert!(holds(&program, Model::Sequential));
+    assert!(!holds(&program, Model::Relaxed));
 }
 
 #[test]
-fn the_order_of_each_word_is_kept() {
-    let text = litmus(
+fn writes_to_one_word_are_coherent() {
+    let program = litmus(
         "atomicStore(&x, 1u); atomicStore(&x, 2u);",
         "seen[0] = atomicLoad(&x); seen[1] = atomicLoad(&x);",
         "seen[0] <= seen[1] && atomicLoad(&x) == 2u",
     );
-    assert!(holds(&text, Model::Late));
+    assert!(holds(&program, Model::Relaxed));
 }
 
 #[test]
-fn a_late_store_may_overtake_another_invocations() {
-    // y says that the second store came later, and still the first one may win.
-    let text = |fence: &str| {
+fn an_earlier_store_may_be_ordered_last() {
+    // The second invocation observes y, so its store executes later, and still the first store may be the last in the history.
+    let program = |fence: &str| {
         litmus(
             &format!("atomicStore(&x, 1u); {fence} atomicStore(&y, 1u);"),
             &format!("if atomicLoad(&y) == 1u {{ {fence} atomicStore(&x, 2u); seen[0] = 1u; }}"),
             "!(seen[0] == 1u && atomicLoad(&x) == 1u)",
         )
     };
-    assert!(holds(&text(""), Model::Sequential));
-    assert!(!holds(&text(""), Model::Late));
-    assert!(holds(&text("memory_fence();"), Model::Late));
+    assert!(holds(&program(""), Model::Sequential));
+    assert!(!holds(&program(""), Model::Relaxed));
+    assert!(holds(&program("memory_fence();"), Model::Relaxed));
 }
 
 #[test]
-fn atomic_operations_lose_no_count_and_plain_ones_race() {
+fn atomic_additions_lose_no_count_and_plain_ones_race() {
     let counted = "
 @group(0) @binding(0) var<storage, read_write> x: atomic<u32>;
 @compute @workgroup_size(1)
 fn main() { if atomicAdd(&x, 1u) > 100u { atomicStore(&x, 0u); } }
 fn holds() -> bool { return atomicLoad(&x) == 3u; }";
-    assert!(run(counted, 3, Model::Late).failure.is_none());
+    assert!(run(counted, 3, Model::Relaxed).failure.is_none());
     let plain = "
 @group(0) @binding(0) var<storage, read_write> x: u32;
 @compute @workgroup_size(1)
 fn main() { x += 1u; }";
     let failure = run(plain, 2, Model::Sequential).failure.unwrap();
-    assert!(failure.fault.contains("a data race"), "{}", failure.fault);
-    assert!(failure.steps.iter().all(|step| step.place.starts_with("litmus.wgsl:4")), "{:?}", failure.steps);
+    assert!(failure.violation.contains("data race"), "{}", failure.violation);
+    assert!(failure.steps.iter().all(|step| step.location.starts_with("litmus.wgsl:4")), "{:?}", failure.steps);
 }
 
 #[test]
-fn two_locks_taken_in_two_orders_wait_for_ever() {
-    let text = litmus(
+fn two_locks_taken_in_opposite_orders_deadlock() {
+    let program = litmus(
         "loop { if atomicExchange(&x, 1u) == 0u { break; } } loop { if atomicExchange(&y, 1u) == 0u { break; } }
          atomicStore(&y, 0u); atomicStore(&x, 0u);",
         "loop { if atomicExchange(&y, 1u) == 0u { break; } } loop { if atomicExchange(&x, 1u) == 0u { break; } }
          atomicStore(&x, 0u); atomicStore(&y, 0u);",
         "true",
     );
-    let failure = run(&text, 2, Model::Sequential).failure.unwrap();
-    assert!(failure.fault.contains("waits for ever"), "{}", failure.fault);
+    let failure = run(&program, 2, Model::Sequential).failure.unwrap();
+    assert!(failure.violation.contains("deadlock"), "{}", failure.violation);
     assert_eq!(failure.steps.len(), 2);
 }
 
 #[test]
-fn fragments_that_undo_each_other_go_round_for_ever() {
-    let text = litmus(
+fn invocations_that_undo_each_other_livelock() {
+    let program = litmus(
         "loop { if atomicExchange(&x, 1u) == 3u { break; } }",
         "loop { if atomicExchange(&x, 2u) == 3u { break; } }",
         "true",
     );
-    let failure = run(&text, 2, Model::Sequential).failure.unwrap();
-    assert!(failure.fault.contains("go round for ever"), "{}", failure.fault);
+    let failure = run(&program, 2, Model::Sequential).failure.unwrap();
+    assert!(failure.violation.contains("livelock"), "{}", failure.violation);
 }
 
 #[test]
-fn an_index_out_of_bounds_is_said_and_what_is_not_run_is_refused() {
+fn an_index_out_of_bounds_fails_and_an_unsupported_expression_is_rejected() {
     let beyond = "
 @group(0) @binding(0) var<storage, read_write> x: array<atomic<u32>, 4>;
 @compute @workgroup_size(1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) { atomicStore(&x[atomicAdd(&x[0], 3u)], id.x); }";
     let failure = run(beyond, 3, Model::Sequential).failure.unwrap();
-    assert!(failure.fault.contains("out of bounds at litmus.wgsl:4"), "{}", failure.fault);
+    assert!(failure.violation.contains("out of bounds at litmus.wgsl:4"), "{}", failure.violation);
     let derivative = "
 @group(0) @binding(0) var<storage, read_write> x: f32;
 @fragment
 fn main(@location(0) a: f32) { x = dpdx(a); }";
-    let shader = Shader { file: "litmus.wgsl", text: derivative, entry: "main", fill: &[] };
-    let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else { panic!("it is run") };
+    let shader = Shader { file: "litmus.wgsl", source: derivative, entry: "main", fill: &[] };
+    let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else {
+        panic!("derivatives are accepted")
+    };
     assert_eq!(text, "litmus.wgsl:4: the interpreter does not run derivatives");
 }
 
 #[test]
-fn a_word_of_64_bits_comes_late_too_but_whole() {
-    let text = |fence: &str, holds: &str| {
+fn a_word_of_64_bits_is_relaxed_but_not_torn() {
+    let program = |fence: &str, holds: &str| {
         let writer = format!("_ = atomicMax(&wide, (u64(7u) << 32u) | u64(7u)); {fence} atomicStore(&y, 1u);");
         let reader = format!(
             "seen[0] = atomicLoad(&y); {fence} let word = atomicLoad(&wide);
@@ -163,8 +165,8 @@ fn a_word_of_64_bits_comes_late_too_but_whole() {
         format!("{wide}{}", litmus(&writer, &reader, holds))
     };
     let (announced, whole) = ("!(seen[0] == 1u && seen[1] == 0u)", "seen[1] == seen[2]");
-    assert!(holds(&text("", announced), Model::Sequential));
-    assert!(!holds(&text("", announced), Model::Late));
-    assert!(holds(&text("memory_fence();", announced), Model::Late));
-    assert!(holds(&text("", whole), Model::Late));
+    assert!(holds(&program("", announced), Model::Sequential));
+    assert!(!holds(&program("", announced), Model::Relaxed));
+    assert!(holds(&program("memory_fence();", announced), Model::Relaxed));
+    assert!(holds(&program("", whole), Model::Relaxed));
 }

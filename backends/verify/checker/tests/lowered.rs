@@ -1,5 +1,5 @@
-//! What a frame can say and no technique of today does: exchanged resources, copies, a loop that waits for samples, a host
-//! step that reads many words and sets k. The same rows must fail where one of it is not carried out.
+//! Steps of frames that no built-in technique has: exchanged resources, copies, a loop that waits for samples, a host step
+//! that reads many words and sets k. Without one of these steps, the same rows must fail.
 
 use fragbuf_checker::{Model, Report};
 use fragbuf_templates::Registry;
@@ -9,14 +9,15 @@ use fragbuf_templates::vocabulary::{
 
 use crate::subjects::{limits, report};
 
-/// Stores in the first iteration, and discards in the second, which ends the loop. A third would store everything twice.
+/// Stores in the first iteration, and discards in the second, which ends the loop. A third iteration would store everything
+/// twice.
 const STORE_ONCE: &str = "
 @fragment
-fn store(varyings: Varyings) {
+fn store(inputs: FragmentInput) {
     if frame.iteration == 1u {
         discard;
     }
-    store_fragment(varyings.position.xy, varyings_fragment(varyings));
+    store_fragment(inputs.position.xy, fragment_from_inputs(inputs));
 }
 
 fn store_fragment(position: vec2<f32>, fragment: Fragment) {
@@ -46,7 +47,7 @@ fn checked(registry: &Registry, key: &str, set: &[(&str, &str)]) -> Report {
     report(key, set, "wgsl", &limits(2, Model::Sequential), registry).unwrap()
 }
 
-/// The list, its store pass drawn until no sample passes, or so often.
+/// Returns the list with its store pass in a loop.
 fn repeated(until: Until) -> Registry {
     let builtin = Registry::builtin();
     let mut row = builtin.row("storage", "linked_list").unwrap().clone();
@@ -60,12 +61,12 @@ fn repeated(until: Until) -> Registry {
 #[test]
 fn a_loop_waits_for_the_samples_of_the_fragments_under_test() {
     let found = checked(&repeated(Until::NoSamples("store".to_owned())), "ab_ll", &[]);
-    assert!(found.failure.is_none() && found.is_whole, "{:?}", found.failure);
+    assert!(found.failure.is_none() && found.is_exhaustive, "{:?}", found.failure);
     let found = checked(&repeated(Until::Times("3".into())), "ab_ll", &[]);
     assert!(found.failure.is_some(), "a third iteration stores everything twice");
 }
 
-/// The list, whose heads another buffer stands in for while fragments are stored, and which are copied back.
+/// Returns the list with its heads exchanged with another buffer while fragments are stored, and then copied back.
 fn exchanged(copies: &[(&str, &str)]) -> Registry {
     let builtin = Registry::builtin();
     let mut row = builtin.row("storage", "linked_list").unwrap().clone();
@@ -78,14 +79,14 @@ fn exchanged(copies: &[(&str, &str)]) -> Registry {
 }
 
 #[test]
-fn exchanged_resources_stand_for_each_other() {
+fn exchanged_resources_replace_each_other() {
     let found = checked(&exchanged(&[("others", "heads")]), "ab_ll", &[]);
-    assert!(found.failure.is_none() && found.is_whole, "{:?}", found.failure);
+    assert!(found.failure.is_none() && found.is_exhaustive, "{:?}", found.failure);
     let found = checked(&exchanged(&[]), "ab_ll", &[]);
-    assert!(found.failure.is_some(), "the heads are those that nothing was stored under");
+    assert!(found.failure.is_some(), "the resolve pass reads the empty heads");
 }
 
-/// Rows in which a host function sets k by a histogram of the fragments of pixels.
+/// Returns rows whose host function sets k from a histogram of fragments per pixel.
 fn registry_of(function: fn(&HostCall<'_>) -> Vec<u64>) -> Registry {
     let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 64)", "1")
         .uses("counts", Access::Read)
@@ -113,7 +114,7 @@ fn a_host_step_reads_a_histogram_and_sets_k() {
         [|call: &HostCall<'_>| vec![deepest(call).max(1)], |call: &HostCall<'_>| vec![(deepest(call) / 2).max(1)]]
     {
         let found = checked(&registry_of(function), "kplus_ab_sb", &set);
-        assert!(found.failure.is_none() && found.is_whole, "{:?}", found.failure);
+        assert!(found.failure.is_none() && found.is_exhaustive, "{:?}", found.failure);
     }
     let variant = crate::subjects::variant("kplus_ab_sb", &set, &registry_of(|_| vec![99])).unwrap();
     let registry = registry_of(|_| vec![99]);

@@ -1,4 +1,4 @@
-//! What the checker says of the techniques, of templates that are wrong on purpose, and of every small change to one.
+//! Checks the techniques, templates that are wrong on purpose, and every mutant of a template.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(
     clippy::unwrap_used,
@@ -16,6 +16,7 @@ mod mutants;
 mod mutation;
 mod occupancy;
 mod opaque;
+mod read_out;
 mod regressions;
 mod repairs;
 mod repeated;

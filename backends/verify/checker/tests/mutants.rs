@@ -1,24 +1,24 @@
-//! Every small change to a WGSL text: a statement less, two that follow each other exchanged, an atomic operation as a read
-//! and a write, a number one more or one less, `<` ↔ `<=`.
+//! Mutants of WGSL source: a statement deleted, two consecutive ones swapped, an atomic operation split into a read and a
+//! write, a number incremented or decremented, `<` ↔ `<=`.
 
-/// One change.
+/// One mutant.
 pub(crate) struct Mutant {
     pub(crate) text: String,
-    /// The line that was changed, and what it became.
+    /// The line before and after the mutation.
     pub(crate) before: String,
     pub(crate) after: String,
 }
 
-/// Every change, in the order of the lines.
+/// Returns every mutant, in the order of lines.
 pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();
     for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
         let mut change = |new: Vec<String>, extra: &str| {
             let after = new.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ");
-            let head = lines[..at].iter().map(|line| (*line).to_owned());
-            let tail = lines[at + 1..].iter().map(|line| (*line).to_owned());
-            let all: Vec<String> = head.chain(new).chain(tail).collect();
+            let preceding = lines[..at].iter().map(|line| (*line).to_owned());
+            let following = lines[at + 1..].iter().map(|line| (*line).to_owned());
+            let all: Vec<String> = preceding.chain(new).chain(following).collect();
             found.push(Mutant { text: format!("{}\n{extra}", all.join("\n")), before: line.trim().to_owned(), after });
         };
         if is_statement(line) {
@@ -50,7 +50,7 @@ fn is_swappable(line: &str) -> bool {
     is_statement(line) && !["let ", "var ", "return"].iter().any(|word| text.starts_with(word))
 }
 
-/// Every number one more and one less.
+/// Returns the line with each number incremented and decremented.
 fn numbers(line: &str) -> Vec<String> {
     let mut found = Vec::new();
     let bytes = line.as_bytes();
@@ -70,14 +70,14 @@ fn numbers(line: &str) -> Vec<String> {
     found
 }
 
-/// Every comparison with or without equality.
+/// Returns the line with each comparison made strict or not strict.
 fn comparisons(line: &str) -> Vec<String> {
     let pairs = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > ")];
-    let places = pairs.iter().flat_map(|(old, new)| line.match_indices(old).map(move |(at, _)| (at, old, new)));
-    places.map(|(at, old, new)| format!("{}{new}{}", &line[..at], &line[at + old.len()..])).collect()
+    let matches = pairs.iter().flat_map(|(old, new)| line.match_indices(old).map(move |(at, _)| (at, old, new)));
+    matches.map(|(at, old, new)| format!("{}{new}{}", &line[..at], &line[at + old.len()..])).collect()
 }
 
-/// `x_atomic_op(…)` as a read and a write of its own.
+/// Returns the line with `x_atomic_op(…)` replaced by a call of a function that reads and writes separately, and the function.
 fn plain(line: &str) -> Option<(String, String)> {
     let at = line.find("_atomic_")?;
     let start =
@@ -114,7 +114,7 @@ fn plain(line: &str) -> Option<(String, String)> {
     Some((line.replacen(&format!("{resource}_atomic_{operation}"), "plainly", 1), function))
 }
 
-/// The length of the arguments up to the bracket that closes them.
+/// Returns the length of the arguments up to their closing bracket.
 fn matching(text: &str) -> Option<usize> {
     let mut depth = 0;
     text.char_indices().find_map(|(at, letter)| match letter {

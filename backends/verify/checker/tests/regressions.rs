@@ -1,5 +1,5 @@
-//! Templates that are wrong on purpose: errors of the papers, and some that are easily made. Each must fail, and its
-//! schedule must lead to the line that is wrong.
+//! Templates that are wrong on purpose: errors of the papers, and common errors. Each must fail, with a schedule that
+//! includes the wrong line.
 
 use fragbuf_checker::{Model, Report};
 use fragbuf_templates::Registry;
@@ -12,9 +12,9 @@ const COUNTER: &str = include_str!("rows/counter_before_insert.wgsl");
 const TWO_WORDS: &str = include_str!("rows/two_word_bound.wgsl");
 const REVISED: &str = include_str!("rows/revised_array.wgsl");
 const PRINTED: &str = include_str!("rows/revised_sync.wgsl");
-const MENDED: &str = include_str!("rows/mended_sync.wgsl");
+const CORRECTED: &str = include_str!("rows/corrected_sync.wgsl");
 
-/// The built-in registry with another text for one row, and a change to how its passes touch memory.
+/// Returns the registry with another template for one row, and a change to how its passes access memory.
 fn with(
     registry: Registry,
     axis: &str,
@@ -33,7 +33,7 @@ fn checked(registry: &Registry, target: &str, model: Model) -> Report {
     report("kplus_array", &[], target, &limits(3, model), registry).unwrap()
 }
 
-/// Every use of a resource becomes atomic.
+/// Makes every use of a resource atomic.
 fn atomic(row: &mut Row, resource: &str) {
     for step in &mut row.steps {
         if let Step::Pass(pass) = step {
@@ -59,33 +59,33 @@ fn a_lock_is_not_enough_for_words_that_are_not_coherent() {
     }
     let registry = registry.with(row);
     assert_eq!(checked(&registry, "spirv", Model::Sequential).failure, None);
-    assert!(checked(&registry, "spirv", Model::Late).failure.is_some());
+    assert!(checked(&registry, "spirv", Model::Relaxed).failure.is_some());
 }
 
 fn assert_fails_at(report: &Report, text: &str, path: &str, statement: &str) {
     let schedule = report.failure.as_ref().expect("a failure");
     let line = text.lines().position(|line| line.contains(statement)).unwrap() + 1;
-    let place = format!("{path}:{line}");
-    assert!(schedule.steps.iter().any(|step| step.place == place), "no step at {place} in {schedule:#?}");
+    let location = format!("{path}:{line}");
+    assert!(schedule.steps.iter().any(|step| step.location == location), "no step at {location} in {schedule:#?}");
 }
 
 #[test]
 fn slot_zero_replaced_before_the_new_worst_is_found() {
     let registry = with(Registry::builtin(), "storage", "max_array", "rows/replace_then_find.wgsl", REPLACE, |_| {});
     let report = checked(&registry, "wgsl", Model::Sequential);
-    // The write goes through the template's own function; what calls it is the line after in the trace.
+    // The write is in a function of the template; its caller is the next line of the trace.
     assert_fails_at(&report, REPLACE, "rows/replace_then_find.wgsl", "keys_store(slot, pixel, entry.key);");
-    assert!(report.failure.unwrap().fault.contains("storage_bound"));
+    assert!(report.failure.unwrap().violation.contains("storage_bound"));
 }
 
 #[test]
-fn a_counter_that_says_full_too_early() {
+fn a_counter_that_is_full_too_early() {
     let registry =
         with(Registry::builtin(), "storage", "max_array", "rows/counter_before_insert.wgsl", COUNTER, |row| {
-            atomic(row, "filled");
+            atomic(row, "kept_counts");
         });
     let report = checked(&registry, "wgsl", Model::Sequential);
-    assert_fails_at(&report, COUNTER, "rows/counter_before_insert.wgsl", "filled_store(pixel, frame.k);");
+    assert_fails_at(&report, COUNTER, "rows/counter_before_insert.wgsl", "kept_counts_store(pixel, frame.k);");
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_bound_of_two_words_is_read_torn() {
         row.resources.push(halves);
         for step in &mut row.steps {
             if let Step::Pass(pass) = step {
-                let access = if pass.anchor == "store" { Access::Atomic } else { Access::Plain };
+                let access = if pass.name == "store" { Access::Atomic } else { Access::Plain };
                 pass.uses.push(Use::new("halves", access));
             }
         }
@@ -106,7 +106,7 @@ fn a_bound_of_two_words_is_read_torn() {
 
 fn revised(sync: &'static str) -> Registry {
     let registry = with(Registry::builtin(), "storage", "max_array", "rows/revised_array.wgsl", REVISED, |row| {
-        atomic(row, "filled");
+        atomic(row, "kept_counts");
     });
     with(registry, "sync", "spin_lock", "rows/revised_sync.wgsl", sync, |_| {})
 }
@@ -114,17 +114,17 @@ fn revised(sync: &'static str) -> Registry {
 #[test]
 fn the_second_algorithm_of_the_k_plus_buffer_loses_fragments_as_printed() {
     let report = checked(&revised(PRINTED), "wgsl", Model::Sequential);
-    assert_fails_at(&report, PRINTED, "rows/revised_sync.wgsl", "let reserved = filled_atomic_add(pixel, 1u);");
+    assert_fails_at(&report, PRINTED, "rows/revised_sync.wgsl", "let reserved = kept_counts_atomic_add(pixel, 1u);");
 }
 
 #[test]
-fn the_second_algorithm_holds_mended() {
-    // With late stores a wait over several words is a long one: two entries have one to wait for.
-    let two_entries = fragbuf_checker::Limits { entries: vec![1, 2], ..limits(3, Model::Late) };
+fn the_corrected_second_algorithm_holds() {
+    // Under the relaxed model, waiting for several words takes many states. With two entries there is one word to wait for.
+    let two_entries = fragbuf_checker::Limits { entries: vec![1, 2], ..limits(3, Model::Relaxed) };
     for (target, limits) in [("wgsl", limits(3, Model::Sequential)), ("spirv", two_entries)] {
-        let report = report("kplus_array", &[], target, &limits, &revised(MENDED)).unwrap();
-        assert!(report.is_whole);
-        let fault = report.failure.map(|schedule| (schedule.case, schedule.fault, schedule.steps.len()));
-        assert_eq!(fault, None, "{target}");
+        let report = report("kplus_array", &[], target, &limits, &revised(CORRECTED)).unwrap();
+        assert!(report.is_exhaustive);
+        let failure = report.failure.map(|schedule| (schedule.case, schedule.violation, schedule.steps.len()));
+        assert_eq!(failure, None, "{target}");
     }
 }

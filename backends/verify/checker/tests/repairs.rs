@@ -1,16 +1,17 @@
-//! What checksums and second looks are worth: fragments lost by `kb` and by `kb_mha`.
+//! Measures what checksums and repairs save: fragments lost by `kb` and by `kb_mha`.
 //!
-//! Every order of the accesses of two fragments at two entries, and of three at one; of three at two, where there are too
-//! many, the same number of orders by chance. Each order counts once, so a mean is one over all interleavings of single
-//! accesses, not over what a GPU does. Memory behaves. What is lost is looked for in the slots, past the checksum.
+//! Explored are all interleavings of the accesses of two fragments with two entries, and of three with one. Three fragments
+//! with two entries have too many interleavings, so random ones are sampled. Each interleaving counts once: a mean is over
+//! all interleavings of single accesses, not over those that a GPU produces. Memory is sequential. A fragment is lost if no
+//! slot holds its words, whatever the checksum is.
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
-use fragbuf_targets::check;
 use fragbuf_codegen::{Form, Linking, SymbolId, link, plan};
-use fragbuf_interpreter::{Event, Exit, Machine, Options, Place, Program, Reply, Shared};
-use fragbuf_model::Origin;
+use fragbuf_interpreter::{Bytecode, Event, Exit, Machine, Options, Reply, SharedMemory, WordAddress};
+use fragbuf_model::SourceSpan;
+use fragbuf_targets::check;
 use fragbuf_templates::Registry;
 
 use crate::subjects::{target, variant};
@@ -24,14 +25,14 @@ type Fragment = (f32, u32);
 struct Pixel {
     /// Entries.
     k: usize,
-    program: Program,
+    program: Bytecode,
     /// The words of each buffer of the program when nothing has been stored.
     empty: Vec<Vec<u32>>,
     keys: usize,
     entries: usize,
 }
 
-/// Memory, and where each fragment stands; nothing where it has ended.
+/// Memory, and the saved words of each fragment; `None` where it has ended.
 #[derive(Clone, Hash)]
 struct State {
     /// Keys, then entries.
@@ -39,19 +40,23 @@ struct State {
     fragments: Vec<Option<Vec<u32>>>,
 }
 
-/// Over all orders from a state to the ends.
+/// Losses over all interleavings from a state to the final states.
 #[derive(Clone, Copy, Default, Debug)]
-struct Tally {
-    orders: f64,
-    /// The sum of fragments that are lost.
+struct Losses {
+    interleavings: f64,
+    /// The sum of lost fragments.
     lost: f64,
-    /// Orders that lose any.
+    /// Interleavings that lose a fragment.
     lossy: f64,
 }
 
-impl Tally {
-    fn and(self, other: Tally) -> Tally {
-        Tally { orders: self.orders + other.orders, lost: self.lost + other.lost, lossy: self.lossy + other.lossy }
+impl Losses {
+    fn and(self, other: Losses) -> Losses {
+        Losses {
+            interleavings: self.interleavings + other.interleavings,
+            lost: self.lost + other.lost,
+            lossy: self.lossy + other.lossy,
+        }
     }
 }
 
@@ -59,17 +64,17 @@ impl Pixel {
     fn of(key: &str, k: usize) -> Self {
         let (registry, wgsl) = (Registry::builtin(), target("wgsl"));
         let variant = variant(key, &[("k", &k.to_string()), ("counters", "none")], &registry).unwrap();
-        let plan = plan(&variant, &variant.select(wgsl.offers).unwrap(), &registry).unwrap();
+        let plan = plan(&variant, &variant.select(wgsl.provides).unwrap(), &registry).unwrap();
         let linking = Linking { profile: wgsl.profile, form: Form::Program, prefix: String::new(), group: 0 };
         let passes = link(&plan, &linking, &registry).unwrap().passes;
-        let store = passes.into_iter().find(|pass| pass.anchor == "store").unwrap();
-        let checked = check(store, wgsl.profile, &Origin::new("test", 1, 1)).unwrap();
-        let program = Program::entry_point(checked.module(), checked.info(), "store", &Options::default()).unwrap();
+        let store = passes.into_iter().find(|pass| pass.name == "store").unwrap();
+        let checked = check(store, wgsl.profile, &SourceSpan::new("test", 1, 1)).unwrap();
+        let program = Bytecode::entry_point(checked.module(), checked.info(), "store", &Options::default()).unwrap();
         let words = |name: &str| match name {
             "frame" => plan.fields.iter().map(|field| if *field == SymbolId::K { k as u32 } else { 1 }).collect(),
             "keys" => vec![EMPTY; k],
             "entries" => vec![0; k],
-            other => panic!("the store pass touches `{other}`"),
+            other => panic!("the store pass accesses `{other}`"),
         };
         // `frame.first_row` is the row of the only pixel.
         let mut empty: Vec<Vec<u32>> = program.buffers.iter().map(|buffer| words(&buffer.name)).collect();
@@ -91,35 +96,35 @@ impl Pixel {
         machine
     }
 
-    /// Stores one fragment with nobody else there.
-    fn alone(&self, memory: &mut Vec<Vec<u32>>, fragment: Fragment) {
+    /// Stores one fragment while no other runs.
+    fn store_alone(&self, memory: &mut Vec<Vec<u32>>, fragment: Fragment) {
         let exit = self.machine(fragment).run(&mut fragbuf_interpreter::Sequential { buffers: memory });
         assert_eq!(exit, Exit::Ended);
     }
 
-    /// `new`, each before its first access, after `prior`; and which of all should be kept.
+    /// Returns the state with each of `new` before its first access, after `prior`; and the fragments that should be kept.
     fn start(&self, prior: &[Fragment], new: &[Fragment]) -> (State, Vec<Fragment>) {
         let mut memory = self.empty.clone();
-        prior.iter().for_each(|fragment| self.alone(&mut memory, *fragment));
-        let mut wanted: Vec<Fragment> = [prior, new].concat();
-        wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        wanted.truncate(self.k);
+        prior.iter().for_each(|fragment| self.store_alone(&mut memory, *fragment));
+        let mut expected: Vec<Fragment> = [prior, new].concat();
+        expected.sort_by(|a, b| a.0.total_cmp(&b.0));
+        expected.truncate(self.k);
         let mut words = [memory[self.keys].clone(), memory[self.entries].clone()].concat();
         let fragments = new.iter().map(|fragment| self.run(&mut self.machine(*fragment), None, &mut words)).collect();
-        (State { words, fragments }, wanted)
+        (State { words, fragments }, expected)
     }
 
-    /// Every order.
-    fn orders(&self, prior: &[Fragment], new: &[Fragment]) -> Tally {
-        let (start, wanted) = self.start(prior, new);
-        self.tally(&mut Machine::new(&self.program), &start, &wanted, &mut HashMap::new())
+    /// Explores every interleaving.
+    fn interleavings(&self, prior: &[Fragment], new: &[Fragment]) -> Losses {
+        let (start, expected) = self.start(prior, new);
+        self.losses(&mut Machine::new(&self.program), &start, &expected, &mut HashMap::new())
     }
 
-    /// Orders by chance: at every step any fragment that still runs.
-    fn some_orders(&self, prior: &[Fragment], new: &[Fragment], count: u32) -> Tally {
-        let (start, wanted) = self.start(prior, new);
+    /// Samples random interleavings: at every step any fragment that still runs.
+    fn random_interleavings(&self, prior: &[Fragment], new: &[Fragment], count: u32) -> Losses {
+        let (start, expected) = self.start(prior, new);
         let mut machine = Machine::new(&self.program);
-        let (mut sum, mut chance) = (Tally::default(), 0x9e37_79b9_7f4a_7c15_u64);
+        let (mut sum, mut random) = (Losses::default(), 0x9e37_79b9_7f4a_7c15_u64);
         for _ in 0..count {
             let mut state = start.clone();
             loop {
@@ -127,71 +132,71 @@ impl Pixel {
                 if running.is_empty() {
                     break;
                 }
-                chance ^= chance << 13;
-                chance ^= chance >> 7;
-                chance ^= chance << 17;
-                let at = running[((chance >> 33) % running.len() as u64) as usize];
+                random ^= random << 13;
+                random ^= random >> 7;
+                random ^= random << 17;
+                let at = running[((random >> 33) % running.len() as u64) as usize];
                 machine.load(state.fragments[at].as_ref().unwrap());
                 state.fragments[at] = self.run(&mut machine, Some(()), &mut state.words);
             }
-            sum = sum.and(self.end(&state, &wanted));
+            sum = sum.and(self.end(&state, &expected));
         }
         sum
     }
 
-    /// One order, at its end.
-    fn end(&self, state: &State, wanted: &[Fragment]) -> Tally {
-        let lost = wanted.iter().filter(|fragment| !holds(&state.words, **fragment)).count();
-        Tally { orders: 1.0, lost: lost as f64, lossy: f64::from(u8::from(lost > 0)) }
+    /// Returns the losses of one interleaving, from its final state.
+    fn end(&self, state: &State, expected: &[Fragment]) -> Losses {
+        let lost = expected.iter().filter(|fragment| !holds(&state.words, **fragment)).count();
+        Losses { interleavings: 1.0, lost: lost as f64, lossy: f64::from(u8::from(lost > 0)) }
     }
 
-    /// Up to the next access: `first` is let through.
+    /// Runs a machine to its next access; `first`: performs the access at which it has stopped.
     fn run(&self, machine: &mut Machine<'_>, first: Option<()>, words: &mut [u32]) -> Option<Vec<u32>> {
-        match machine.run(&mut OneAccess { pixel: self, words, left: first }) {
+        match machine.run(&mut OneAccess { pixel: self, words, allowed: first }) {
             Exit::Ended => None,
             Exit::Stopped(Event::Access(_)) => {
                 let mut saved = Vec::new();
                 machine.save(&mut saved);
                 Some(saved)
             }
-            other => panic!("a fragment comes to {other:?}"),
+            other => panic!("a fragment stops at {other:?}"),
         }
     }
 
-    fn tally<'p>(
+    fn losses<'p>(
         &'p self,
         machine: &mut Machine<'p>,
         state: &State,
-        wanted: &[Fragment],
-        known: &mut HashMap<u128, Tally>,
-    ) -> Tally {
+        expected: &[Fragment],
+        known: &mut HashMap<u128, Losses>,
+    ) -> Losses {
         let print = fingerprint(state);
-        if let Some(tally) = known.get(&print) {
-            return *tally;
+        if let Some(losses) = known.get(&print) {
+            return *losses;
         }
-        let mut sum = Tally::default();
+        let mut sum = Losses::default();
         for (at, saved) in state.fragments.iter().enumerate() {
             let Some(saved) = saved else { continue };
             let mut next = state.clone();
             machine.load(saved);
             next.fragments[at] = self.run(machine, Some(()), &mut next.words);
-            sum = sum.and(self.tally(machine, &next, wanted, known));
+            sum = sum.and(self.losses(machine, &next, expected, known));
         }
-        if sum.orders == 0.0 {
-            sum = self.end(state, wanted);
+        if sum.interleavings == 0.0 {
+            sum = self.end(state, expected);
         }
         known.insert(print, sum);
         sum
     }
 }
 
-/// Whether a slot has both words of a fragment. No depth has the two highest bits, where a checksum may stand.
+/// Returns whether a slot holds both words of a fragment. No depth uses the two highest bits, which may hold a checksum.
 fn holds(words: &[u32], (depth, color): Fragment) -> bool {
     let (keys, entries) = words.split_at(words.len() / 2);
     keys.iter().zip(entries).any(|(key, entry)| (key & 0x3fff_ffff, *entry) == (depth.to_bits(), color))
 }
 
-/// Two hashes of a state, with different seeds.
+/// Returns two hashes of a state, with different seeds.
 fn fingerprint(state: &State) -> u128 {
     let half = |seed: u64| {
         let mut hasher = std::hash::DefaultHasher::new();
@@ -201,26 +206,26 @@ fn fingerprint(state: &State) -> u128 {
     half(1) << 64 | half(2)
 }
 
-/// Memory that lets one access happen, if any, and stops before the next.
+/// Memory that performs one access at most, and stops before the next.
 struct OneAccess<'a> {
     pixel: &'a Pixel,
     words: &'a mut [u32],
-    left: Option<()>,
+    allowed: Option<()>,
 }
 
-impl Shared for OneAccess<'_> {
+impl SharedMemory for OneAccess<'_> {
     fn length(&self, buffer: u16) -> u32 {
         self.pixel.empty[usize::from(buffer)].len() as u32
     }
 
-    fn constant(&self, place: Place) -> u32 {
-        self.pixel.empty[usize::from(place.buffer)][place.word as usize]
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.pixel.empty[usize::from(address.buffer)][address.word as usize]
     }
 
     fn event(&mut self, event: &Event) -> Reply {
-        let (Some(()), Event::Access(access)) = (self.left.take(), event) else { return Reply::Stop };
-        let first = if usize::from(access.place.buffer) == self.pixel.keys { 0 } else { self.pixel.k };
-        let word = &mut self.words[first + access.place.word as usize];
+        let (Some(()), Event::Access(access)) = (self.allowed.take(), event) else { return Reply::Stop };
+        let first = if usize::from(access.address.buffer) == self.pixel.keys { 0 } else { self.pixel.k };
+        let word = &mut self.words[first + access.address.word as usize];
         let old = u64::from(*word);
         *word = access.new_value(old) as u32;
         Reply::Done(old)
@@ -230,38 +235,40 @@ impl Shared for OneAccess<'_> {
 const NEW: [Fragment; 3] = [(0.5, 0x8012_ff40), (0.25, 0xff03_2190), (0.375, 0x4099_0177)];
 const FARTHER: [Fragment; 2] = [(0.75, 0xc0ff_0011), (0.875, 0x2000_ffee)];
 
-/// Prints what both techniques lose; the second must lose less.
-fn compare(k: usize, what: &str, losses: impl Fn(&Pixel) -> Tally) {
-    let [plain, mended] = ["kb", "kb_mha"].map(|key| {
-        let tally = losses(&Pixel::of(key, k));
+/// Prints the losses of both techniques. The second must lose less.
+fn compare(k: usize, what: &str, losses: impl Fn(&Pixel) -> Losses) {
+    let [plain, repaired] = ["kb", "kb_mha"].map(|key| {
+        let losses = losses(&Pixel::of(key, k));
         println!(
-            "{key}, k = {k}, {what}: {:.3e} orders, {:.4} lost in the mean, {:.2} % lose any",
-            tally.orders,
-            tally.lost / tally.orders,
-            100.0 * tally.lossy / tally.orders
+            "{key}, k = {k}, {what}: {:.3e} interleavings, mean loss {:.4}, {:.2} % lose a fragment",
+            losses.interleavings,
+            losses.lost / losses.interleavings,
+            100.0 * losses.lossy / losses.interleavings
         );
-        tally
+        losses
     });
     assert!(plain.lossy > 0.0, "k = {k}, {what}: nothing races");
-    assert!(mended.lost / mended.orders < plain.lost / plain.orders, "k = {k}, {what}");
+    assert!(repaired.lost / repaired.interleavings < plain.lost / plain.interleavings, "k = {k}, {what}");
 }
 
 #[test]
-fn looking_twice_loses_fewer_fragments() {
-    for (prior, what) in [(&FARTHER[..0], "empty before"), (&FARTHER[..], "full before")] {
-        compare(2, &format!("{what}, every order of 2"), |pixel| pixel.orders(prior, &NEW[..2]));
-        compare(2, &format!("{what}, some orders of 3"), |pixel| pixel.some_orders(prior, &NEW, 20_000));
+fn repairs_lose_fewer_fragments() {
+    for (prior, what) in [(&FARTHER[..0], "initially empty"), (&FARTHER[..], "initially full")] {
+        compare(2, &format!("{what}, every interleaving of 2"), |pixel| pixel.interleavings(prior, &NEW[..2]));
+        compare(2, &format!("{what}, random interleavings of 3"), |pixel| {
+            pixel.random_interleavings(prior, &NEW, 20_000)
+        });
     }
-    compare(1, "empty before, every order of 2", |pixel| pixel.orders(&[], &NEW[..2]));
-    compare(1, "empty before, every order of 3", |pixel| pixel.orders(&[], &NEW));
+    compare(1, "initially empty, every interleaving of 2", |pixel| pixel.interleavings(&[], &NEW[..2]));
+    compare(1, "initially empty, every interleaving of 3", |pixel| pixel.interleavings(&[], &NEW));
 }
 
 #[test]
-fn one_after_the_other_nothing_is_lost() {
+fn sequential_fragments_are_not_lost() {
     for key in ["kb", "kb_mha"] {
         let pixel = Pixel::of(key, 2);
         let mut memory = pixel.empty.clone();
-        NEW.iter().for_each(|fragment| pixel.alone(&mut memory, *fragment));
+        NEW.iter().for_each(|fragment| pixel.store_alone(&mut memory, *fragment));
         let words = [memory[pixel.keys].clone(), memory[pixel.entries].clone()].concat();
         assert_eq!(NEW.map(|fragment| holds(&words, fragment)), [false, true, true], "{key}");
     }

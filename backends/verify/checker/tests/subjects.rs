@@ -1,25 +1,25 @@
-//! Techniques with changes, checked in one line.
+//! Checks a technique with changes in one call.
 
-use fragbuf_targets::{TARGETS, Target};
 use fragbuf_checker::{Error, Limits, Model, Report, check_variant};
-use fragbuf_model::{Diagnostics, Draft, Origin, Variant, check};
+use fragbuf_model::{Diagnostics, Draft, SourceSpan, Variant, check};
+use fragbuf_targets::{TARGETS, Target};
 use fragbuf_templates::Registry;
 
 pub(crate) fn target(name: &str) -> &'static Target {
     TARGETS.iter().find(|target| target.name == name).unwrap()
 }
 
-/// A technique with `--set` changes; every event is counted.
+/// Returns a technique with `--set` changes. Every event is counted.
 pub(crate) fn variant(key: &str, set: &[(&str, &str)], registry: &Registry) -> Result<Variant, Diagnostics> {
-    let origin = Origin::new("test", 1, 1);
-    let mut draft = Draft::from_technique(key, &origin);
+    let span = SourceSpan::new("test", 1, 1);
+    let mut draft = Draft::from_technique(key, &span);
     for (name, value) in [("counters", "all")].iter().chain(set) {
-        draft.set(name, value, &origin).unwrap();
+        draft.set(name, value, &span).unwrap();
     }
     check(&draft, registry)
 }
 
-/// Up to `fragments` at once.
+/// Returns limits of two to `fragments` concurrent fragments.
 pub(crate) fn limits(fragments: u32, model: Model) -> Limits {
     Limits { fragments: (2..=fragments).collect(), model, ..Limits::default() }
 }

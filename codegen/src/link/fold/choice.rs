@@ -1,6 +1,6 @@
 //! Simplifies `if` statements whose condition is known, or whose branches do nothing.
 //!
-//! In: an `if` with its branches. Out: edits that leave the branch that is taken.
+//! Input: an `if` with its branches. Output: edits that keep the branch that is taken.
 
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use super::syntax::{Block, Branch, Kind, Statement};
 use super::values::Position;
 
 impl Rules<'_> {
-    /// An `if` and all its branches.
+    /// Simplifies an `if` and its branches.
     pub(super) fn choice(&mut self, statement: &Range<usize>, branches: &[Branch]) {
         let conditions: Vec<Option<Expression>> =
-            branches.iter().map(|branch| self.read(branch.condition.clone())).collect();
+            branches.iter().map(|branch| self.parse(branch.condition.clone())).collect();
         let decided = conditions.iter().position(|condition| self.decision(condition).is_some());
         let Some((at, taken)) = decided.and_then(|at| Some((at, self.decision(&conditions[at])?))) else {
             return self.undecided(statement, branches, &conditions);
@@ -34,15 +34,15 @@ impl Rules<'_> {
             // `else if true {…}` becomes `else {…}`, and ends the chain.
             (_, true, _) => {
                 self.cut(branch.condition.start - 1, branch.block.open);
-                self.cut_behind(branch.block.close, statement.end);
+                self.cut_after(branch.block.close, statement.end);
             }
-            // `else if false {…}` goes.
-            (_, false, _) => self.cut_behind(branches[at - 1].block.close, branch.block.close + 1),
+            // `else if false {…}` is removed.
+            (_, false, _) => self.cut_after(branches[at - 1].block.close, branch.block.close + 1),
         }
     }
 
     fn decision(&self, condition: &Option<Expression>) -> Option<bool> {
-        self.values.truth(condition.as_ref()?)
+        self.values.boolean(condition.as_ref()?)
     }
 
     fn undecided(&mut self, statement: &Range<usize>, branches: &[Branch], conditions: &[Option<Expression>]) {
@@ -56,7 +56,7 @@ impl Rules<'_> {
                 if self.is_empty(&last.block)
                     && (last.condition.is_empty() || conditions.last().is_some_and(is_pure)) =>
             {
-                return self.cut_behind(before.block.close, statement.end);
+                return self.cut_after(before.block.close, statement.end);
             }
             _ => {}
         }
@@ -70,7 +70,7 @@ impl Rules<'_> {
         block.open + 1 == block.close
     }
 
-    /// Puts the statements of `block` in place of the statement that it is a branch of.
+    /// Replaces a statement by the statements of `block`, one of its branches.
     fn unwrap(&mut self, statement: &Range<usize>, block: &Block) {
         let has_lines = self.has_lines(statement, block);
         if !has_lines && self.is_empty(block) {
@@ -92,8 +92,8 @@ impl Rules<'_> {
         self.values.edits.push(removal(last..outer.end));
     }
 
-    /// Whether what a block declares can be declared around it: no other declaration has such a name, and no such name means
-    /// anything else around the block.
+    /// Tests whether the declarations of a block can move out of it: no other declaration has their names, and the names have no other
+    /// meaning around the block.
     fn may_move(&self, block: &Block) -> bool {
         let inner = block.open..block.close;
         let declared = block.statements.iter().filter_map(|inner| declared(self.tokens, inner.tokens.start));
@@ -103,8 +103,8 @@ impl Rules<'_> {
         })
     }
 
-    /// Whether the lines of the statement and of the block's braces hold nothing else, comments apart: they are removed
-    /// whole.
+    /// Tests whether the lines with the ends of the statement and the braces of the block contain nothing else except comments, so that
+    /// whole lines can be removed.
     fn has_lines(&self, statement: &Range<usize>, block: &Block) -> bool {
         let line = |index: usize| self.line_start(self.tokens[index].at);
         let is_first = |index: usize| index == 0 || line(index - 1) < line(index);
@@ -112,21 +112,21 @@ impl Rules<'_> {
         is_first(statement.start) && is_last(block.open) && is_first(block.close) && is_last(statement.end - 1)
     }
 
-    /// `if a { return true; } return false;` becomes `return a;`, and the reverse `return !a;`.
+    /// Replaces `if a { return true; } return false;` by `return a;`, and the reverse by `return !a;`.
     pub(super) fn join_returns(&mut self, statement: &Statement, next: &Statement) -> bool {
         let Kind::If(branches) = &statement.kind else { return false };
         let ([branch], false) = (branches.as_slice(), self.is_first) else { return false };
         let [inner] = branch.block.statements.as_slice() else { return false };
-        let values = (self.returned(inner), self.returned(next), self.read(branch.condition.clone()));
+        let values = (self.returned(inner), self.returned(next), self.parse(branch.condition.clone()));
         let (Some(value), Some(other), Some(condition)) = values else { return false };
-        if value == other || self.values.truth(&condition).is_some() {
+        if value == other || self.values.boolean(&condition).is_some() {
             return false;
         }
-        let is_denial = self.tokens[branch.condition.start].text == "!";
-        let is_denied = !value && is_denial && matches!(condition.kind, expression::Kind::Unary(_));
-        let start = branch.condition.start + usize::from(is_denied);
-        let [before, behind] = match condition.kind {
-            _ if value || is_denied => ["return ", ";"],
+        let has_negation = self.tokens[branch.condition.start].text == "!";
+        let is_negated = !value && has_negation && matches!(condition.kind, expression::Kind::Unary(_));
+        let start = branch.condition.start + usize::from(is_negated);
+        let [before, after] = match condition.kind {
+            _ if value || is_negated => ["return ", ";"],
             expression::Kind::Unary(_) | expression::Kind::Binary(..) => ["return !(", ");"],
             _ => ["return !", ";"],
         };
@@ -138,19 +138,19 @@ impl Rules<'_> {
             return false;
         }
         self.values.edits.push(Edit { range: whole.start..kept.start, text: before.to_owned() });
-        self.values.edits.push(Edit { range: kept.end..whole.end, text: behind.to_owned() });
+        self.values.edits.push(Edit { range: kept.end..whole.end, text: after.to_owned() });
         true
     }
 
-    /// What a statement returns, if it is `true` or `false`.
+    /// Returns the Boolean literal that a statement returns.
     fn returned(&self, statement: &Statement) -> Option<bool> {
-        let [word, value, _] = &self.tokens[statement.tokens.clone()] else { return None };
+        let [keyword, value, _] = &self.tokens[statement.tokens.clone()] else { return None };
         match value.text {
-            "true" | "false" if word.text == "return" => Some(value.text == "true"),
+            "true" | "false" if keyword.text == "return" => Some(value.text == "true"),
             _ => None,
         }
     }
 }
 
-/// Spaces of one level of blocks.
+/// The indentation of one level of blocks, in spaces.
 const INDENT: usize = 4;

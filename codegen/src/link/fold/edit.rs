@@ -1,22 +1,22 @@
-//! Applies edits to a text, and keeps the line that each of its lines comes from.
+//! Applies edits to a source, and records the origin of each line.
 //!
-//! In: a text with the origins of its lines, and edits. Out: the same after the edits.
+//! Input: a source with the origins of its lines, and edits. Output: the edited source with the origins of its lines.
 
 use std::ops::Range;
 
-/// Puts `text`, which has no line break, in place of a range of bytes.
+/// The replacement of a range of bytes by `text`, which has no line break.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Edit {
     pub(super) range: Range<usize>,
     pub(super) text: String,
 }
 
-/// Removes a range.
+/// Returns an edit that removes a range.
 pub(super) fn removal(range: Range<usize>) -> Edit {
     Edit { range, text: String::new() }
 }
 
-/// A text, and for each of its lines the one that it comes from.
+/// A source, and the original line of each of its lines, from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Lines {
     pub(super) text: String,
@@ -24,16 +24,21 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// A text as it was written; lines count from 0.
-    pub(super) fn written(text: &str) -> Self {
+    /// Creates a source before edits.
+    pub(super) fn new(text: &str) -> Self {
         Lines { text: text.to_owned(), origins: (0..text.lines().count()).collect() }
     }
 
-    /// Applies the edits. Where two overlap, the later one begins where the earlier ends; one inside of another is left out.
+    /// Applies the edits. If two overlap, the later one begins at the end of the earlier one. An edit inside another is ignored.
     pub(super) fn apply(&self, mut edits: Vec<Edit>) -> Self {
         edits.sort_by_key(|edit| (edit.range.start, edit.range.end));
-        let mut copy =
-            Copy { old: self, new: Lines { text: String::new(), origins: Vec::new() }, line: 0, at: 0, is_cut: false };
+        let mut copy = LineCopy {
+            old: self,
+            new: Lines { text: String::new(), origins: Vec::new() },
+            line: 0,
+            at: 0,
+            is_cut: false,
+        };
         for edit in edits {
             if edit.range.start < copy.at && edit.range.end <= copy.at {
                 continue;
@@ -49,17 +54,18 @@ impl Lines {
     }
 }
 
-struct Copy<'l> {
+/// The state of applying edits.
+struct LineCopy<'l> {
     old: &'l Lines,
     new: Lines,
     /// The line of `at`.
     line: usize,
     at: usize,
-    /// Whether what comes next did not follow the new text's end before.
+    /// Whether the next text did not follow the end of the new text before the edits.
     is_cut: bool,
 }
 
-impl Copy<'_> {
+impl LineCopy<'_> {
     fn keep(&mut self, end: usize) {
         let old = self.old;
         for piece in old.text[self.at..end].split_inclusive('\n') {
@@ -87,9 +93,9 @@ impl Copy<'_> {
     }
 }
 
-/// Whether the last token of one text and the first of another would be read as one, or as a comment.
-fn joins(before: &str, behind: &str) -> bool {
-    let (Some(&last), Some(&first)) = (before.as_bytes().last(), behind.as_bytes().first()) else { return false };
+/// Tests whether the last token of one text and the first of another would form one token or a comment.
+fn joins(before: &str, after: &str) -> bool {
+    let (Some(&last), Some(&first)) = (before.as_bytes().last(), after.as_bytes().first()) else { return false };
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || !byte.is_ascii();
     match (last, first) {
         (b'+' | b'-' | b'&' | b'|' | b'<' | b'>' | b'=' | b'/', _) if last == first => true,

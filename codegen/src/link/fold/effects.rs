@@ -1,20 +1,20 @@
 //! Decides whether code has side effects.
 //!
-//! In: tokens of a function, or the name of a built-in function. Out: whether it writes to anything but local variables, or
-//! discards. Loops are assumed to end; no read is a side effect.
+//! Input: tokens of a function, or the name of a built-in function. Output: whether it discards, or writes to anything but local
+//! variables. Loops are assumed to end; a read is not a side effect.
 
 use super::locals::{KEYWORDS, Locals};
 use crate::link::token::{Token, TokenKind};
 
-/// Whether a function has effects of its own; those of the functions that it calls are left out.
+/// Tests whether a function has side effects, ignoring those of the functions that it calls.
 pub(in crate::link) fn has_effects(tokens: &[Token<'_>]) -> bool {
     let locals = Locals::of(tokens);
-    let is_write = |index: usize| writes(tokens, index) && !stays_inside(tokens, &locals, index);
+    let is_write = |index: usize| writes(tokens, index) && !is_local_write(tokens, &locals, index);
     let is_built_in = |token: &Token<'_>| token.kind == TokenKind::Name && built_in_has_effects(token.text);
     (0..tokens.len()).any(|index| is_write(index) || is_built_in(&tokens[index]))
 }
 
-/// Whether a call of WGSL's own function does more than return a value.
+/// Tests whether a call of a built-in function has side effects.
 pub(super) fn built_in_has_effects(name: &str) -> bool {
     let is_atomic = name.starts_with("atomic") && !matches!(name, "atomic" | "atomicLoad");
     is_atomic
@@ -24,7 +24,7 @@ pub(super) fn built_in_has_effects(name: &str) -> bool {
         || name.starts_with("workgroupUniform")
 }
 
-/// Whether an assignment, an increment or a decrement stands at `index`.
+/// Tests whether the token at `index` is an assignment, an increment or a decrement.
 fn writes(tokens: &[Token<'_>], index: usize) -> bool {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
     let joins = |at: usize| at > 0 && tokens[at - 1].at + 1 == tokens[at].at;
@@ -42,18 +42,18 @@ fn writes(tokens: &[Token<'_>], index: usize) -> bool {
     }
 }
 
-/// Whether the write at `index` is a declaration, or changes a local variable. What begins with anything but the name of a
-/// variable may write through a pointer.
-fn stays_inside(tokens: &[Token<'_>], locals: &Locals<'_>, index: usize) -> bool {
+/// Tests whether the write at `index` is a declaration, or changes a local variable. A statement that does not begin with the name of a
+/// variable can write through a pointer.
+fn is_local_write(tokens: &[Token<'_>], locals: &Locals<'_>, index: usize) -> bool {
     let first = target(tokens, index);
     let name = tokens[first].text;
     name == "_" || KEYWORDS.contains(&name) || locals.at(name, first).is_some_and(|local| local.keyword == "var")
 }
 
-/// The first token of the statement that holds `index`.
+/// Returns the first token of the statement that contains `index`.
 fn target(tokens: &[Token<'_>], index: usize) -> usize {
     let before = tokens[..index].iter().rposition(|token| matches!(token.text, ";" | "{" | "}"));
     let start = before.map_or(0, |before| before + 1);
-    // The head of a loop: `for (var index = ...`.
+    // The header of a loop: `for (var index = ...`.
     if tokens[start].text == "for" { (start + 2).min(index) } else { start }
 }

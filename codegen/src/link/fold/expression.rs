@@ -1,7 +1,7 @@
-//! Parses expressions, as a tree over ranges of tokens.
+//! Parses expressions into trees over ranges of tokens.
 //!
-//! In: the tokens of an expression. Out: its tree, or nothing where it cannot be parsed. A token is a single character of an
-//! operator, so two that touch make one operator.
+//! Input: the tokens of an expression. Output: its tree, or `None` if it cannot be parsed. A token is a single character of an
+//! operator, so two adjacent tokens can form one operator.
 
 use std::ops::Range;
 
@@ -14,11 +14,12 @@ pub(super) struct Expression {
     pub(super) kind: Kind,
 }
 
+/// The kind of an expression.
 #[derive(Debug)]
 pub(super) enum Kind {
-    /// One name or number, or a type.
+    /// A name, a number or a type.
     Atom,
-    /// A function's name or a type, and arguments.
+    /// A function or a type, and arguments.
     Call(Vec<Expression>),
     Parenthesised(Box<Expression>),
     /// `!x`, `-x`, `&x`, ...: the operator is the first token.
@@ -28,14 +29,14 @@ pub(super) enum Kind {
     Part(Box<Expression>, Option<Box<Expression>>),
 }
 
-/// Reads all of `range`.
-pub(super) fn read(tokens: &[Token<'_>], range: Range<usize>) -> Option<Expression> {
-    let mut reader = Reader { tokens: &tokens[..range.end], at: range.start };
-    let expression = reader.binary(0)?;
-    (reader.at == range.end).then_some(expression)
+/// Parses the whole `range`.
+pub(super) fn parse(tokens: &[Token<'_>], range: Range<usize>) -> Option<Expression> {
+    let mut parser = Parser { tokens: &tokens[..range.end], at: range.start };
+    let expression = parser.binary(0)?;
+    (parser.at == range.end).then_some(expression)
 }
 
-/// By strength, the weakest first. Of two that begin alike the longer comes first.
+/// The binary operators and their precedence. Of two operators with the same first character, the longer precedes.
 const OPERATORS: [(&str, usize); 18] = [
     ("||", 1),
     ("&&", 2),
@@ -57,12 +58,12 @@ const OPERATORS: [(&str, usize); 18] = [
     ("%", 9),
 ];
 
-struct Reader<'t> {
+struct Parser<'t> {
     tokens: &'t [Token<'t>],
     at: usize,
 }
 
-impl Reader<'_> {
+impl Parser<'_> {
     fn text(&self, at: usize) -> &str {
         self.tokens.get(at).map_or("", |token| token.text)
     }
@@ -83,11 +84,11 @@ impl Reader<'_> {
         })
     }
 
-    fn binary(&mut self, weakest: usize) -> Option<Expression> {
+    fn binary(&mut self, minimum: usize) -> Option<Expression> {
         let mut left = self.unary()?;
-        while let Some((operator, strength)) = self.operator().filter(|(_, strength)| *strength > weakest) {
+        while let Some((operator, precedence)) = self.operator().filter(|(_, precedence)| *precedence > minimum) {
             self.at += operator.len();
-            let right = self.binary(strength)?;
+            let right = self.binary(precedence)?;
             let tokens = left.tokens.start..right.tokens.end;
             left = Expression { tokens, kind: Kind::Binary(operator, Box::new(left), Box::new(right)) };
         }
@@ -153,7 +154,7 @@ impl Reader<'_> {
         Some(arguments)
     }
 
-    /// `<…>` behind the name of a type.
+    /// Skips `<…>` after the name of a type.
     fn types(&mut self) -> Option<()> {
         let mut depth = 0usize;
         loop {
@@ -171,7 +172,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether `<` behind this name begins a list of types.
+/// Tests whether `<` after this name begins a list of types.
 pub(super) fn is_template(name: &str) -> bool {
     let is_sized = |stem: &str| name.strip_prefix(stem).is_some_and(|rest| rest.starts_with(['2', '3', '4']));
     matches!(name, "array" | "bitcast" | "atomic" | "ptr") || is_sized("vec") || is_sized("mat")

@@ -1,6 +1,6 @@
-//! Removes statements as lines of text, so that no empty line, comment or indentation is left behind.
+//! Removes statements as whole lines, so that no empty line, comment or indentation remains.
 //!
-//! In: ranges of tokens. Out: edits.
+//! Input: ranges of tokens. Output: edits.
 
 use std::ops::Range;
 
@@ -34,26 +34,26 @@ impl Rules<'_> {
         self.values.edits.push(removal(self.tokens[from].at..self.tokens[to].at));
     }
 
-    /// Removes what stands behind one token, up to the end of the tokens before `end`.
-    pub(super) fn cut_behind(&mut self, token: usize, end: usize) {
+    /// Removes the text after one token, up to the end of the token before `end`.
+    pub(super) fn cut_after(&mut self, token: usize, end: usize) {
         let start = self.tokens[token].at + self.tokens[token].text.len();
         let last = self.tokens[end - 1];
         self.values.edits.push(removal(start..last.at + last.text.len()));
     }
 
-    /// The lines of some tokens with the comments above; the tokens alone where others stand on their lines.
+    /// Returns the lines of some tokens with the comments above, or only the tokens if others are on their lines.
     pub(super) fn whole_lines(&self, tokens: &Range<usize>) -> Range<usize> {
         let bytes = self.values.bytes(tokens);
         let (start, end) = (self.line_start(bytes.start), self.line_end(bytes.end));
-        let (before, behind) = (self.text[start..bytes.start].trim(), self.text[bytes.end..end].trim());
-        if before.is_empty() && (behind.is_empty() || behind.starts_with("//")) {
+        let (before, after) = (self.text[start..bytes.start].trim(), self.text[bytes.end..end].trim());
+        if before.is_empty() && (after.is_empty() || after.starts_with("//")) {
             return self.with_comments(start)..end;
         }
         let space = self.text[bytes.end..end].bytes().take_while(|byte| *byte == b' ').count();
         bytes.start..bytes.end + space
     }
 
-    /// Where the comments begin that stand directly above a line.
+    /// Returns the start of the comments directly above a line.
     fn with_comments(&self, line: usize) -> usize {
         let mut start = line;
         while start > 0 {

@@ -1,23 +1,23 @@
-//! Finds the local declarations of a function, and where each of them holds.
+//! Finds the local declarations of a function and their scopes.
 //!
-//! In: the tokens of a function. Out: its parameters, variables and constants, each with the tokens where its name means it.
+//! Input: the tokens of a function. Output: its parameters, variables and constants, each with the tokens of its scope.
 
 use std::ops::Range;
 
 use crate::link::token::{Token, TokenKind};
 
-/// What a declaration begins with.
+/// The keywords of declarations.
 pub(super) const KEYWORDS: [&str; 3] = ["let", "var", "const"];
 
-/// One declaration in a function.
+/// A declaration in a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Local<'a> {
     pub(super) name: &'a str,
     /// `let`, `var` or `const`; empty for a parameter.
     pub(super) keyword: &'a str,
-    /// The tokens behind it, up to the brace that ends its block.
+    /// The tokens after it, up to the brace that ends its block.
     scope: Range<usize>,
-    /// How many braces are open where it holds.
+    /// The number of open braces in its scope.
     depth: usize,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Local<'a> {
 pub(super) struct Locals<'a>(Vec<Local<'a>>);
 
 impl<'a> Locals<'a> {
-    /// Those of the function that `tokens` are.
+    /// Returns the declarations of a function.
     pub(super) fn of(tokens: &[Token<'a>]) -> Self {
         let mut locals = parameters(tokens);
         let mut depth = 0usize;
@@ -44,12 +44,12 @@ impl<'a> Locals<'a> {
         Locals(locals)
     }
 
-    /// What a name means at a token, if that is local: the innermost declaration.
+    /// Returns the innermost declaration of a name at a token.
     pub(super) fn at(&self, name: &str, index: usize) -> Option<&Local<'a>> {
         self.0.iter().rev().find(|local| local.name == name && local.scope.contains(&index))
     }
 
-    /// How often a name is declared.
+    /// Counts the declarations of a name.
     pub(super) fn count(&self, name: &str) -> usize {
         self.0.iter().filter(|local| local.name == name).count()
     }
@@ -59,7 +59,7 @@ impl<'a> Locals<'a> {
     }
 }
 
-/// The token of the name that a declaration at `index` gives, if one begins there: `let x`, `var<function> x`.
+/// Returns the token of the name in a declaration that begins at `index`: `let x`, `var<function> x`.
 pub(super) fn declared(tokens: &[Token<'_>], index: usize) -> Option<usize> {
     KEYWORDS.contains(&tokens[index].text).then_some(())?;
     let is_listed = tokens.get(index + 1).is_some_and(|next| next.text == "<");
@@ -68,7 +68,7 @@ pub(super) fn declared(tokens: &[Token<'_>], index: usize) -> Option<usize> {
     tokens.get(name).is_some_and(|token| token.kind == TokenKind::Name).then_some(name)
 }
 
-/// The names before a colon in front of the body: types hold none.
+/// Returns the parameters: the names before a colon in the signature. Types contain no colon.
 fn parameters<'a>(tokens: &[Token<'a>]) -> Vec<Local<'a>> {
     let open = tokens.iter().position(|token| token.text == "{").unwrap_or(tokens.len());
     let named = tokens[..open].windows(2).filter(|pair| pair[1].text == ":");
@@ -78,10 +78,10 @@ fn parameters<'a>(tokens: &[Token<'a>]) -> Vec<Local<'a>> {
 
 fn declaration<'a>(tokens: &[Token<'a>], index: usize, depth: usize) -> Option<Local<'a>> {
     let name = declared(tokens, index)?;
-    // Its own value does not see it yet.
+    // Its scope does not include its initial value.
     let start = (name..tokens.len()).find(|&at| tokens[at].text == ";")?;
-    // What a `for` declares ends with the loop's block.
-    let is_head = index > 1 && tokens[index - 1].text == "(" && tokens[index - 2].text == "for";
-    let depth = depth + usize::from(is_head);
+    // The scope of a declaration in the header of a `for` ends with the block of the loop.
+    let is_in_header = index > 1 && tokens[index - 1].text == "(" && tokens[index - 2].text == "for";
+    let depth = depth + usize::from(is_in_header);
     Some(Local { name: tokens[name].text, keyword: tokens[index].text, scope: start..tokens.len(), depth })
 }

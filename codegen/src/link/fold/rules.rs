@@ -1,25 +1,32 @@
-//! Removes statements without effect: one round over one function.
+//! Removes statements without effect: one iteration over one function.
 //!
-//! In: a function's text, and what is known of the names in it. Out: edits. What they make possible is left to the next
-//! round. Comments directly above a removed statement are removed with it.
+//! Input: the source of a function, and the declarations around it. Output: edits. Further edits that they enable follow in the next
+//! iteration. Comments directly above a removed statement are removed with it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::edit::Edit;
+use super::environment::Environment;
 use super::expression::{self, Expression};
 use super::locals::{KEYWORDS, Locals};
 use super::substitute::Substitute;
 use super::syntax::{self, Block, Kind, Statement};
-use super::values::{Known, Position, Values};
+use super::values::{Position, Values};
 use crate::link::token::{Token, TokenKind};
 
-/// The edits of one round; none where the function cannot be read. `is_first`: nothing has changed so far.
-pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_first: bool) -> Vec<Edit> {
+/// Returns the edits of one iteration; none if the function cannot be parsed. `is_first` is true before the first change.
+pub(super) fn edits(text: &str, tokens: &[Token<'_>], environment: &Environment<'_>, is_first: bool) -> Vec<Edit> {
     let Some(body) = syntax::body(tokens) else { return Vec::new() };
     let locals = Locals::of(tokens);
-    let values =
-        Values { tokens, known, locals: &locals, tidies: !is_first, truths: BTreeMap::new(), edits: Vec::new() };
+    let values = Values {
+        tokens,
+        environment,
+        locals: &locals,
+        removes_parentheses: !is_first,
+        constant_locals: BTreeMap::new(),
+        edits: Vec::new(),
+    };
     let mut rules = Rules { text, tokens, locals: &locals, is_first, values };
     rules.block(&body);
     match body.statements.last().map(|last| last.tokens.clone()) {
@@ -29,7 +36,7 @@ pub(super) fn edits(text: &str, tokens: &[Token<'_>], known: &Known<'_>, is_firs
     rules.values.edits
 }
 
-/// The rules on one function.
+/// The state of the rules on one function.
 pub(super) struct Rules<'r> {
     pub(super) text: &'r str,
     pub(super) tokens: &'r [Token<'r>],
@@ -46,63 +53,63 @@ impl Rules<'_> {
                 break;
             }
             self.statement(statement, block);
-            // What continues a loop runs after every `continue`.
-            let is_left_out = |other: &&Statement| self.tokens[other.tokens.start].text != "continuing";
-            let rest: Vec<&Statement> = rest.iter().filter(is_left_out).collect();
-            if let (true, Some(first), Some(last)) = (self.leaves(statement), rest.first(), rest.last()) {
+            // A `continuing` block runs after every `continue`.
+            let is_unreachable = |other: &&Statement| self.tokens[other.tokens.start].text != "continuing";
+            let rest: Vec<&Statement> = rest.iter().filter(is_unreachable).collect();
+            if let (true, Some(first), Some(last)) = (self.is_jump(statement), rest.first(), rest.last()) {
                 self.remove(&(first.tokens.start..last.tokens.end));
                 break;
             }
         }
     }
 
-    /// Whether nothing behind it in its block runs.
-    fn leaves(&self, statement: &Statement) -> bool {
-        let word = |number: usize| self.tokens.get(statement.tokens.start + number).map_or("", |token| token.text);
+    /// Tests whether the statements after it in its block are unreachable.
+    fn is_jump(&self, statement: &Statement) -> bool {
+        let token = |number: usize| self.tokens.get(statement.tokens.start + number).map_or("", |token| token.text);
         matches!(statement.kind, Kind::Simple)
-            && matches!(word(0), "return" | "break" | "continue")
-            && (word(0), word(1)) != ("break", "if")
+            && matches!(token(0), "return" | "break" | "continue")
+            && (token(0), token(1)) != ("break", "if")
     }
 
     fn statement(&mut self, statement: &Statement, around: &Block) {
         match &statement.kind {
             Kind::Simple => self.simple(&statement.tokens, around),
             Kind::If(branches) => self.choice(&statement.tokens, branches),
-            Kind::Other(heads, blocks) => {
-                heads.iter().for_each(|head| self.head(head));
+            Kind::Other(headers, blocks) => {
+                headers.iter().for_each(|header| self.header(header));
                 blocks.iter().for_each(|block| self.block(block));
             }
         }
     }
 
-    /// What stands before a loop's or a switch's brace: one expression, or a `for`'s three parts.
-    fn head(&mut self, head: &Range<usize>) {
-        let parts: Vec<usize> = head.clone().filter(|&index| self.tokens[index].text == ";").collect();
+    /// Folds the header of a loop or a switch: one expression, or the three parts of a `for`.
+    fn header(&mut self, header: &Range<usize>) {
+        let parts: Vec<usize> = header.clone().filter(|&index| self.tokens[index].text == ";").collect();
         match parts[..] {
             [first, second] => {
-                if let Some(equals) = (head.start..first).find(|&index| self.tokens[index].text == "=")
-                    && let Some(value) = self.read(equals + 1..first)
+                if let Some(equals) = (header.start..first).find(|&index| self.tokens[index].text == "=")
+                    && let Some(value) = self.parse(equals + 1..first)
                 {
                     self.values.fold(&value, self.assigned(equals));
                 }
                 self.fold(first + 1..second);
             }
-            _ => self.fold(head.clone()),
+            _ => self.fold(header.clone()),
         }
     }
 
     fn simple(&mut self, statement: &Range<usize>, around: &Block) {
         let inner = statement.start..statement.end - 1;
         match self.tokens[statement.start].text {
-            word if KEYWORDS.contains(&word) => self.declaration(statement, around),
+            keyword if KEYWORDS.contains(&keyword) => self.declaration(statement, around),
             "return" => self.fold(inner.start + 1..inner.end),
             "break" | "continue" | "discard" => {}
             name if self.tokens[statement.start + 1].text == "(" => {
-                let does_nothing = self.values.substitute(name) != Substitute::None;
-                match self.read(inner) {
-                    Some(call) if does_nothing && self.has_pure_arguments(&call) => self.remove(statement),
+                let is_replaceable = self.values.substitute(name) != Substitute::None;
+                match self.parse(inner) {
+                    Some(call) if is_replaceable && self.has_pure_arguments(&call) => self.remove(statement),
                     Some(Expression { kind: expression::Kind::Call(arguments), tokens }) => {
-                        // What takes the place of a call as a value may be no statement.
+                        // The replacement of a call may not be a valid statement, so only the arguments are folded.
                         self.values.arguments(self.tokens[tokens.start].text, &arguments);
                     }
                     _ => {}
@@ -121,9 +128,9 @@ impl Rules<'_> {
 
     fn assignment(&mut self, statement: &Range<usize>) {
         let Some(equals) = statement.clone().find(|&index| self.tokens[index].text == "=") else { return };
-        let Some(value) = self.read(equals + 1..statement.end - 1) else { return };
+        let Some(value) = self.parse(equals + 1..statement.end - 1) else { return };
         let scales = self.tokens[equals - 1].text == "*";
-        let target = self.read(statement.start..equals - 1).filter(|target| self.values.is_pure(target));
+        let target = self.parse(statement.start..equals - 1).filter(|target| self.values.is_pure(target));
         if scales && target.is_some() && self.values.is_one(&value) {
             self.remove(statement);
         } else {
@@ -131,7 +138,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Where a value stands behind this `=`: `/=`, `%=`, `<<=` and `>>=` refuse some constants, as their operators do.
+    /// Returns the context of the value after this `=`. The compiler rejects some constants after `/=`, `%=`, `<<=` and `>>=`.
     fn assigned(&self, equals: usize) -> Position {
         match self.tokens[equals - 1].text {
             "/" | "%" | "<" | ">" => Position::EVALUATED,
@@ -142,22 +149,22 @@ impl Rules<'_> {
     fn declaration(&mut self, statement: &Range<usize>, around: &Block) {
         let name = self.tokens[statement.start + 1];
         let equals = statement.clone().find(|&index| self.tokens[index].text == "=");
-        let value = equals.and_then(|equals| self.read(equals + 1..statement.end - 1));
+        let value = equals.and_then(|equals| self.parse(equals + 1..statement.end - 1));
         let Some(value) = value.filter(|_| name.kind == TokenKind::Name) else { return };
         let uses = self.uses(name.text, statement.start + 1);
         if uses.is_empty() && self.values.is_pure(&value) {
             return self.remove(statement);
         }
         let is_once = self.locals.count(name.text) == 1;
-        let stays = uses.iter().all(|&at| (statement.end..around.close).contains(&at) && !self.is_changed(at));
-        match self.values.truth(&value) {
-            // Once nothing reads it any more it is removed.
-            Some(truth) if is_once && stays => _ = self.values.truths.insert(name.text, truth),
+        let is_constant = uses.iter().all(|&at| (statement.end..around.close).contains(&at) && !self.is_changed(at));
+        match self.values.boolean(&value) {
+            // It is removed when no use remains.
+            Some(boolean) if is_once && is_constant => _ = self.values.constant_locals.insert(name.text, boolean),
             _ => self.values.fold(&value, Position::WHOLE),
         }
     }
 
-    /// Where else a name stands, as no member.
+    /// Returns the other occurrences of a name, except as a member.
     pub(super) fn uses(&self, name: &str, declared: usize) -> Vec<usize> {
         let is_use = |index: &usize| {
             *index != declared && self.tokens[*index].text == name && self.tokens[index - 1].text != "."
@@ -165,26 +172,26 @@ impl Rules<'_> {
         (1..self.tokens.len()).filter(is_use).collect()
     }
 
-    /// Whether a name is assigned to here, or a pointer to it taken; parentheses may be around it.
+    /// Tests whether the name at `at`, possibly in parentheses, is assigned, or a pointer to it is created.
     fn is_changed(&self, at: usize) -> bool {
         let text = |index: usize| self.tokens.get(index).map_or("", |token| token.text);
-        let (mut before, mut behind) = (at - 1, at + 1);
-        while before > 1 && text(before) == "(" && text(behind) == ")" {
-            (before, behind) = (before - 1, behind + 1);
+        let (mut before, mut after) = (at - 1, at + 1);
+        while before > 1 && text(before) == "(" && text(after) == ")" {
+            (before, after) = (before - 1, after + 1);
         }
-        let assigned = text(behind) == "=" && text(behind + 1) != "=";
+        let assigned = text(after) == "=" && text(after + 1) != "=";
         let is_pointed_at = text(before) == "&" && text(before.wrapping_sub(1)) != "&";
-        let is_combined = matches!(text(behind), "&" | "|") && text(behind + 1) == "=";
+        let is_combined = matches!(text(after), "&" | "|") && text(after + 1) == "=";
         assigned || is_pointed_at || is_combined
     }
 
     fn fold(&mut self, range: Range<usize>) {
-        if let Some(expression) = self.read(range) {
+        if let Some(expression) = self.parse(range) {
             self.values.fold(&expression, Position::WHOLE);
         }
     }
 
-    pub(super) fn read(&self, range: Range<usize>) -> Option<Expression> {
-        if range.is_empty() { None } else { expression::read(self.tokens, range) }
+    pub(super) fn parse(&self, range: Range<usize>) -> Option<Expression> {
+        if range.is_empty() { None } else { expression::parse(self.tokens, range) }
     }
 }

@@ -1,26 +1,26 @@
 //! Finds declarations whose uses can be replaced: by nothing, by a literal, or by an argument.
 //!
-//! In: the tokens of one declaration. Out: its substitute. Never looks into a statement other than a single `return`.
+//! Input: the tokens of one declaration. Output: its substitute. Of the statements, only a single `return` is analysed.
 
 use crate::link::token::{Token, TokenKind};
 
-/// What replaces the uses of a declaration.
+/// The replacement of the uses of a declaration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in crate::link) enum Substitute {
-    /// Nothing does.
+    /// No replacement.
     #[default]
     None,
-    /// A function with an empty body.
+    /// For a function with an empty body: its calls are removed.
     Nothing,
-    /// A function that returns this literal.
+    /// For a function that returns this literal.
     Literal(String),
-    /// A function that returns its argument of this number.
+    /// For a function that returns its argument of this number.
     Argument(usize),
-    /// A constant that is this whole number.
+    /// For a constant that is this whole number.
     Integer(u64),
 }
 
-/// Finds the substitute of a declaration.
+/// Returns the substitute of a declaration.
 pub(in crate::link) fn substitute(tokens: &[Token<'_>]) -> Substitute {
     match tokens {
         [first, rest @ ..] if first.text == "fn" => of_function(rest),
@@ -31,7 +31,7 @@ pub(in crate::link) fn substitute(tokens: &[Token<'_>]) -> Substitute {
     }
 }
 
-/// A literal without a fraction, whatever its suffix.
+/// Returns the value of a literal without a fraction, with any suffix.
 pub(super) fn integer(token: &Token<'_>) -> Option<u64> {
     let digits = token.text.trim_end_matches(['u', 'i']);
     match digits.strip_prefix("0x") {
@@ -45,7 +45,7 @@ fn of_function(tokens: &[Token<'_>]) -> Substitute {
     let Some(open) = tokens.iter().position(|token| token.text == "{") else { return Substitute::None };
     match &tokens[open + 1..] {
         [_] => Substitute::Nothing,
-        [word, value, _, _] if word.text == "return" => returned(value, &tokens[..open]),
+        [keyword, value, _, _] if keyword.text == "return" => returned(value, &tokens[..open]),
         _ => Substitute::None,
     }
 }
@@ -53,7 +53,7 @@ fn of_function(tokens: &[Token<'_>]) -> Substitute {
 fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Substitute {
     match value.kind {
         _ if matches!(value.text, "true" | "false") => Substitute::Literal(value.text.to_owned()),
-        // Without a type of its own a number could become another at the call: one with a fraction becomes `f32` there.
+        // A number without a type could change at the call. A number with a fraction becomes `f32` there.
         TokenKind::Number if value.text.ends_with('u') => Substitute::Literal(value.text.to_owned()),
         TokenKind::Number if value.text.contains('.') && signature.last().is_some_and(|last| last.text == "f32") => {
             Substitute::Literal(value.text.to_owned())
@@ -65,7 +65,7 @@ fn returned(value: &Token<'_>, signature: &[Token<'_>]) -> Substitute {
     }
 }
 
-/// The names before a colon: types hold none.
+/// Returns the names before a colon. Types contain no colon.
 fn parameters<'a>(signature: &'a [Token<'a>]) -> impl Iterator<Item = &'a str> {
     signature.windows(2).filter(|pair| pair[1].text == ":").map(|pair| pair[0].text)
 }

@@ -1,13 +1,13 @@
-//! Parses the statements of a function's body, as ranges of tokens.
+//! Parses the statements of a function into ranges of tokens.
 //!
-//! In: the tokens of a function. Out: its blocks and statements, or nothing where they cannot be parsed. Expressions are left
-//! to `expression.rs`.
+//! Input: the tokens of a function. Output: its blocks and statements, or `None` if they cannot be parsed. `expression.rs` parses
+//! expressions.
 
 use std::ops::Range;
 
 use crate::link::token::Token;
 
-/// Statements between braces.
+/// A block: statements between braces.
 #[derive(Debug)]
 pub(super) struct Block {
     /// The token `{`.
@@ -17,20 +17,21 @@ pub(super) struct Block {
     pub(super) statements: Vec<Statement>,
 }
 
-/// One statement.
+/// A statement.
 #[derive(Debug)]
 pub(super) struct Statement {
     pub(super) tokens: Range<usize>,
     pub(super) kind: Kind,
 }
 
+/// The kind of a statement.
 #[derive(Debug)]
 pub(super) enum Kind {
-    /// Up to its semicolon.
+    /// A statement that ends with a semicolon.
     Simple,
     /// A chain of `if`, `else if`, `else`.
     If(Vec<Branch>),
-    /// A loop, a switch or a bare block: what stands before a brace, and the blocks.
+    /// A loop, a switch or a bare block: the headers and the blocks.
     Other(Vec<Range<usize>>, Vec<Block>),
 }
 
@@ -42,19 +43,19 @@ pub(super) struct Branch {
     pub(super) block: Block,
 }
 
-/// The body of the function that `tokens` are.
+/// Returns the body of a function.
 pub(super) fn body(tokens: &[Token<'_>]) -> Option<Block> {
     let open = tokens.iter().position(|token| token.text == "{")?;
-    let block = Reader { tokens, at: open }.block()?;
+    let block = Parser { tokens, at: open }.block()?;
     (block.close + 1 == tokens.len()).then_some(block)
 }
 
-struct Reader<'t> {
+struct Parser<'t> {
     tokens: &'t [Token<'t>],
     at: usize,
 }
 
-impl Reader<'_> {
+impl Parser<'_> {
     fn text(&self) -> &str {
         self.tokens.get(self.at).map_or("", |token| token.text)
     }
@@ -85,8 +86,8 @@ impl Reader<'_> {
             "if" => Kind::If(self.branches()?),
             "for" | "while" => {
                 self.at += 1;
-                let head = self.until_brace()?;
-                Kind::Other(vec![head], vec![self.block()?])
+                let header = self.until_brace()?;
+                Kind::Other(vec![header], vec![self.block()?])
             }
             "loop" | "continuing" => {
                 self.at += 1;
@@ -120,17 +121,17 @@ impl Reader<'_> {
         Some(branches)
     }
 
-    /// Cases are blocks, what stands before them is not looked at.
+    /// Parses a `switch`. Its cases are blocks; their selectors are skipped.
     fn switch(&mut self) -> Option<Kind> {
         self.at += 1;
-        let head = self.until_brace()?;
+        let header = self.until_brace()?;
         self.take("{")?;
         let mut blocks = Vec::new();
         while self.take("}").is_none() {
             self.until_brace()?;
             blocks.push(self.block()?);
         }
-        Some(Kind::Other(vec![head], blocks))
+        Some(Kind::Other(vec![header], blocks))
     }
 
     fn until_brace(&mut self) -> Option<Range<usize>> {

@@ -1,9 +1,9 @@
-//! What folds, and what does not, on small texts.
+//! Tests of folding on small sources.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::super::{Source, link};
-use crate::program::LineOrigin;
+use crate::source_map::LineSource;
 
 /// Functions that fold, and others.
 const LIBRARY: &str = "\
@@ -57,7 +57,7 @@ fn write_deep(a: u32) -> u32 {
     return write(a) + 1u;
 }
 
-fn write_behind_a_block(a: u32) -> u32 {
+fn write_after_a_block(a: u32) -> u32 {
     if a > 0u {
         var state = a;
         state += 1u;
@@ -66,7 +66,7 @@ fn write_behind_a_block(a: u32) -> u32 {
     return a;
 }
 
-fn write_behind_a_loop(a: u32) -> u32 {
+fn write_after_a_loop(a: u32) -> u32 {
     for (var state = 0u; state < a; state++) {
         let b = a;
     }
@@ -108,13 +108,13 @@ fn back(a: u32) -> u32 {
 }
 ";
 
-/// The function `f` of this body and result, once it is linked; its text's first and last line are left out.
+/// Links a function `f` with this body and result. Returns its lines without the first and the last.
 fn folded(result: &str, body: &str) -> String {
-    let head = format!("fn f(x: u32, t: bool){result} {{");
-    let text = format!("{head}\n{body}}}\n");
+    let signature = format!("fn f(x: u32, t: bool){result} {{");
+    let text = format!("{signature}\n{body}}}\n");
     let sources = [Source::generated("a", LIBRARY.to_owned()), Source::generated("b", text)];
     let linked = link("", &sources, &["f"], "").unwrap();
-    let start = linked.text.find(&head).unwrap() + head.len() + 1;
+    let start = linked.text.find(&signature).unwrap() + signature.len() + 1;
     linked.text[start..].trim_end().strip_suffix('}').unwrap().to_owned()
 }
 
@@ -123,7 +123,7 @@ fn folds(result: &str, body: &str, expected: &str) {
 }
 
 #[test]
-fn calls_of_empty_functions_go_with_the_comments_above() {
+fn removes_calls_of_empty_functions_with_the_comments_above() {
     folds("", "    let a = x;\n    // Counts.\n    nothing(a);\n    state = a;\n", "    let a = x;\n    state = a;\n");
     folds("", "    state = x;\n\n    nothing(read(x)); // Twice.\n", "    state = x;\n");
     folds("", "    nothing(write(x));\n", "    nothing(write(x));\n");
@@ -133,7 +133,7 @@ fn calls_of_empty_functions_go_with_the_comments_above() {
 }
 
 #[test]
-fn known_conditions_decide() {
+fn known_conditions_select_a_branch() {
     let then = "    if yes() {\n        // Kept.\n        state = x;\n\n        state = 2u;\n    }\n";
     folds("", then, "    // Kept.\n    state = x;\n\n    state = 2u;\n");
     folds("", "    // Why.\n    if !yes() {\n        state = x;\n    }\n    state = 1u;\n", "    state = 1u;\n");
@@ -148,7 +148,7 @@ fn known_conditions_decide() {
 }
 
 #[test]
-fn operators_fold_where_one_side_decides() {
+fn folds_operators_if_one_side_determines_the_result() {
     let value = |expression: &str, expected: &str| {
         folds(" -> bool", &format!("    return {expression};\n"), &format!("    return {expected};\n"));
     };
@@ -167,7 +167,7 @@ fn operators_fold_where_one_side_decides() {
 }
 
 #[test]
-fn numbers_and_arguments_take_the_place_of_calls() {
+fn numbers_and_arguments_replace_calls() {
     folds(
         " -> f32",
         "    var a = f32(x) * share();\n    a *= share();\n    a += 2.0;\n    return a;\n",
@@ -180,7 +180,7 @@ fn numbers_and_arguments_take_the_place_of_calls() {
 }
 
 #[test]
-fn what_follows_a_return_goes_and_so_does_what_nobody_reads() {
+fn removes_statements_after_a_return_and_unread_locals() {
     folds(
         " -> u32",
         "    if yes() {\n        return x;\n    }\n    // Never.\n    let a = x;\n    return a;\n",
@@ -205,7 +205,7 @@ fn what_follows_a_return_goes_and_so_does_what_nobody_reads() {
 }
 
 #[test]
-fn a_condition_that_is_returned_is_written_so() {
+fn an_if_that_returns_its_condition_becomes_a_return() {
     let body = |condition: &str, value: bool| {
         format!("    nothing(x);\n    if {condition} {{\n        return {value};\n    }}\n    return {};\n", !value)
     };
@@ -216,7 +216,7 @@ fn a_condition_that_is_returned_is_written_so() {
 }
 
 #[test]
-fn locals_that_never_change_are_their_value() {
+fn replaces_constant_locals_by_their_value() {
     let wanted = "    var wanted = yes();\n    if wanted && no(x, x) {\n        wanted = false;\n    }\n    if wanted {\n        state = x;\n    }\n";
     folds("", wanted, "    state = x;\n");
     let changed = "    var wanted = yes();\n    if t {\n        wanted = false;\n    }\n    if wanted {\n        state = x;\n    }\n";
@@ -224,8 +224,8 @@ fn locals_that_never_change_are_their_value() {
 }
 
 #[test]
-fn shadowed_names_are_left_alone() {
-    // The inner `a` would meet the outer one.
+fn does_not_change_shadowed_names() {
+    // The inner `a` would conflict with the outer one.
     let body = "    let a = x;\n    if yes() {\n        let a = 2u;\n        state = a;\n    }\n    state = a;\n";
     folds("", body, &body.replace("yes()", "true"));
     let hidden = "    let LIMIT = x;\n    if LIMIT > 0u {\n        state = 1u;\n    }\n";
@@ -233,37 +233,37 @@ fn shadowed_names_are_left_alone() {
 }
 
 #[test]
-fn loops_and_switches_keep_their_shape() {
+fn loops_and_switches_keep_their_structure() {
     let body = "    for (var i = 0u; i < MOST && yes(); i++) {\n        nothing(i);\n        switch i {\n            case 0u: {\n                nothing(i);\n                state = i;\n            }\n            default: {}\n        }\n    }\n";
     let expected = "    for (var i = 0u; i < MOST; i++) {\n        switch i {\n            case 0u: {\n                state = i;\n            }\n            default: {}\n        }\n    }\n";
     folds("", body, expected);
 }
 
 #[test]
-fn functions_that_come_to_nothing_go_too_and_constants_with_them() {
+fn removes_functions_that_become_empty_and_their_constants() {
     let text = "fn outer(x: u32) {\n    if no(x, x) {\n        inner(x);\n    }\n}\n\nfn inner(x: u32) {\n    nothing(MOST);\n}\n\nfn f(x: u32) {\n    outer(x);\n    state = x;\n}\n";
     let sources = [Source::generated("a", LIBRARY.to_owned()), Source::generated("b", text.to_owned())];
     let linked = link("", &sources, &["f"], "p_").unwrap();
     let expected = "\n// ---- generated/a\nvar<private> p_state: u32;\n\n// ---- generated/b\n\nfn p_f(x: u32) {\n    p_state = x;\n}\n\n";
     assert_eq!(linked.text, expected);
     let line = linked.text.lines().position(|line| line.contains("p_state = x")).unwrap() + 1;
-    assert_eq!(linked.lines.origin(line), LineOrigin::Source { name: "generated/b".into(), line: 13 });
+    assert_eq!(linked.lines.source(line), LineSource::Source { name: "generated/b".into(), line: 13 });
 }
 
 #[test]
-fn what_cannot_be_read_stays() {
+fn does_not_change_functions_that_cannot_be_parsed() {
     let body = "    if yes() {\n        state = x;\n    }\n    @diagnostic(off, derivative_uniformity)\n    if t {\n        state = 1u;\n    }\n";
     folds("", body, body);
 }
 
 #[test]
-fn functions_with_block_comments_stay() {
+fn does_not_change_functions_with_block_comments() {
     let body = "    nothing(x); /* // */ state = x;\n    if yes() { /* { */\n        state = 1u;\n    }\n";
     folds("", body, body);
 }
 
 #[test]
-fn tokens_stay_apart() {
+fn does_not_join_tokens() {
     folds(
         "",
         "    if(yes() && t) {\n        state = x;\n    }\n    nothing(x);\n",
@@ -275,7 +275,7 @@ fn tokens_stay_apart() {
 }
 
 #[test]
-fn statements_on_the_lines_of_braces_stay() {
+fn keeps_statements_on_the_lines_of_braces() {
     let kept = |body: &str| folds("", body, &body.replace("yes()", "true"));
     kept("    if yes() { state = 1u;\n        state = x;\n    }\n");
     kept("    if yes() {\n        state = x;\n    state = 2u; }\n");
@@ -288,9 +288,9 @@ fn statements_on_the_lines_of_braces_stay() {
 }
 
 #[test]
-fn declarations_stay_in_blocks_where_their_names_mean_something_else() {
+fn keeps_declarations_in_blocks_if_their_names_have_another_meaning_outside() {
     let kept = |body: &str| folds("", body, &body.replace("yes()", "true"));
-    // `MOST` is a constant behind the block, `state` a variable.
+    // After the block, `MOST` is a constant and `state` a variable.
     kept("    if yes() {\n        let MOST = x;\n        state = MOST;\n    }\n    state = MOST;\n");
     kept("    if yes() {\n        var state = x;\n        state += x;\n    }\n    state = x;\n");
     kept("    if yes() {\n        var<function> x = 1u;\n        x += 1u;\n        state = x;\n    }\n");
@@ -298,10 +298,10 @@ fn declarations_stay_in_blocks_where_their_names_mean_something_else() {
 }
 
 #[test]
-fn writes_to_anything_but_a_local_variable_are_effects() {
+fn writes_to_anything_but_a_local_variable_are_side_effects() {
     let kept = |body: &str| folds("", body, body);
-    kept("    nothing(write_behind_a_block(x));\n");
-    kept("    nothing(write_behind_a_loop(x));\n");
+    kept("    nothing(write_after_a_block(x));\n");
+    kept("    nothing(write_after_a_loop(x));\n");
     kept("    nothing(write_through_a_pointer(x));\n");
     kept("    var a = vec2<u32>(x);\n    nothing(write_through_an_argument(&a));\n    state = a.x;\n");
     folds("", "    nothing(write_locals(x));\n    state = x;\n", "    state = x;\n");
@@ -314,7 +314,7 @@ fn literals_keep_the_types_around_them() {
         folds(result, &body(expression), &body(expected));
     };
     let float = |expression: &str, expected: &str| value(" -> f32", expression, expected);
-    // The other side could be a whole number without the factor.
+    // Without the factor, the other side could be a whole number.
     float("f32(1 * share())", "f32(1 * share())");
     float("y + f32(no(x, x) || 1 * 1.0 > ONE)", "y + f32(no(x, x) || 1 * 1.0 > ONE)");
     float("ONE * share()", "ONE * share()");
@@ -335,7 +335,7 @@ fn literals_keep_the_types_around_them() {
 }
 
 #[test]
-fn constants_do_not_take_places_that_the_compiler_evaluates() {
+fn keeps_runtime_values_in_expressions_that_the_compiler_would_evaluate() {
     let kept = |expression: &str| {
         let body = format!("    var<function> y = array<u32, 2>(x, x);\n    return {expression};\n");
         folds(" -> u32", &body, &body);
@@ -365,17 +365,17 @@ fn constants_do_not_take_places_that_the_compiler_evaluates() {
 }
 
 #[test]
-fn known_locals_stay_where_a_constant_may_not_stand() {
+fn keeps_known_locals_where_a_constant_is_not_allowed() {
     let body = "    let wanted = yes();\n    if wanted && t {\n        state = 1u / u32(!wanted);\n    }\n";
     folds("", body, &body.replace("yes()", "true").replace("wanted && t", "t"));
     let changed = "    var wanted = yes();\n    (wanted) = t;\n    if wanted {\n        state = x;\n    }\n";
     folds("", changed, &changed.replace("yes()", "true"));
-    // Two edits of one statement: the use goes with the statement.
+    // Two edits of one statement: the removal includes the use.
     let unread = "    let wanted = yes();\n    let other = !wanted;\n    nothing(x);\n    state = x;\n";
     folds("", unread, "    state = x;\n");
 }
 
 #[test]
-fn a_statement_stays_one() {
+fn a_call_statement_remains_a_statement() {
     folds("", "    second(x, x + write(x));\n", "    second(x, x + write(x));\n");
 }

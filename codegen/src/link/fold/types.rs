@@ -1,16 +1,17 @@
-//! Tells of which expressions the type and the value are certain to depend on more than constants.
+//! Decides whether an expression has a type of its own, and whether it is evaluated at runtime.
 //!
-//! In: an expression. Out: whether its type is that of a variable, whatever it is given to, and whether its value is found
-//! when the program runs. Constants without a suffix take the type of their place, and the compiler evaluates constants:
-//! what replaces an expression must be alike in both. `false` wherever it is not certain.
+//! Input: an expression. Output: whether its type is independent of the context, and whether its value depends on more than constants.
+//! Constants without a suffix take the type of their context, and the compiler evaluates constants: a replacement must have both
+//! properties of the expression. The result is `false` if it is uncertain.
 
+use super::environment::DeclarationKind;
 use super::expression::{Expression, Kind, is_template};
 use super::substitute::Substitute;
-use super::values::{Declared, Values};
+use super::values::Values;
 use crate::link::token::TokenKind;
 
 impl Values<'_> {
-    /// Whether its type does not depend on what it is given to, as that of a number without suffix does.
+    /// Tests whether the type is independent of the context, unlike that of a number without suffix.
     pub(super) fn has_type(&self, expression: &Expression) -> bool {
         let depends_on = |part: &Expression| self.has_type(part);
         let name = self.first(expression);
@@ -26,8 +27,7 @@ impl Values<'_> {
         has_own || self.is_runtime(expression)
     }
 
-    /// Whether it is found when the program runs, and stays so: what is folded in it leaves no constant. Such an expression
-    /// always has a type of its own.
+    /// Tests whether an expression is evaluated at runtime, also after folding. Such an expression always has a type of its own.
     pub(super) fn is_runtime(&self, expression: &Expression) -> bool {
         let all = |parts: [&Expression; 2]| parts.iter().all(|part| self.is_runtime(part));
         match &expression.kind {
@@ -35,7 +35,7 @@ impl Values<'_> {
             Kind::Parenthesised(inner) | Kind::Unary(inner) => self.is_runtime(inner),
             Kind::Part(base, _) => self.is_runtime(base),
             Kind::Call(arguments) => self.is_runtime_call(expression, arguments),
-            // A side that is known may decide alone.
+            // One known side can determine the result.
             Kind::Binary("&&" | "||", left, right) => all([left, right]),
             Kind::Binary(_, left, right) => self.is_runtime(left) || self.is_runtime(right),
         }
@@ -45,7 +45,7 @@ impl Values<'_> {
         let name = self.first(atom);
         match self.locals.at(name, atom.tokens.start) {
             Some(local) => local.keyword != "const" && self.constant(atom).is_none(),
-            None => (self.known.declared)(name) == Some(Declared::Variable),
+            None => (self.environment.kind)(name) == Some(DeclarationKind::Variable),
         }
     }
 
@@ -55,19 +55,19 @@ impl Values<'_> {
             (Substitute::Argument(number), _) => arguments.get(number).is_some_and(|kept| self.is_runtime(kept)),
             (Substitute::None, [_, _, condition]) if self.is_select(call) => self.is_runtime(condition),
             (Substitute::None, _) => {
-                let is_ours = (self.known.declared)(name) == Some(Declared::Function);
-                is_ours || arguments.iter().any(|argument| self.is_runtime(argument))
+                let is_declared = (self.environment.kind)(name) == Some(DeclarationKind::Function);
+                is_declared || arguments.iter().any(|argument| self.is_runtime(argument))
             }
             _ => false,
         }
     }
 
-    /// Whether a call names its type, or that of its function.
+    /// Tests whether a call specifies its type, or calls a declared function.
     fn is_typed_call(&self, call: &Expression) -> bool {
         let name = self.first(call);
         let is_listed = is_template(name) && self.tokens[call.tokens.start + 1].text == "<";
         let is_scalar = matches!(name, "u32" | "i32" | "f32" | "f16" | "bool");
-        is_listed || is_scalar || (self.known.declared)(name).is_some()
+        is_listed || is_scalar || (self.environment.kind)(name).is_some()
     }
 
     fn is_typed_number(&self, atom: &Expression) -> bool {

@@ -1,62 +1,34 @@
-//! Folds expressions whose value is known, or that one operand decides.
+//! Folds expressions whose value is known, or which one operand determines.
 //!
-//! In: an expression, and what is known of the names in it. Out: edits. An operand is removed only if it has no side effects.
+//! Input: an expression, and the declarations of the names in it. Output: edits. An operand is removed only if it has no side effects.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::edit::{Edit, removal};
 use super::effects::built_in_has_effects;
+use super::environment::{DeclarationKind, Environment};
 use super::expression::{Expression, Kind};
 use super::locals::Locals;
 use super::substitute::{Substitute, integer};
-use crate::link::item::Item;
 use crate::link::token::{Token, TokenKind};
 
-/// What is known of declarations, by name.
-pub(super) struct Known<'k> {
-    /// The substitute of a declaration.
-    pub(super) substitute: &'k dyn Fn(&str) -> Substitute,
-    /// Whether a call of a declared function does more than return a value; `None` where none is declared.
-    pub(super) has_effects: &'k dyn Fn(&str) -> Option<bool>,
-    /// What a name is declared as; `None` where it is not.
-    pub(super) declared: &'k dyn Fn(&str) -> Option<Declared>,
-}
-
-/// What a declaration around the function declares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Declared {
-    Function,
-    Variable,
-    /// A constant or a type.
-    Other,
-}
-
-impl Declared {
-    pub(super) fn of(item: &Item<'_>) -> Self {
-        match item {
-            _ if item.is_function => Declared::Function,
-            _ if item.is_variable => Declared::Variable,
-            _ => Declared::Other,
-        }
-    }
-}
-
-/// Where an expression stands.
+/// The context of an expression.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Position {
-    /// Whether an operator binds to it.
+    /// Whether it is an operand.
     is_operand: bool,
-    /// Whether a constant may take the place of a value that is found when the program runs. Elsewhere the compiler would
-    /// evaluate what is around it, and refuse a division by zero or an index out of bounds, or choose another type.
+    /// Whether a constant may replace a runtime value. Otherwise the compiler would evaluate the expression around it: it could reject a
+    /// division by zero or an index out of bounds, or infer another type.
     may_be_constant: bool,
 }
 
 impl Position {
-    /// What is assigned, returned, decided on, or given to a declared function: its type is that of its place.
+    /// An assigned or returned value, a condition, or an argument of a declared function: the context determines its type.
     pub(super) const WHOLE: Position = Position { is_operand: false, may_be_constant: true };
-    /// An index, an argument of a function of WGSL's own, or behind `/=`.
+    /// An index, an argument of a built-in function, or the right side of `/=`.
     pub(super) const EVALUATED: Position = Position { is_operand: false, may_be_constant: false };
+
     fn operand(may_be_constant: bool) -> Self {
         Position { is_operand: true, may_be_constant }
     }
@@ -65,18 +37,18 @@ impl Position {
 /// The expressions of one function.
 pub(super) struct Values<'v> {
     pub(super) tokens: &'v [Token<'v>],
-    pub(super) known: &'v Known<'v>,
-    /// What the function declares: these names hide declarations.
+    pub(super) environment: &'v Environment<'v>,
+    /// The declarations inside the function, which hide others.
     pub(super) locals: &'v Locals<'v>,
-    /// Whether parentheses around a single operand go, once something else has.
-    pub(super) tidies: bool,
-    /// Locals that are `true` or `false` and never change.
-    pub(super) truths: BTreeMap<&'v str, bool>,
+    /// Whether parentheses around a single operand are removed: only after another edit.
+    pub(super) removes_parentheses: bool,
+    /// Locals that are always `true` or always `false`.
+    pub(super) constant_locals: BTreeMap<&'v str, bool>,
     pub(super) edits: Vec<Edit>,
 }
 
 impl<'v> Values<'v> {
-    /// Adds what folds in an expression.
+    /// Adds the edits that fold an expression.
     pub(super) fn fold(&mut self, expression: &Expression, position: Position) {
         match &expression.kind {
             Kind::Atom => {
@@ -86,13 +58,13 @@ impl<'v> Values<'v> {
             }
             Kind::Parenthesised(inner) => {
                 let is_single = matches!(inner.kind, Kind::Atom | Kind::Call(_) | Kind::Part(..));
-                if self.tidies && (is_single || !position.is_operand) {
+                if self.removes_parentheses && (is_single || !position.is_operand) {
                     self.keep_only(expression, inner);
                 } else {
                     self.fold(inner, Position { is_operand: false, ..position });
                 }
             }
-            Kind::Unary(operand) => match self.truth(operand).filter(|_| self.first(expression) == "!") {
+            Kind::Unary(operand) => match self.boolean(operand).filter(|_| self.first(expression) == "!") {
                 Some(value) => self.replace(expression, if value { "false" } else { "true" }),
                 None => self.fold(operand, Position { is_operand: true, ..position }),
             },
@@ -105,19 +77,19 @@ impl<'v> Values<'v> {
         }
     }
 
-    /// The value of a local that is `true` or `false` and never changes.
+    /// Returns the value of a local that is always `true` or always `false`.
     pub(super) fn constant(&self, atom: &Expression) -> Option<bool> {
-        if atom.tokens.len() > 1 { None } else { self.truths.get(self.first(atom)).copied() }
+        if atom.tokens.len() > 1 { None } else { self.constant_locals.get(self.first(atom)).copied() }
     }
 
     /// Folds the arguments of a call, but not the call.
     pub(super) fn arguments(&mut self, name: &str, arguments: &[Expression]) {
-        let is_ours = (self.known.declared)(name) == Some(Declared::Function);
-        let position = if is_ours { Position::WHOLE } else { Position::EVALUATED };
+        let is_declared = (self.environment.kind)(name) == Some(DeclarationKind::Function);
+        let position = if is_declared { Position::WHOLE } else { Position::EVALUATED };
         arguments.iter().for_each(|argument| self.fold(argument, position));
     }
 
-    /// Whether evaluating it does nothing but give a value.
+    /// Tests whether an expression has no side effects.
     pub(super) fn is_pure(&self, expression: &Expression) -> bool {
         expression.tokens.clone().all(|index| {
             let token = self.tokens[index];
@@ -127,11 +99,11 @@ impl<'v> Values<'v> {
     }
 
     fn call_has_effects(&self, name: &str) -> bool {
-        (self.known.has_effects)(name).unwrap_or_else(|| built_in_has_effects(name))
+        (self.environment.has_effects)(name).unwrap_or_else(|| built_in_has_effects(name))
     }
 
-    /// The value of `true` or `false`.
-    pub(super) fn truth(&self, expression: &Expression) -> Option<bool> {
+    /// Returns the value of a Boolean literal.
+    pub(super) fn boolean(&self, expression: &Expression) -> Option<bool> {
         match self.first(expression) {
             "true" if expression.tokens.len() == 1 => Some(true),
             "false" if expression.tokens.len() == 1 => Some(false),
@@ -139,17 +111,17 @@ impl<'v> Values<'v> {
         }
     }
 
-    /// Whether it is written `1.0`.
+    /// Tests whether an expression is the literal `1.0`.
     pub(super) fn is_one(&self, expression: &Expression) -> bool {
         expression.tokens.len() == 1 && self.first(expression) == "1.0"
     }
 
-    /// The substitute of a name, if no local hides it.
+    /// Returns the substitute of a name, unless a local hides it.
     pub(super) fn substitute(&self, name: &str) -> Substitute {
-        if self.locals.declares(name) { Substitute::None } else { (self.known.substitute)(name) }
+        if self.locals.declares(name) { Substitute::None } else { (self.environment.substitute)(name) }
     }
 
-    /// The bytes of some tokens.
+    /// Returns the range of bytes of some tokens.
     pub(super) fn bytes(&self, tokens: &Range<usize>) -> Range<usize> {
         let end = self.tokens[tokens.end - 1];
         self.tokens[tokens.start].at..end.at + end.text.len()
@@ -164,7 +136,7 @@ impl<'v> Values<'v> {
         self.edits.push(Edit { range, text: text.to_owned() });
     }
 
-    /// Removes everything of `whole` before and behind `part`.
+    /// Removes the text of `whole` before and after `part`.
     fn keep_only(&mut self, whole: &Expression, part: &Expression) {
         let (whole, part) = (self.bytes(&whole.tokens), self.bytes(&part.tokens));
         self.edits.push(removal(whole.start..part.start));
@@ -190,17 +162,17 @@ impl<'v> Values<'v> {
         }
     }
 
-    /// Whether it may stand for a call that returns its value.
+    /// Tests whether an expression can replace a call that returns its value.
     fn fits(&self, expression: &Expression, position: Position) -> bool {
         if position.may_be_constant { self.has_type(expression) } else { self.is_runtime(expression) }
     }
 
     pub(super) fn is_select(&self, call: &Expression) -> bool {
-        self.first(call) == "select" && (self.known.declared)("select").is_none()
+        self.first(call) == "select" && (self.environment.kind)("select").is_none()
     }
 
     fn select(&mut self, call: &Expression, [no, yes, condition]: [&Expression; 3], position: Position) {
-        let chosen = match self.truth(condition) {
+        let chosen = match self.boolean(condition) {
             Some(true) => Some((yes, no)),
             Some(false) => Some((no, yes)),
             None => None,
@@ -208,7 +180,7 @@ impl<'v> Values<'v> {
         if let Some((kept, _)) = chosen.filter(|(kept, other)| self.is_pure(other) && self.fits(kept, position)) {
             return self.keep_argument(call, kept, position);
         }
-        // With one argument that is found when the program runs, the whole is.
+        // With one runtime argument, the call is evaluated at runtime.
         let is_runtime = self.is_runtime(no) || self.is_runtime(yes);
         let may_be_constant = position.may_be_constant || is_runtime;
         self.fold(no, Position::EVALUATED);
@@ -218,11 +190,11 @@ impl<'v> Values<'v> {
 
     fn keep_argument(&mut self, call: &Expression, argument: &Expression, position: Position) {
         let is_operation = matches!(argument.kind, Kind::Binary(..) | Kind::Unary(_));
-        let at = self.edits.len();
+        let index = self.edits.len();
         self.keep_only(call, argument);
         if is_operation && position.is_operand {
-            self.edits[at].text.push('(');
-            self.edits[at + 1].text.push(')');
+            self.edits[index].text.push('(');
+            self.edits[index + 1].text.push(')');
         }
     }
 
@@ -239,19 +211,20 @@ impl<'v> Values<'v> {
             "*" if self.is_one(right) && self.has_type(left) => self.keep_only(whole, left),
             "*" if self.is_one(left) && self.has_type(right) => self.keep_only(whole, right),
             _ => {
-                let beside = |other: &Expression| (is_logical && position.may_be_constant) || self.is_runtime(other);
+                let may_be_constant =
+                    |other: &Expression| (is_logical && position.may_be_constant) || self.is_runtime(other);
                 let divides = matches!(operator, "/" | "%" | "<<" | ">>");
-                let (first, second) = (beside(right), beside(left) && !divides);
+                let (first, second) = (may_be_constant(right), may_be_constant(left) && !divides);
                 self.fold(left, Position::operand(first));
                 self.fold(right, Position::operand(second));
             }
         }
     }
 
-    /// Folds `&&` and `||` where a side is known: `decisive` decides alone, the other value leaves it to the other side.
+    /// Folds `&&` and `||` if one side is known: the value `decisive` determines the result; otherwise the result is the other side.
     fn logical(&mut self, whole: &Expression, decisive: bool, sides: [&Expression; 2], position: Position) -> bool {
         let [left, right] = sides;
-        match (self.truth(left), self.truth(right)) {
+        match (self.boolean(left), self.boolean(right)) {
             (Some(value), _) if value != decisive => self.keep_only(whole, right),
             (_, Some(value)) if value != decisive => self.keep_only(whole, left),
             (Some(_), _) if position.may_be_constant => self.replace(whole, &decisive.to_string()),

@@ -1,15 +1,15 @@
-//! One choice per axis: the description's, else the preset's, else what suits the storage, else the axis's default.
+//! One choice per axis: the description's, else the preset's, else the storage's default, else the axis's default.
 
 use std::sync::Arc;
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Axis, Parameter, Row, Takes, Technique};
+use fragbuf_templates::vocabulary::{Axis, Parameter, ParameterType, Row, Technique};
 
-use super::nearest::{listed, suggestion};
-use crate::variant::{Chosen, Selected};
-use crate::{Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, Origin, Spanned, codes};
+use super::suggestion::{listed, suggestion};
+use crate::variant::{AxisChoice, SelectedRow};
+use crate::{Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, SourceSpan, Spanned, codes};
 
-/// The preset that the draft names.
+/// Returns the preset that the draft names.
 pub(super) fn technique<'a>(
     draft: &Draft,
     registry: &'a Registry,
@@ -21,57 +21,58 @@ pub(super) fn technique<'a>(
         let known: Vec<&str> = registry.techniques().iter().map(|technique| technique.key.as_str()).collect();
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_TECHNIQUE,
-            &preset.origin,
-            format!("there is no technique `{}`", preset.value),
+            &preset.span,
+            format!("unknown technique `{}`", preset.value),
             suggestion(&preset.value, &known, "the techniques are"),
         ));
     }
     technique
 }
 
-/// The choices on all axes that a user chooses on, in the order of the axes.
+/// Returns the choices on all axes that a user can choose on, in the order of the axes.
 pub(super) fn resolve(
     draft: &Draft,
     attributes: &[Attribute],
     technique: Option<&Technique>,
     registry: &Registry,
     diagnostics: &mut Diagnostics,
-) -> Vec<Chosen> {
-    unknown_axes(draft, registry, diagnostics);
+) -> Vec<AxisChoice> {
+    check_axes(draft, registry, diagnostics);
     if draft.preset.is_some() && technique.is_none() {
-        // Without its preset nothing is known of the other choices; only what the description says can be looked up.
+        // Without the preset the other choices are unknown; only the description's own choices can be checked.
         for choice in &draft.choices {
             if registry.axis(&choice.axis.value).is_some_and(|axis| axis.chosen) {
-                said(choice, attributes, registry, diagnostics);
+                given_choice(choice, attributes, registry, diagnostics);
             }
         }
         return Vec::new();
     }
-    let mut choices: Vec<Chosen> = Vec::new();
+    let mut choices: Vec<AxisChoice> = Vec::new();
     for axis in registry.axes().iter().filter(|axis| axis.chosen) {
         let chosen = match draft.choices.iter().find(|choice| choice.axis.value == axis.key) {
             Some(choice) if !choice.only_options() => {
                 closure_and_effect(draft, choice, diagnostics);
-                said(choice, attributes, registry, diagnostics)
+                given_choice(choice, attributes, registry, diagnostics)
             }
-            Some(choice) => unsaid(axis, draft, technique, &choices, registry, diagnostics)
+            Some(choice) => default_choice(axis, draft, technique, &choices, registry, diagnostics)
                 .map(|chosen| with_options(chosen, choice, attributes, diagnostics)),
-            None => unsaid(axis, draft, technique, &choices, registry, diagnostics),
+            None => default_choice(axis, draft, technique, &choices, registry, diagnostics),
         };
         choices.extend(chosen);
     }
     choices
 }
 
-fn unknown_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics) {
+/// Reports unknown axes, and axes that the description chooses twice.
+fn check_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics) {
     let known: Vec<&str> = registry.axes().iter().filter(|axis| axis.chosen).map(|axis| axis.key).collect();
     for (index, choice) in draft.choices.iter().enumerate() {
         let axis = &choice.axis;
         if !known.contains(&axis.value.as_str()) {
             diagnostics.push(Diagnostic::new(
                 codes::UNKNOWN_AXIS,
-                &axis.origin,
-                format!("there is no axis `{}`", axis.value),
+                &axis.span,
+                format!("unknown axis `{}`", axis.value),
                 suggestion(&axis.value, &known, "the axes are"),
             ));
         }
@@ -79,94 +80,96 @@ fn unknown_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostic
             diagnostics.push(
                 Diagnostic::new(
                     codes::DUPLICATE,
-                    &axis.origin,
+                    &axis.span,
                     format!("`{}` is chosen twice", axis.value),
-                    "keep one of the two; alternatives are joined by `else`",
+                    "remove one of the two; write alternatives as `a else b`",
                 )
-                .label(&first.axis.origin, "first chosen here"),
+                .label(&first.axis.span, "first chosen here"),
             );
         }
     }
 }
 
-/// A description with a closure and a named effect says two things.
+/// Reports an effect that is given both as a closure and by name.
 fn closure_and_effect(draft: &Draft, choice: &Choice, diagnostics: &mut Diagnostics) {
     if let Some(closure) = draft.resolve.as_ref().filter(|_| choice.axis.value == Registry::CLOSURE_AXIS) {
         diagnostics.push(
             Diagnostic::new(
                 codes::DUPLICATE,
-                &choice.axis.origin,
+                &choice.axis.span,
                 "the effect is given twice: by name and as a closure",
-                "keep one of the two",
+                "remove one of the two",
             )
-            .label(&closure.origin, "the closure"),
+            .label(&closure.span, "the closure"),
         );
     }
 }
 
-/// The options of a choice that names no value belong to the value that is taken anyway.
+/// Adds the options of a choice without a value to the alternatives that the preset or a default gives.
 fn with_options(
-    mut chosen: Chosen,
+    mut chosen: AxisChoice,
     choice: &Choice,
     attributes: &[Attribute],
     diagnostics: &mut Diagnostics,
-) -> Chosen {
+) -> AxisChoice {
     let options = choice.alternatives.iter().flat_map(|alternative| &alternative.options);
     for (name, value) in options {
-        // An option belongs to every alternative that has it; where none has, the first says what it has.
-        let knows = |selected: &Selected| selected.row.parameters.iter().any(|parameter| parameter.name == name.value);
-        let known = chosen.alternatives.iter().any(knows);
+        // An option belongs to every alternative that has it. If none has it, the first alternative reports the error.
+        let has_option =
+            |selected: &SelectedRow| selected.row.parameters.iter().any(|parameter| parameter.name == name.value);
+        let is_known = chosen.alternatives.iter().any(has_option);
         for (index, selected) in chosen.alternatives.iter_mut().enumerate() {
-            if knows(selected) || (!known && index == 0) {
-                selected.options.extend(option(&selected.row, attributes, name, value, diagnostics));
+            if has_option(selected) || (!is_known && index == 0) {
+                selected.options.extend(option_number(&selected.row, attributes, name, value, diagnostics));
             }
         }
     }
     chosen
 }
 
-/// What the description says on an axis.
-fn said(
+/// Returns the rows that the description chooses on an axis.
+fn given_choice(
     choice: &Choice,
     attributes: &[Attribute],
     registry: &Registry,
     diagnostics: &mut Diagnostics,
-) -> Option<Chosen> {
-    let alternatives: Vec<Selected> = choice
+) -> Option<AxisChoice> {
+    let alternatives: Vec<SelectedRow> = choice
         .alternatives
         .iter()
-        .filter_map(|alternative| selected(&choice.axis, alternative, attributes, registry, diagnostics))
+        .filter_map(|alternative| selected_row(&choice.axis, alternative, attributes, registry, diagnostics))
         .collect();
-    let origin = choice.alternatives.first().map_or(&choice.axis.origin, |first| &first.value.origin);
-    (!alternatives.is_empty()).then(|| Chosen { axis: choice.axis.value.clone(), origin: origin.clone(), alternatives })
+    let span = choice.alternatives.first().map_or(&choice.axis.span, |first| &first.value.span);
+    (!alternatives.is_empty()).then(|| AxisChoice { axis: choice.axis.value.clone(), span: span.clone(), alternatives })
 }
 
-fn unsaid(
+/// Returns the rows of an axis that the description does not choose on.
+fn default_choice(
     axis: &Axis,
     draft: &Draft,
     technique: Option<&Technique>,
-    before: &[Chosen],
+    earlier: &[AxisChoice],
     registry: &Registry,
     diagnostics: &mut Diagnostics,
-) -> Option<Chosen> {
+) -> Option<AxisChoice> {
     let closure = draft.resolve.as_ref().filter(|_| axis.key == Registry::CLOSURE_AXIS);
     let preset = technique.and_then(|t| t.choices.iter().find(|(name, _)| *name == axis.key)).map(|(_, value)| *value);
-    let suited = before
+    let suggested = earlier
         .iter()
         .filter_map(|chosen| chosen.alternatives.first())
         .flat_map(|selected| &selected.row.defaults)
         .find(|(name, _)| *name == axis.key)
         .map(|(_, value)| value.as_ref());
-    let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suited).or(axis.default);
-    let origin = draft.preset.as_ref().map_or(&draft.name.origin, |preset| &preset.origin);
+    let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suggested).or(axis.default);
+    let span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
     let rows: Option<Vec<&Row>> =
         value.and_then(|value| value.split(" else ").map(|value| registry.row(axis.key, value)).collect());
     let Some(rows) = rows else {
         let known: Vec<&str> = registry.rows_of(axis.key).map(|row| row.key.as_str()).collect();
         diagnostics.push(Diagnostic::new(
             codes::MISSING_STORAGE,
-            &draft.name.origin,
-            format!("nothing says {}", axis.summary),
+            &draft.name.span,
+            format!("no value is chosen for the axis `{}`", axis.key),
             format!(
                 "start from a technique (`buffer {} from kplus_array`), or add `{}: …;` with one of {}",
                 draft.name.value,
@@ -176,27 +179,28 @@ fn unsaid(
         ));
         return None;
     };
-    let selected = |row: &Row| Selected { row: Arc::new(row.clone()), options: Vec::new() };
+    let selected = |row: &Row| SelectedRow { row: Arc::new(row.clone()), options: Vec::new() };
     let alternatives = rows.into_iter().map(selected).collect();
-    Some(Chosen { axis: axis.key.to_owned(), origin: origin.clone(), alternatives })
+    Some(AxisChoice { axis: axis.key.to_owned(), span: span.clone(), alternatives })
 }
 
-fn selected(
+/// Returns the row and the options of one alternative.
+fn selected_row(
     axis: &Spanned<String>,
     alternative: &Alternative,
     attributes: &[Attribute],
     registry: &Registry,
     diagnostics: &mut Diagnostics,
-) -> Option<Selected> {
+) -> Option<SelectedRow> {
     registry.axis(&axis.value).filter(|axis| axis.chosen)?;
     let value = &alternative.value;
     let Some(row) = registry.row(&axis.value, &value.value).filter(|row| row.key != Registry::CLOSURE) else {
         if let Some(path) = alternative.file() {
             diagnostics.push(Diagnostic::new(
                 codes::MISSING_FILE,
-                &value.origin,
-                format!("nothing has read `{path}`"),
-                "files are read where a description is loaded from a file; add its row to the registry before the check",
+                &value.span,
+                format!("the file `{path}` has not been read"),
+                "files are read when a description is loaded from a file; otherwise add its row to the registry before the check",
             ));
             return None;
         }
@@ -204,8 +208,8 @@ fn selected(
             registry.rows_of(&axis.value).map(|row| row.key.as_str()).filter(|key| *key != Registry::CLOSURE).collect();
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_VALUE,
-            &value.origin,
-            format!("`{}` is no value of the axis `{}`", value.value, axis.value),
+            &value.span,
+            format!("the axis `{}` has no value `{}`", axis.value, value.value),
             suggestion(&value.value, &known, &format!("the values of `{}` are", axis.value)),
         ));
         return None;
@@ -213,12 +217,13 @@ fn selected(
     let options = alternative
         .options
         .iter()
-        .filter_map(|(name, value)| option(row, attributes, name, value, diagnostics))
+        .filter_map(|(name, value)| option_number(row, attributes, name, value, diagnostics))
         .collect();
-    Some(Selected { row: Arc::new(row.clone()), options })
+    Some(SelectedRow { row: Arc::new(row.clone()), options })
 }
 
-fn option(
+/// Returns the number of an option that the row has; for an attribute, its index.
+fn option_number(
     row: &Row,
     attributes: &[Attribute],
     name: &Spanned<String>,
@@ -227,31 +232,33 @@ fn option(
 ) -> Option<(String, u32)> {
     let Some(parameter) = row.parameters.iter().find(|parameter| parameter.name == name.value) else {
         let known: Vec<&str> = row.parameters.iter().map(|parameter| &*parameter.name).collect();
-        let hint = if known.is_empty() {
-            format!("`{}` has no options: drop the braces", row.key)
+        let help = if known.is_empty() {
+            format!("`{}` has no options: remove the braces", row.key)
         } else {
             suggestion(&name.value, &known, &format!("the options of `{}` are", row.key))
         };
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_OPTION,
-            &name.origin,
+            &name.span,
             format!("`{}` has no option `{}`", row.key, name.value),
-            hint,
+            help,
         ));
         return None;
     };
-    let number = match (&value.value, parameter.takes) {
-        (OptionValue::Number(number), Takes::Number) => Some(*number).filter(|number| in_range(parameter, *number)),
-        (OptionValue::Number(number), Takes::PowerOfTwo) => {
+    let number = match (&value.value, parameter.kind) {
+        (OptionValue::Number(number), ParameterType::Number) => {
+            Some(*number).filter(|number| in_range(parameter, *number))
+        }
+        (OptionValue::Number(number), ParameterType::PowerOfTwo) => {
             Some(*number).filter(|number| number.is_power_of_two() && in_range(parameter, *number))
         }
-        (OptionValue::Word(word), Takes::Attribute) => {
-            attributes.iter().position(|attribute| attribute.name.value == *word).map(|index| index as u32)
+        (OptionValue::Name(name), ParameterType::Attribute) => {
+            attributes.iter().position(|attribute| attribute.name.value == *name).map(|index| index as u32)
         }
         _ => None,
     };
     if number.is_none() {
-        diagnostics.push(bad_option(parameter, attributes, &value.origin));
+        diagnostics.push(invalid_option(parameter, attributes, &value.span));
     }
     number.map(|number| (name.value.clone(), number))
 }
@@ -260,18 +267,18 @@ fn in_range(parameter: &Parameter, number: u32) -> bool {
     (parameter.range.0..=parameter.range.1).contains(&number)
 }
 
-fn bad_option(parameter: &Parameter, attributes: &[Attribute], origin: &Origin) -> Diagnostic {
+fn invalid_option(parameter: &Parameter, attributes: &[Attribute], span: &SourceSpan) -> Diagnostic {
     let (least, greatest) = parameter.range;
     let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.value.as_str()).collect();
-    let wanted = match parameter.takes {
-        Takes::Number => format!("a whole number from {least} to {greatest}"),
-        Takes::PowerOfTwo => format!("a power of two from {least} to {greatest}"),
-        Takes::Attribute => format!("an attribute of the payload: {}", listed(&names)),
+    let expected = match parameter.kind {
+        ParameterType::Number => format!("a whole number from {least} to {greatest}"),
+        ParameterType::PowerOfTwo => format!("a power of two from {least} to {greatest}"),
+        ParameterType::Attribute => format!("an attribute of the payload: {}", listed(&names)),
     };
     Diagnostic::new(
-        codes::BAD_OPTION,
-        origin,
-        format!("`{}` is {wanted}", parameter.name),
-        format!("{}; {} when nothing is said", parameter.summary, parameter.default),
+        codes::INVALID_OPTION,
+        span,
+        format!("`{}` must be {expected}", parameter.name),
+        format!("{}; default: {}", parameter.summary, parameter.default),
     )
 }

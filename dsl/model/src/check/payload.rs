@@ -1,10 +1,10 @@
-//! What a fragment carries, and what of it the conditions of rows may ask.
+//! The payload of a fragment, and its properties that the conditions of rows read.
 
-use fragbuf_templates::vocabulary::Given;
+use fragbuf_templates::vocabulary::DescriptionValues;
 
 use crate::{Attribute, Diagnostic, Diagnostics, Draft, Format, UserFunction, codes};
 
-/// The description's attributes, or the papers' payload.
+/// Returns the description's attributes, or the papers' payload.
 pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<Attribute> {
     if draft.attributes.is_empty() {
         return draft.papers_payload();
@@ -13,25 +13,29 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
     match depth {
         Some(depth) if depth.format.value != Format::F32 => diagnostics.push(Diagnostic::new(
             codes::MISSING_DEPTH,
-            &depth.format.origin,
+            &depth.format.span,
             format!("`depth` is {}, not f32", depth.format.value.keyword()),
             "write `depth: f32`; a second depth of another format needs another name",
         )),
         Some(_) => {}
         None => diagnostics.push(Diagnostic::new(
             codes::MISSING_DEPTH,
-            &draft.attributes[0].name.origin,
+            &draft.attributes[0].name.span,
             "the payload has no `depth`",
-            "add `depth: f32`: kept fragments are put in its order, and without a criterion the farthest is the worst",
+            "add `depth: f32`: kept fragments are sorted by it, and without a criterion the farthest is the worst",
         )),
     }
     draft.attributes.clone()
 }
 
-/// What a description gives to the conditions of rows; the words that rows carry come on top.
-pub(crate) fn given(attributes: &[Attribute], criterion: Option<&UserFunction>, keep: Option<u32>) -> Given {
+/// Returns the values of a description that the conditions of rows read, without the extra words of rows.
+pub(crate) fn description_values(
+    attributes: &[Attribute],
+    criterion: Option<&UserFunction>,
+    keep: Option<u32>,
+) -> DescriptionValues {
     let color = attributes.iter().find(|attribute| attribute.name.value == "color");
-    Given {
+    DescriptionValues {
         keep,
         payload_words: attributes.iter().map(|attribute| attribute.format.value.words()).sum(),
         has_criterion: criterion.is_some(),

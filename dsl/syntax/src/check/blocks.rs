@@ -1,18 +1,20 @@
-//! Blocks and `let`: scopes, values at the end, and paths that never reach it.
+//! Blocks and `let`: scopes, final values, and statements that diverge.
 //!
-//! In: a block, and the type that its place needs. Out: a typed block. Rust's rules: the last expression without `;` is
-//! the value; a block in which a statement never ends needs none.
+//! Input: a block, and the type that is expected of it. Output: a typed block. By Rust's rules the last expression without
+//! `;` is the value, and a block with a diverging statement needs no value.
 
-use fragbuf_model::{Origin, codes};
+use fragbuf_model::{SourceSpan, codes};
 use syn::spanned::Spanned;
 
+use super::checker::Checker;
 use super::mismatch::quoted;
-use super::{Checker, written_type};
+use super::written_types::written_type;
+use crate::names;
 use crate::tree::{Block, Expr, Kind, Statement, VariableId};
 use crate::types::Type;
 
 impl Checker<'_, '_, '_> {
-    /// A block in a scope of its own; where a type is expected, its value is required to have it.
+    /// Checks a block in a new scope. If a type is expected, the value must have it.
     pub(super) fn block(&mut self, block: &syn::Block, expected: Option<Type>) -> Block {
         self.scopes.push(Vec::new());
         let mut checked = Block { statements: Vec::new(), value: None, end: self.at(block.brace_token.span.close()) };
@@ -36,13 +38,13 @@ impl Checker<'_, '_, '_> {
         checked
     }
 
-    /// The type of a checked block.
+    /// Returns the type of a checked block.
     pub(super) fn type_of_block(&self, block: &Block, expected: Option<Type>) -> Type {
         match &block.value {
-            _ if ends_early(block) => Type::Never,
+            _ if diverges(block) => Type::Never,
             Some(value) if value.ty != Type::Error => value.ty,
             Some(_) => Type::Error,
-            // A missing value was reported where the block was checked.
+            // `block` reported a missing value.
             None => expected.map_or(Type::Unit, |expected| if expected == Type::Unit { expected } else { Type::Error }),
         }
     }
@@ -50,26 +52,26 @@ impl Checker<'_, '_, '_> {
     fn require_block_value(&mut self, checked: &Block, block: &syn::Block, expected: Type) {
         let expected = self.inference.resolve(expected);
         let needless = matches!(expected, Type::Unit | Type::Error | Type::Never);
-        if needless || checked.value.is_some() || ends_early(checked) {
+        if needless || checked.value.is_some() || diverges(checked) {
             return;
         }
-        let (origin, hint) = match (block.stmts.last(), checked.statements.last()) {
+        let (span, help) = match (block.stmts.last(), checked.statements.last()) {
             (Some(syn::Stmt::Expr(_, Some(semi))), Some(Statement::Expr(last)))
                 if self.inference.unify(last.ty, expected).is_some() =>
             {
-                (self.at(semi.span()), "leave out this `;`: the last expression without one is the value".to_string())
+                (self.at(semi.span()), "remove this `;`: the last expression without one is the value".to_string())
             }
             _ => (checked.end.clone(), "end the block with the value, without `;`".to_string()),
         };
-        let message = format!("a value of type `{}` is missing here", self.inference.name(expected));
-        self.report.error(codes::MISSING_VALUE, &origin, message, hint);
+        let message = format!("expected a value of type `{}`", self.inference.name(expected));
+        self.report.error(codes::MISSING_VALUE, &span, message, help);
     }
 
     fn statement(&mut self, statement: &syn::Stmt) -> Option<Statement> {
         match statement {
             syn::Stmt::Local(local) => self.local(local),
             syn::Stmt::Expr(expr, semi) => {
-                // Rust takes a block in the middle for a statement of its own, which must not have a value.
+                // Rust parses an inner block without `;` as a statement, which must not have a value.
                 let expected = if semi.is_none() { Some(Type::Unit) } else { None };
                 let checked = match expected {
                     Some(expected) => self.value(expr, expected),
@@ -78,114 +80,114 @@ impl Checker<'_, '_, '_> {
                 Some(Statement::Expr(checked))
             }
             syn::Stmt::Item(item) => {
-                let hint = "write it beside the closure: `fn name(x: f32) -> f32 { … }`";
-                self.refuse(self.at(item.span()), "items inside functions are not part of the language", hint);
+                let help = "declare it next to the closure: `fn name(x: f32) -> f32 { … }`";
+                self.unsupported(self.at(item.span()), "items inside functions are not supported", help);
                 None
             }
             syn::Stmt::Macro(invocation) => {
-                let hint = "write what the macro stands for";
-                self.refuse(self.at(invocation.span()), "macros are not part of the language", hint);
+                let help = "write the expanded code";
+                self.unsupported(self.at(invocation.span()), "macros are not supported", help);
                 None
             }
         }
     }
 
     fn local(&mut self, local: &syn::Local) -> Option<Statement> {
-        let origin = self.at(local.let_token.span);
+        let span = self.at(local.let_token.span);
         let (pattern, written) = match &local.pat {
             syn::Pat::Type(typed) => (&*typed.pat, Some(written_type(&typed.ty, self.report))),
             other => (other, None),
         };
         let Some(init) = &local.init else {
-            let hint = "give it its value at once: `let x = if … { … } else { … };`, or `let mut x = 0.0;`";
-            self.refuse(origin, "a variable without a value is not part of the language", hint);
+            let help = "initialise it: `let x = if … { … } else { … };`, or `let mut x = 0.0;`";
+            self.unsupported(span, "variables without an initial value are not supported", help);
             self.local_name(pattern, written.is_some(), written.unwrap_or(Type::Error));
             return None;
         };
         if let Some((token, _)) = &init.diverge {
-            let hint = "test with `if … { return … }` before";
-            self.refuse(self.at(token.span), "`let … else` is not part of the language", hint);
+            let help = "test before it with `if … { return … }`";
+            self.unsupported(self.at(token.span), "`let … else` is not supported", help);
         }
         let value = match written {
             Some(written) => self.value(&init.expr, written),
             None => self.expr(&init.expr, None),
         };
-        let kind = written.unwrap_or(value.ty);
-        self.refuse_no_value(&value, kind);
-        let variable = self.local_name(pattern, written.is_some(), kind)?;
-        Some(Statement::Let { variable: variable.id(), value, origin })
+        let ty = written.unwrap_or(value.ty);
+        self.require_storable(&value, ty);
+        let variable = self.local_name(pattern, written.is_some(), ty)?;
+        Some(Statement::Let { variable: variable.id(), value, span })
     }
 
-    fn refuse_no_value(&mut self, value: &Expr, kind: Type) {
-        match self.inference.resolve(kind) {
+    /// Rejects a `let` of a value that WGSL cannot store in a variable.
+    fn require_storable(&mut self, value: &Expr, ty: Type) {
+        match self.inference.resolve(ty) {
             Type::Uniforms | Type::Fragments => {
-                let message = format!("{} cannot get a second name", quoted(self.inference.name(kind)));
-                self.refuse(value.origin.clone(), message, "use the closure's parameter itself");
+                let message = format!("{} cannot be stored in a variable", quoted(self.inference.name(ty)));
+                self.unsupported(value.span.clone(), message, "use the closure's parameter directly");
             }
             Type::Unit => {
-                let message = "this gives no value";
-                self.report.error(codes::MISSING_VALUE, &value.origin, message, "write it without `let`");
+                let message = "this expression has no value";
+                self.report.error(codes::MISSING_VALUE, &value.span, message, "remove `let`");
             }
             _ => {}
         }
     }
 
-    /// Declares the name of a `let`; nothing where the pattern is more than a name.
-    fn local_name(&mut self, pattern: &syn::Pat, annotated: bool, kind: Type) -> Option<Declared> {
-        let origin = self.at(pattern.span());
+    /// Declares the name of a `let`; rejects destructuring patterns.
+    fn local_name(&mut self, pattern: &syn::Pat, annotated: bool, ty: Type) -> Option<Declaration> {
+        let span = self.at(pattern.span());
         match pattern {
-            syn::Pat::Wild(_) => Some(Declared::Nothing),
+            syn::Pat::Wild(_) => Some(Declaration::Wildcard),
             syn::Pat::Ident(name) if name.by_ref.is_none() && name.subpat.is_none() => {
                 let mutable = name.mutability.is_some();
-                Some(Declared::Name(self.declare(&name.ident, mutable, annotated, kind)))
+                Some(Declaration::Name(self.declare(&name.ident, mutable, annotated, ty)))
             }
             _ => {
-                let hint = "write one `let` for each value";
-                self.refuse(origin, "a pattern that takes values apart is not part of the language", hint);
+                let help = "write one `let` for each value";
+                self.unsupported(span, "destructuring patterns are not supported", help);
                 None
             }
         }
     }
 
-    /// Declares a local name and brings it into scope.
-    pub(super) fn declare(&mut self, name: &syn::Ident, mutable: bool, annotated: bool, kind: Type) -> VariableId {
-        let origin: Origin = self.at(name.span());
+    /// Declares a local name and adds it to the scope.
+    pub(super) fn declare(&mut self, name: &syn::Ident, mutable: bool, annotated: bool, ty: Type) -> VariableId {
+        let span: SourceSpan = self.at(name.span());
         let name = syn::ext::IdentExt::unraw(name).to_string();
         if !name.is_ascii() {
-            let message = format!("the name `{name}` has letters beyond ASCII");
-            let hint = "shader languages have only a-z, A-Z, 0-9 and _";
-            self.report.error(codes::NAME_RESERVED, &origin, message, hint);
+            let message = format!("the name `{name}` contains non-ASCII characters");
+            self.report.error(codes::NAME_RESERVED, &span, message, names::ASCII_ONLY);
         }
-        let id = self.new_variable(&name, mutable, annotated, kind, &origin);
+        let id = self.new_variable(&name, mutable, annotated, ty, &span);
         self.bind(id);
         id
     }
 }
 
-/// What a pattern declares.
-enum Declared {
+/// The variable of a pattern.
+enum Declaration {
     /// `_`
-    Nothing,
+    Wildcard,
     Name(VariableId),
 }
 
-impl Declared {
+impl Declaration {
     fn id(self) -> Option<VariableId> {
         match self {
-            Declared::Nothing => None,
-            Declared::Name(id) => Some(id),
+            Declaration::Wildcard => None,
+            Declaration::Name(id) => Some(id),
         }
     }
 }
 
-/// Whether some statement of the block never ends normally, or its value does not.
-pub(super) fn ends_early(block: &Block) -> bool {
+/// Returns whether a statement or the value of the block diverges.
+pub(super) fn diverges(block: &Block) -> bool {
     let statement = |statement: &Statement| match statement {
-        Statement::Let { value, .. } | Statement::Expr(value) => never_ends(value),
+        Statement::Let { value, .. } | Statement::Expr(value) => expr_diverges(value),
     };
-    block.statements.iter().any(statement) || block.value.as_deref().is_some_and(never_ends)
+    block.statements.iter().any(statement) || block.value.as_deref().is_some_and(expr_diverges)
 }
 
-fn never_ends(expr: &Expr) -> bool {
-    expr.ty == Type::Never || matches!(&expr.kind, Kind::Block(block) if ends_early(block))
+fn expr_diverges(expr: &Expr) -> bool {
+    expr.ty == Type::Never || matches!(&expr.kind, Kind::Block(block) if diverges(block))
 }

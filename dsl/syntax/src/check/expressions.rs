@@ -1,27 +1,35 @@
 //! Expressions: one arm per construct of Rust that the language has.
 //!
-//! In: a syntax tree, and the type its place expects if that is known. Out: a typed tree. The expected type only steers
-//! messages into the arms of blocks and branches; whether it is met, [`Checker::value`] decides.
+//! Input: a syntax tree, and the expected type if it is known. Output: a typed tree. The expected type only makes messages
+//! point into the arms of blocks and branches; [`Checker::value`] requires it.
 
 use fragbuf_model::codes;
 use syn::spanned::Spanned;
 
-use super::{Checker, DEPTH, unsupported};
+use super::checker::Checker;
+use super::unsupported;
 use crate::tree::{Expr, Kind};
 use crate::types::Type;
 
+/// The maximum nesting depth of expressions.
+const DEPTH: usize = 64;
+
 impl Checker<'_, '_, '_> {
-    /// An expression whose place needs this type.
+    /// Checks an expression that must have this type.
     pub(super) fn value(&mut self, expr: &syn::Expr, expected: Type) -> Expr {
         let found = self.expr(expr, Some(expected));
         self.require(found, expected)
     }
 
-    /// An expression.
+    /// Checks an expression.
     pub(super) fn expr(&mut self, expr: &syn::Expr, expected: Option<Type>) -> Expr {
         if self.depth >= DEPTH {
-            let origin = self.at(expr.span());
-            return self.refuse(origin, "the expression nests too deep", "name its inner parts with `let`");
+            let span = self.at(expr.span());
+            return self.unsupported(
+                span,
+                format!("the expression is nested more than {DEPTH} deep"),
+                "name its inner parts with `let`",
+            );
         }
         self.depth += 1;
         let found = self.shallow(expr, expected);
@@ -46,36 +54,36 @@ impl Checker<'_, '_, '_> {
             syn::Expr::Block(block) if block.label.is_none() => self.block_expr(&block.block, expected),
             syn::Expr::ForLoop(each) if each.label.is_none() => self.for_loop(each),
             syn::Expr::Assign(assign) => self.assign(assign),
-            syn::Expr::Return(leave) => self.leave(leave),
-            syn::Expr::Break(end) => self.end_loop(end),
-            syn::Expr::Continue(next) => self.next_round(next),
-            syn::Expr::While(_) | syn::Expr::Loop(_) => self.unbounded(expr),
-            other => self.unsupported(other),
+            syn::Expr::Return(leave) => self.return_expr(leave),
+            syn::Expr::Break(end) => self.break_expr(end),
+            syn::Expr::Continue(next) => self.continue_expr(next),
+            syn::Expr::While(_) | syn::Expr::Loop(_) => self.unbounded_loop(expr),
+            other => self.unsupported_expr(other),
         }
     }
 
     fn block_expr(&mut self, block: &syn::Block, expected: Option<Type>) -> Expr {
-        let origin = self.at(block.span());
+        let span = self.at(block.span());
         let block = self.block(block, expected);
         let ty = self.type_of_block(&block, expected);
-        Expr::new(Kind::Block(block), ty, origin)
+        Expr::new(Kind::Block(block), ty, span)
     }
 
-    fn leave(&mut self, leave: &syn::ExprReturn) -> Expr {
-        let origin = self.at(leave.span());
+    fn return_expr(&mut self, leave: &syn::ExprReturn) -> Expr {
+        let span = self.at(leave.span());
         let result = self.result;
         let Some(expr) = &leave.expr else {
-            let message = format!("`return` needs a value of type `{}` here", result.rust());
-            self.report.error(codes::MISSING_VALUE, &origin, message, "write `return value;`");
-            return Expr::new(Kind::Error, Type::Never, origin);
+            let message = format!("expected a value of type `{}` after `return`", result.rust());
+            self.report.error(codes::MISSING_VALUE, &span, message, "write `return value;`");
+            return Expr::new(Kind::Error, Type::Never, span);
         };
         let value = self.value(expr, result);
-        Expr::new(Kind::Return(Box::new(value)), Type::Never, origin)
+        Expr::new(Kind::Return(Box::new(value)), Type::Never, span)
     }
 
-    fn unsupported(&mut self, expr: &syn::Expr) -> Expr {
-        let (what, hint) = unsupported::describe(expr);
-        let origin = self.at(unsupported::head(expr));
-        self.refuse(origin, format!("{what} not part of the language"), hint)
+    fn unsupported_expr(&mut self, expr: &syn::Expr) -> Expr {
+        let (what, help) = unsupported::describe(expr);
+        let span = self.at(unsupported::span(expr));
+        self.unsupported(span, format!("{what} not supported"), help)
     }
 }

@@ -1,12 +1,13 @@
-//! The type checker of the closure language: from Rust's syntax tree to a typed one.
+//! The type checker of the closure language: from Rust's syntax tree to a typed tree.
 //!
-//! In: a function as written, and what it can see. Out: a [`Function`] in which every node has a type, or the mistakes.
-//! Types are Rust's: what passes here, rustc accepts with glam's vectors and reads alike. Nothing here writes WGSL.
+//! Input: a parsed function and its environment. Output: a [`Function`] in which every node has a type, or errors. Types are
+//! Rust's: rustc accepts every function that passes, with glam's vectors and the same meaning. Nothing here writes WGSL.
 
 mod assign;
 mod blocks;
 mod branches;
 mod calls;
+mod checker;
 mod expressions;
 mod fields;
 mod literals;
@@ -15,80 +16,44 @@ mod mismatch;
 mod operators;
 mod paths;
 mod unsupported;
+mod written_types;
 
-use fragbuf_model::{Diagnostic, Origin, codes};
-use proc_macro2::Span;
+use fragbuf_model::{Diagnostic, codes};
 
+use crate::environment::Environment;
 use crate::fold;
-use crate::grammar::{RawFunction, RawParameter, Role};
-use crate::infer::Inference;
-use crate::report::Report;
-use crate::tree::{Block, Expr, Function, Use, Variable, VariableId};
+use crate::raw_function::{RawFunction, RawParameter, Role};
+use crate::report::{FIRST, Report};
+use crate::tree::{Block, Function, VariableId};
 use crate::types::Type;
+use checker::Checker;
 
-pub(crate) use paths::written_type;
+pub(crate) use written_types::written_type;
 
-/// What every function of a description can see.
-pub(crate) struct Environment {
-    /// Attributes of a fragment.
-    pub attributes: Vec<(String, Type)>,
-    pub uniforms: Vec<(String, Type)>,
-    pub helpers: Vec<Signature>,
-}
-
-/// A helper as its callers see it.
-pub(crate) struct Signature {
-    pub name: String,
-    pub origin: Origin,
-    pub parameters: Vec<Type>,
-    pub result: Type,
-}
-
-/// How deep expressions may nest.
-const DEPTH: usize = 64;
-
-/// The state of checking one function.
-struct Checker<'e, 'r, 'p> {
-    environment: &'e Environment,
-    report: &'r mut Report<'p>,
-    inference: Inference,
-    variables: Vec<Variable>,
-    /// Names in scope, innermost last.
-    scopes: Vec<Vec<(String, VariableId)>>,
-    uses: Vec<Use>,
-    result: Type,
-    loops: usize,
-    depth: usize,
-    /// Whole numbers whose range is checked when their type is known.
-    wholes: Vec<literals::Whole>,
-    /// Operands of `-`, which must not turn out to be unsigned.
-    negated: Vec<(Type, Origin)>,
-}
-
-/// Checks one function; nothing if it has a mistake.
+/// Checks one function; returns `None` if it has an error.
 pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut Report) -> Option<Function> {
     let before = report.count();
-    let (expected, result) = wanted(&raw, environment);
+    let (expected, result) = signature(&raw, environment);
     let mut checker = Checker::new(environment, report, result);
     let parameters = checker.parameters(&raw, &expected);
     checker.written_result(&raw);
     let body = checker.body(&raw.body);
-    checker.finish_numbers();
+    checker.check_numbers();
     let Checker { inference, variables, uses, .. } = checker;
     let name = raw.role.wgsl_name();
-    let (origin, rust) = (raw.origin, raw.rust);
-    let function = Function { name, origin, rust, parameters, variables, result, body, uses, inference };
+    let (span, rust) = (raw.span, raw.rust);
+    let function = Function { name, span, rust, parameters, variables, result, body, uses, inference };
     if report.count() == before {
-        fold::refuse_overflow(&function, report);
+        fold::reject_overflow(&function, report);
     }
     (report.count() == before).then_some(function)
 }
 
-/// The types of the parameters and of the result.
-fn wanted(raw: &RawFunction, environment: &Environment) -> (Vec<Type>, Type) {
+/// Returns the types of the parameters and of the result.
+fn signature(raw: &RawFunction, environment: &Environment) -> (Vec<Type>, Type) {
     match &raw.role {
         Role::Criterion => (vec![Type::Fragment, Type::Uniforms], Type::F32),
-        Role::Admit(_) => (vec![Type::Fragment, Type::Uniforms], Type::Bool),
+        Role::Constraint(_) => (vec![Type::Fragment, Type::Uniforms], Type::Bool),
         Role::Resolve => (vec![Type::Fragments, Type::Uniforms], Type::Vector(4)),
         Role::Helper(name) => {
             let signature = environment.helpers.iter().find(|signature| signature.name == *name);
@@ -97,40 +62,24 @@ fn wanted(raw: &RawFunction, environment: &Environment) -> (Vec<Type>, Type) {
     }
 }
 
-impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
-    fn new(environment: &'e Environment, report: &'r mut Report<'p>, result: Type) -> Self {
-        Checker {
-            environment,
-            report,
-            inference: Inference::default(),
-            variables: Vec::new(),
-            scopes: vec![Vec::new()],
-            uses: Vec::new(),
-            result,
-            loops: 0,
-            depth: 0,
-            wholes: Vec::new(),
-            negated: Vec::new(),
-        }
-    }
-
+impl Checker<'_, '_, '_> {
     fn parameters(&mut self, raw: &RawFunction, expected: &[Type]) -> Vec<VariableId> {
         if !matches!(raw.role, Role::Helper(_)) {
             self.count_of_parameters(raw);
         }
         let mut ids = Vec::new();
         for (index, parameter) in raw.parameters.iter().enumerate() {
-            let kind = expected.get(index).copied().unwrap_or(Type::Error);
-            self.parameter_type(raw, parameter, kind);
-            self.refuse_same_parameter(raw, index);
-            ids.push(self.declare_parameter(parameter, kind));
+            let ty = expected.get(index).copied().unwrap_or(Type::Error);
+            self.parameter_type(raw, parameter, ty);
+            self.reject_duplicate_parameter(raw, index);
+            ids.push(self.declare_parameter(parameter, ty));
         }
         ids
     }
 
-    fn declare_parameter(&mut self, parameter: &RawParameter, kind: Type) -> VariableId {
+    fn declare_parameter(&mut self, parameter: &RawParameter, ty: Type) -> VariableId {
         let name = parameter.name.as_ref().map_or("_", |name| name.value.as_str());
-        let id = self.new_variable(name, parameter.mutable, true, kind, &parameter.origin);
+        let id = self.new_variable(name, parameter.mutable, true, ty, &parameter.span);
         if parameter.name.is_some() {
             self.bind(id);
         }
@@ -142,41 +91,42 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             return;
         }
         let first = if raw.role == Role::Resolve { "fragments" } else { "f" };
-        let message = format!("the closure takes {} parameters", raw.parameters.len());
-        let hint = format!("write `|{first}|`, or `|{first}, u|` to read uniforms");
-        self.report.error(codes::WRONG_ARGUMENTS, &raw.origin, message, hint);
+        let message = format!("expected 1 or 2 parameters, found {}", raw.parameters.len());
+        let help = format!("write `|{first}|`, or `|{first}, u|` to read uniforms");
+        self.report.error(codes::ARGUMENT_COUNT, &raw.span, message, help);
     }
 
-    /// A closure's parameter may have a type, which must be the one it has anyway.
-    fn parameter_type(&mut self, raw: &RawFunction, parameter: &RawParameter, kind: Type) {
+    /// Checks the type annotation of a closure's parameter, which is optional.
+    fn parameter_type(&mut self, raw: &RawFunction, parameter: &RawParameter, ty: Type) {
         if matches!(raw.role, Role::Helper(_)) {
             return;
         }
-        let Some(written) = &parameter.kind else { return };
+        let Some(written) = &parameter.ty else { return };
         let written = written_type(written, self.report);
-        if self.inference.unify(written, kind).is_none() {
-            let message = format!("the parameter is `{}`, not `{}`", kind.rust(), written.rust());
-            self.report.error(codes::WRONG_TYPE, &parameter.origin, message, "leave the type out");
+        if self.inference.unify(written, ty).is_none() {
+            let message = format!("mismatched parameter type: expected `{}`, found `{}`", ty.rust(), written.rust());
+            self.report.error(codes::TYPE_MISMATCH, &parameter.span, message, "remove the type");
         }
     }
 
-    fn refuse_same_parameter(&mut self, raw: &RawFunction, index: usize) {
+    fn reject_duplicate_parameter(&mut self, raw: &RawFunction, index: usize) {
         let Some(name) = raw.parameters.get(index).and_then(|parameter| parameter.name.as_ref()) else { return };
         let earlier = raw.parameters.iter().take(index).filter_map(|parameter| parameter.name.as_ref());
         if let Some(first) = earlier.into_iter().find(|other| other.value == name.value) {
-            let message = format!("the parameter `{}` is given twice", name.value);
-            let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "rename one of them");
-            self.report.push(diagnostic.label(&first.origin, "the first is here"));
+            let message = format!("duplicate parameter `{}`", name.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.span, message, "rename one of them");
+            self.report.push(diagnostic.label(&first.span, FIRST));
         }
     }
 
-    /// A closure may say what it gives: `|f| -> f32 { … }`.
+    /// Checks the return type of a closure, which is optional: `|f| -> f32 { … }`.
     fn written_result(&mut self, raw: &RawFunction) {
         let (Some(output), false) = (&raw.output, matches!(raw.role, Role::Helper(_))) else { return };
         let written = written_type(output, self.report);
         if self.inference.unify(written, self.result).is_none() {
-            let message = format!("the closure must give `{}`, not `{}`", self.result.rust(), written.rust());
-            self.report.error(codes::WRONG_TYPE, &raw.origin, message, "leave the `-> …` out");
+            let (expected, found) = (self.result.rust(), written.rust());
+            let message = format!("mismatched return type: expected `{expected}`, found `{found}`");
+            self.report.error(codes::TYPE_MISMATCH, &raw.span, message, "remove `-> …`");
         }
     }
 
@@ -186,49 +136,19 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             syn::Expr::Block(block) if block.label.is_none() => self.block(&block.block, Some(result)),
             other => {
                 let value = self.value(other, result);
-                let end = value.origin.clone();
+                let end = value.span.clone();
                 Block { statements: Vec::new(), value: Some(Box::new(value)), end }
             }
         }
     }
 
-    /// A new name for a value; it is not in scope before [`Checker::bind`].
-    fn new_variable(&mut self, name: &str, mutable: bool, annotated: bool, kind: Type, origin: &Origin) -> VariableId {
-        let origin = origin.clone();
-        self.variables.push(Variable { name: name.to_string(), mutable, annotated, kind, origin });
-        self.variables.len() - 1
-    }
-
-    /// Brings a variable into the innermost scope.
-    fn bind(&mut self, id: VariableId) {
-        let name = self.variables.get(id).map(|variable| variable.name.clone()).unwrap_or_default();
-        if let Some(scope) = self.scopes.last_mut() {
-            scope.push((name, id));
+    /// Checks ranges and negations once all types are known.
+    fn check_numbers(&mut self) {
+        for integer in std::mem::take(&mut self.integers) {
+            self.check_range(&integer);
         }
-    }
-
-    fn lookup(&self, name: &str) -> Option<VariableId> {
-        let innermost_first = self.scopes.iter().rev().flat_map(|scope| scope.iter().rev());
-        innermost_first.into_iter().find(|(other, _)| other == name).map(|(_, id)| *id)
-    }
-
-    fn at(&self, span: Span) -> Origin {
-        self.report.at(span)
-    }
-
-    /// Reports a construct that the language does not have.
-    fn refuse(&mut self, origin: Origin, message: impl Into<String>, hint: impl Into<String>) -> Expr {
-        self.report.error(codes::UNSUPPORTED, &origin, message, hint);
-        Expr::error(origin)
-    }
-
-    /// Once all types are known: do the numbers fit?
-    fn finish_numbers(&mut self) {
-        for whole in std::mem::take(&mut self.wholes) {
-            self.check_range(&whole);
-        }
-        for (kind, origin) in std::mem::take(&mut self.negated) {
-            self.check_negation(kind, &origin);
+        for (ty, span) in std::mem::take(&mut self.negated) {
+            self.check_negation(ty, &span);
         }
     }
 }

@@ -1,21 +1,22 @@
-//! Operators: what Rust and glam have, and nothing else.
+//! Operators: exactly those of Rust and glam.
 //!
-//! In: operands. Out: a typed operation. Scalars meet scalars of the same type; vectors meet vectors of the same size or
-//! an `f32`, in either order. Comparisons are between scalars.
+//! Input: operands. Output: a typed operation. Both operands are scalars of the same type, vectors of the same size, or a
+//! vector and an `f32`, in either order. Comparisons are between scalars.
 
-use fragbuf_model::{Origin, codes};
+use fragbuf_model::{SourceSpan, codes};
 use syn::spanned::Spanned;
 use syn::{BinOp, UnOp};
 
-use super::mismatch::{quoted, way_out};
-use super::{Checker, written_type};
+use super::checker::Checker;
+use super::mismatch::{fix, quoted};
+use super::written_types::written_type;
 use crate::tree::{Expr, Kind, Operator};
 use crate::types::Type;
 
-/// The operator, and whether it assigns.
-fn operator(sign: &BinOp) -> Option<(Operator, bool)> {
+/// Returns the operator, and whether it assigns.
+fn operator(token: &BinOp) -> Option<(Operator, bool)> {
     use Operator::*;
-    Some(match sign {
+    Some(match token {
         BinOp::Add(_) => (Add, false),
         BinOp::Sub(_) => (Subtract, false),
         BinOp::Mul(_) => (Multiply, false),
@@ -50,82 +51,81 @@ fn operator(sign: &BinOp) -> Option<(Operator, bool)> {
 
 impl Checker<'_, '_, '_> {
     pub(super) fn unary(&mut self, unary: &syn::ExprUnary) -> Expr {
-        let origin = self.at(unary.span());
+        let span = self.at(unary.span());
         match unary.op {
-            UnOp::Neg(_) => self.negate(unary, origin),
+            UnOp::Neg(_) => self.negate(unary, span),
             UnOp::Not(_) => {
                 let inner = self.expr(&unary.expr, None);
-                let kind = self.inference.resolve(inner.ty);
-                if kind != Type::Bool && kind != Type::Error && !self.inference.is_whole(kind) {
-                    let message = format!("`!` has no meaning for {}", quoted(self.inference.name(kind)));
-                    self.report.error(codes::WRONG_TYPE, &origin, message, "it is for `bool` and whole numbers");
-                    return Expr::error(origin);
+                let ty = self.inference.resolve(inner.ty);
+                if ty != Type::Bool && ty != Type::Error && !self.inference.is_integer(ty) {
+                    let message = format!("cannot apply unary operator `!` to {}", quoted(self.inference.name(ty)));
+                    self.report.error(codes::TYPE_MISMATCH, &span, message, "`!` applies to `bool` and integers");
+                    return Expr::error(span);
                 }
-                Expr::new(Kind::Not(Box::new(inner)), kind, origin)
+                Expr::new(Kind::Not(Box::new(inner)), ty, span)
             }
             _ => {
-                let hint = "use the value itself: all values are copied";
-                self.refuse(origin, "references are not part of the language", hint)
+                let help = "use the value itself: all values are copied";
+                self.unsupported(span, "references are not supported", help)
             }
         }
     }
 
-    fn negate(&mut self, unary: &syn::ExprUnary, origin: Origin) -> Expr {
+    fn negate(&mut self, unary: &syn::ExprUnary, span: SourceSpan) -> Expr {
         let inner = match &*unary.expr {
             syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(number), .. })
                 if !matches!(number.suffix(), "f32" | "f64") =>
             {
-                let place = self.at(number.span());
-                self.whole(number, place, true)
+                let span = self.at(number.span());
+                self.integer(number, span, true)
             }
             other => self.expr(other, None),
         };
-        let kind = self.inference.resolve(inner.ty);
-        let fits = self.inference.is_whole(kind) || self.inference.is_fractional(kind);
-        if !fits && !matches!(kind, Type::Vector(_) | Type::Error) {
-            let message = format!("`-` has no meaning for {}", quoted(self.inference.name(kind)));
-            self.report.error(codes::WRONG_TYPE, &origin, message, "it is for numbers and vectors");
-            return Expr::error(origin);
+        let ty = self.inference.resolve(inner.ty);
+        if !self.is_number(ty) && !matches!(ty, Type::Vector(_) | Type::Error) {
+            let message = format!("cannot apply unary operator `-` to {}", quoted(self.inference.name(ty)));
+            self.report.error(codes::TYPE_MISMATCH, &span, message, "`-` applies to numbers and vectors");
+            return Expr::error(span);
         }
-        self.negated.push((kind, origin.clone()));
-        Expr::new(Kind::Negate(Box::new(inner)), kind, origin)
+        self.negated.push((ty, span.clone()));
+        Expr::new(Kind::Negate(Box::new(inner)), ty, span)
     }
 
-    /// Once all types are known: Rust has no `-` for unsigned numbers.
-    pub(super) fn check_negation(&mut self, kind: Type, origin: &Origin) {
-        let kind = self.inference.settle(kind);
-        if matches!(kind, Type::U32 | Type::Usize) {
-            let message = format!("`-` has no meaning for `{}`", kind.rust());
-            let hint = "convert it: `-(x as i32)`, or subtract: `a.wrapping_sub(b)`";
-            self.report.error(codes::WRONG_TYPE, origin, message, hint);
+    /// Rejects `-` for unsigned numbers, as Rust does, once all types are known.
+    pub(super) fn check_negation(&mut self, ty: Type, span: &SourceSpan) {
+        let ty = self.inference.resolve_or_default(ty);
+        if matches!(ty, Type::U32 | Type::Usize) {
+            let message = format!("cannot apply unary operator `-` to `{}`", ty.rust());
+            let help = "convert it: `-(x as i32)`, or subtract: `a.wrapping_sub(b)`";
+            self.report.error(codes::TYPE_MISMATCH, span, message, help);
         }
     }
 
     pub(super) fn binary(&mut self, binary: &syn::ExprBinary) -> Expr {
-        let origin = self.at(binary.span());
+        let span = self.at(binary.span());
         let Some((operator, assigns)) = operator(&binary.op) else {
-            return self.refuse(origin, "this operator is not part of the language", "write it with + - * / %");
+            return self.unsupported(span, "this operator is not supported", "write it with + - * / %");
         };
         if assigns {
-            return self.compound(&binary.left, operator, &binary.right, origin);
+            return self.compound(&binary.left, operator, &binary.right, span);
         }
         if operator.is_logical() {
             let left = self.value(&binary.left, Type::Bool);
             let right = self.value(&binary.right, Type::Bool);
-            return Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), Type::Bool, origin);
+            return Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), Type::Bool, span);
         }
         let left = self.expr(&binary.left, None);
         let right = self.expr(&binary.right, None);
         match self.operation(operator, &left, &right) {
-            Some(ty) => Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, origin),
+            Some(ty) => Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, span),
             None => {
-                self.no_operation(operator, &left, &right, &origin);
-                Expr::error(origin)
+                self.no_operation(operator, &left, &right, &span);
+                Expr::error(span)
             }
         }
     }
 
-    /// The type of `left operator right`; nothing where Rust has no such operation.
+    /// Returns the type of `left operator right`, or `None` if Rust has no such operation.
     pub(super) fn operation(&mut self, operator: Operator, left: &Expr, right: &Expr) -> Option<Type> {
         let (a, b) = (self.inference.resolve(left.ty), self.inference.resolve(right.ty));
         if a == Type::Error || b == Type::Error {
@@ -134,21 +134,17 @@ impl Checker<'_, '_, '_> {
         if operator.is_arithmetic() {
             return match (a, b) {
                 (Type::Vector(n), Type::Vector(m)) if n == m => Some(a),
-                (Type::Vector(_), _) if self.inference.is_fractional(b) => {
-                    self.inference.unify(b, Type::F32).map(|_| a)
-                }
-                (_, Type::Vector(_)) if self.inference.is_fractional(a) => {
-                    self.inference.unify(a, Type::F32).map(|_| b)
-                }
+                (Type::Vector(_), _) if self.inference.is_float(b) => self.inference.unify(b, Type::F32).map(|_| a),
+                (_, Type::Vector(_)) if self.inference.is_float(a) => self.inference.unify(a, Type::F32).map(|_| b),
                 _ if self.is_number(a) => self.inference.unify(a, b),
                 _ => None,
             };
         }
         if operator.is_shift() {
-            return (self.inference.is_whole(a) && self.inference.is_whole(b)).then_some(a);
+            return (self.inference.is_integer(a) && self.inference.is_integer(b)).then_some(a);
         }
         if operator.is_bitwise() {
-            let fits = a == Type::Bool || self.inference.is_whole(a);
+            let fits = a == Type::Bool || self.inference.is_integer(a);
             return if fits { self.inference.unify(a, b) } else { None };
         }
         let ordered = self.is_number(a);
@@ -157,49 +153,45 @@ impl Checker<'_, '_, '_> {
         fits.then_some(Type::Bool)
     }
 
-    fn is_number(&self, kind: Type) -> bool {
-        self.inference.is_whole(kind) || self.inference.is_fractional(kind)
-    }
-
-    pub(super) fn no_operation(&mut self, operator: Operator, left: &Expr, right: &Expr, origin: &Origin) {
+    pub(super) fn no_operation(&mut self, operator: Operator, left: &Expr, right: &Expr, span: &SourceSpan) {
         let (a, b) = (self.inference.name(left.ty), self.inference.name(right.ty));
-        let message = format!("`{}` has no meaning between {} and {}", operator.sign(), quoted(a), quoted(b));
+        let message = format!("cannot apply `{}` to {} and {}", operator.symbol(), quoted(a), quoted(b));
         let (a, b) = (self.inference.resolve(left.ty), self.inference.resolve(right.ty));
         let comparison = !operator.is_arithmetic() && !operator.is_shift() && !operator.is_bitwise();
-        let (place, hint) = match (a, b) {
+        let (span, help) = match (a, b) {
             (Type::Vector(_), Type::Vector(_)) if comparison => {
-                (origin, "compare components, `a.x < b.x`, or lengths".to_string())
+                (span, "compare components, `a.x < b.x`, or lengths".to_string())
             }
-            (Type::Vector(_), _) if self.inference.is_whole(b) && operator.is_arithmetic() => {
-                (&right.origin, way_out(&self.inference, right, Type::F32))
+            (Type::Vector(_), _) if self.inference.is_integer(b) && operator.is_arithmetic() => {
+                (&right.span, fix(&self.inference, right, Type::F32))
             }
-            (_, Type::Vector(_)) if self.inference.is_whole(a) && operator.is_arithmetic() => {
-                (&left.origin, way_out(&self.inference, left, Type::F32))
+            (_, Type::Vector(_)) if self.inference.is_integer(a) && operator.is_arithmetic() => {
+                (&left.span, fix(&self.inference, left, Type::F32))
             }
             _ if self.is_number(a) && self.is_number(b) && !operator.is_shift() && !operator.is_bitwise() => {
-                // Point at the whole number, which is the one to convert.
-                if self.inference.is_fractional(a) || !self.inference.is_fractional(b) {
-                    (&right.origin, way_out(&self.inference, right, a))
+                // Point to the integer, which is the operand to convert.
+                if self.inference.is_float(a) || !self.inference.is_float(b) {
+                    (&right.span, fix(&self.inference, right, a))
                 } else {
-                    (&left.origin, way_out(&self.inference, left, b))
+                    (&left.span, fix(&self.inference, left, b))
                 }
             }
             _ if operator.is_bitwise() || operator.is_shift() => {
-                (origin, "bits belong to whole numbers: `x.to_bits()`, or `x as u32`".to_string())
+                (span, "this operator applies to integers: `x.to_bits()`, or `x as u32`".to_string())
             }
-            (Type::Bool, Type::Bool) => (origin, "combine truth values with `&&` and `||`".to_string()),
-            _ => (origin, "both sides must be numbers of one type, or vectors of one size".to_string()),
+            (Type::Bool, Type::Bool) => (span, "combine `bool` values with `&&` and `||`".to_string()),
+            _ => (span, "both sides must be numbers of one type, or vectors of one size".to_string()),
         };
-        self.report.error(codes::WRONG_TYPE, place, message, hint);
+        self.report.error(codes::TYPE_MISMATCH, span, message, help);
     }
 
     pub(super) fn cast(&mut self, cast: &syn::ExprCast) -> Expr {
-        let origin = self.at(cast.span());
+        let span = self.at(cast.span());
         let inner = self.expr(&cast.expr, None);
         let target = written_type(&cast.ty, self.report);
         let source = self.inference.resolve(inner.ty);
-        if matches!(source, Type::Unknown(_)) && self.inference.is_whole(source) && target.is_integer() {
-            // As in Rust: in `3000000000 as u32` the number is a `u32` from the start.
+        if matches!(source, Type::Unknown(_)) && self.inference.is_integer(source) && target.is_integer() {
+            // As in Rust, the literal of `3000000000 as u32` is a `u32`.
             self.inference.unify(source, target);
         }
         let number = target == Type::F32 || target.is_integer();
@@ -209,15 +201,15 @@ impl Checker<'_, '_, '_> {
             _ => self.is_number(source) && number,
         };
         if fits || target == Type::Error {
-            return Expr::new(Kind::Cast(Box::new(inner)), target, origin);
+            return Expr::new(Kind::Cast(Box::new(inner)), target, span);
         }
-        let message = format!("{} cannot become `{}` with `as`", quoted(self.inference.name(source)), target.rust());
-        let hint = match (source, target) {
+        let message = format!("cannot cast {} as `{}`", quoted(self.inference.name(source)), target.rust());
+        let help = match (source, target) {
             (Type::Bool, Type::F32) => "write `if … { 1.0 } else { 0.0 }`".to_string(),
             (_, Type::Bool) => "compare it: `x != 0`".to_string(),
-            _ => way_out(&self.inference, &inner, target),
+            _ => fix(&self.inference, &inner, target),
         };
-        self.report.error(codes::WRONG_TYPE, &origin, message, hint);
-        Expr::error(origin)
+        self.report.error(codes::TYPE_MISMATCH, &span, message, help);
+        Expr::error(span)
     }
 }

@@ -1,12 +1,12 @@
-//! Constructs of Rust that a shader description does not have: what each is called, and the way out.
+//! Constructs of Rust that the closure language does not support: the name of each, and what to write instead.
 //!
-//! In: a syntax tree that no rule took. Out: words for the message. Nothing here is ever accepted.
+//! Input: a syntax tree that no rule accepts. Output: message and help.
 
 use proc_macro2::Span;
 use syn::Expr;
 use syn::spanned::Spanned;
 
-/// What it is, with its verb, and what to write instead.
+/// Returns the name of the construct with its verb, and what to write instead.
 pub(super) fn describe(expr: &Expr) -> (&'static str, &'static str) {
     match expr {
         Expr::Array(_) | Expr::Repeat(_) => ("arrays are", "use a vector, `vec4(a, b, c, d)`, or one variable each"),
@@ -14,17 +14,17 @@ pub(super) fn describe(expr: &Expr) -> (&'static str, &'static str) {
         Expr::Block(_) | Expr::ForLoop(_) => {
             ("labels are", "move the inner loop into a helper `fn` and `return` from it")
         }
-        Expr::Closure(_) => ("closures inside closures are", "write a helper `fn` beside the closure"),
+        Expr::Closure(_) => ("closures inside closures are", "write a helper `fn` next to the closure"),
         Expr::Const(_) => ("`const` blocks are", "write the expression itself"),
         Expr::Infer(_) => ("`_` as a value is", "write the value"),
         Expr::Let(_) => ("`if let` is", "compare: `if i < fragments.len() { … }`"),
-        Expr::Macro(_) => ("macros are", "write what the macro stands for"),
+        Expr::Macro(_) => ("macros are", "write the expanded code"),
         Expr::Match(_) => ("`match` is", "write `if … { … } else if … { … } else { … }`"),
         Expr::Range(_) => ("ranges outside a `for` are", "write `for i in a..b { … }`, or compare: `a <= x && x < b`"),
         Expr::RawAddr(_) | Expr::Reference(_) => ("references are", "pass the value itself: all values are copied"),
-        Expr::Struct(_) => ("struct literals are", "keep each value in a variable of its own"),
+        Expr::Struct(_) => ("struct literals are", "use one variable per value"),
         Expr::Try(_) | Expr::TryBlock(_) => ("`?` is", "test with `if` and `return` a value"),
-        Expr::Tuple(tuple) if tuple.elems.is_empty() => ("`()` is", "leave it out"),
+        Expr::Tuple(tuple) if tuple.elems.is_empty() => ("`()` is", "remove it"),
         Expr::Tuple(_) => ("tuples are", "use a vector, `vec2(a, b)`, or one variable each"),
         Expr::Unsafe(_) => ("`unsafe` is", "write the block without it"),
         Expr::Yield(_) => ("`yield` is", "`return` the value"),
@@ -32,8 +32,8 @@ pub(super) fn describe(expr: &Expr) -> (&'static str, &'static str) {
     }
 }
 
-/// The part of it that a message points at.
-pub(super) fn head(expr: &Expr) -> Span {
+/// Returns the span that a message points to.
+pub(super) fn span(expr: &Expr) -> Span {
     match expr {
         Expr::Match(inner) => inner.match_token.span,
         Expr::Unsafe(inner) => inner.unsafe_token.span,

@@ -1,7 +1,7 @@
 //! Choices `axis: value { option: … } else value;`, and the number that `keep` begins with.
 //!
-//! In: tokens at the axis, or behind `keep`. Out: what was written; whether such an axis or value exists is the
-//! registry's to say.
+//! Input: tokens from the axis, or after `keep`. Output: the choice as written. `fragbuf_model` checks that the axis and
+//! the values exist.
 
 use std::path::Path;
 
@@ -9,62 +9,64 @@ use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spa
 use proc_macro2::{Delimiter, Group, TokenTree};
 
 use super::cursor::Cursor;
-use super::items::end_of_item;
-use super::{Stop, names};
-use crate::report::Report;
+use super::recovery::end_of_item;
+use crate::names;
+use crate::report::{FIRST, Report, Stop};
 
 const SHAPE: &str = "sync: interlock else spin_lock { limit: 4096 };";
 
-/// `axis: value else value;`
-pub(crate) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
-    let axis = word(cursor, "an axis", report)?;
-    refuse_items(&axis, report)?;
-    cursor.sign(':');
+const OPTION_HELP: &str = "write `{ limit: 4096, order: front }`";
+
+/// Parses `axis: value else value;`.
+pub(super) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
+    let axis = identifier(cursor, "an axis", report)?;
+    reject_items(&axis, report)?;
+    cursor.take_punct(':');
     let mut alternatives: Vec<Alternative> = Vec::new();
     loop {
         alternatives.push(alternative(cursor, report)?);
-        if !cursor.word("else") {
+        if !cursor.take_keyword("else") {
             break;
         }
     }
-    let choice = distinct(Choice { axis, alternatives }, report);
+    let choice = without_duplicates(Choice { axis, alternatives }, report);
     end_of_item(cursor, SHAPE, report)?;
     Ok(choice)
 }
 
-/// A choice that another door made, its words not yet looked at.
-pub(crate) fn given(choice: &Choice, report: &mut Report) -> Result<Choice, Stop> {
-    let axis = names::word(&choice.axis, report);
-    refuse_items(&axis, report)?;
+/// Returns a choice that a builder made, after the same checks of its names.
+pub(crate) fn from_builder(choice: &Choice, report: &mut Report) -> Result<Choice, Stop> {
+    let axis = names::identifier(&choice.axis, report);
+    reject_items(&axis, report)?;
     let mut alternatives = Vec::with_capacity(choice.alternatives.len());
     for alternative in &choice.alternatives {
         let mut options = Options::with_capacity(alternative.options.len());
         for (name, value) in &alternative.options {
             let value = match &value.value {
-                OptionValue::Word(text) => {
-                    let word = names::word(&Spanned::new(text.clone(), value.origin.clone()), report);
-                    Spanned::new(OptionValue::Word(word.value), word.origin)
+                OptionValue::Name(name) => {
+                    let name = names::identifier(&Spanned::new(name.clone(), value.span.clone()), report);
+                    Spanned::new(OptionValue::Name(name.value), name.span)
                 }
                 OptionValue::Number(_) => value.clone(),
             };
-            options.push((names::word(name, report), value));
+            options.push((names::identifier(name, report), value));
         }
-        alternatives.push(Alternative { value: names::word(&alternative.value, report), options });
+        alternatives.push(Alternative { value: names::identifier(&alternative.value, report), options });
     }
-    Ok(distinct(Choice { axis, alternatives }, report))
+    Ok(without_duplicates(Choice { axis, alternatives }, report))
 }
 
-/// The choice without what it gives a second time.
-fn distinct(choice: Choice, report: &mut Report) -> Choice {
+/// Returns the choice without duplicate alternatives and options, which are reported.
+fn without_duplicates(choice: Choice, report: &mut Report) -> Choice {
     let mut alternatives: Vec<Alternative> = Vec::with_capacity(choice.alternatives.len());
     for next in choice.alternatives {
-        let next = Alternative { value: next.value, options: distinct_options(next.options, report) };
+        let next = Alternative { value: next.value, options: unique_options(next.options, report) };
         match alternatives.iter().find(|other| other.value.value == next.value.value) {
             Some(first) => {
-                let message = format!("`{}` is given twice", next.value.value);
-                let hint = "only the first of two equal alternatives could ever be taken: leave one out";
-                let diagnostic = Diagnostic::new(codes::DUPLICATE, &next.value.origin, message, hint);
-                report.push(diagnostic.label(&first.value.origin, "the first is here"));
+                let message = format!("duplicate alternative `{}`", next.value.value);
+                let help = "remove it: the first of two equal alternatives is always taken";
+                let diagnostic = Diagnostic::new(codes::DUPLICATE, &next.value.span, message, help);
+                report.push(diagnostic.label(&first.value.span, FIRST));
             }
             None => alternatives.push(next),
         }
@@ -72,14 +74,14 @@ fn distinct(choice: Choice, report: &mut Report) -> Choice {
     Choice { axis: choice.axis, alternatives }
 }
 
-fn distinct_options(given: Options, report: &mut Report) -> Options {
+fn unique_options(given: Options, report: &mut Report) -> Options {
     let mut options = Options::with_capacity(given.len());
     for (name, value) in given {
         match options.iter().find(|other| other.0.value == name.value) {
             Some((first, _)) => {
-                let message = format!("the option `{}` is given twice", name.value);
-                let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.origin, message, "leave one of them out");
-                report.push(diagnostic.label(&first.origin, "the first is here"));
+                let message = format!("duplicate option `{}`", name.value);
+                let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.span, message, "remove one of them");
+                report.push(diagnostic.label(&first.span, FIRST));
             }
             None => options.push((name, value)),
         }
@@ -87,39 +89,39 @@ fn distinct_options(given: Options, report: &mut Report) -> Options {
     options
 }
 
-/// Items that are no axes, though they may look so.
-fn refuse_items(axis: &Spanned<String>, report: &mut Report) -> Result<(), Stop> {
-    let Some(hint) = not_an_axis(&axis.value) else { return Ok(()) };
-    let message = format!("`{}` is not an axis", axis.value);
-    report.error(codes::UNEXPECTED, &axis.origin, message, hint);
+/// Rejects the keyword of another item before a `:`.
+fn reject_items(axis: &Spanned<String>, report: &mut Report) -> Result<(), Stop> {
+    let Some(help) = not_an_axis(&axis.value) else { return Ok(()) };
+    let message = format!("expected an axis, found `{}`", axis.value);
+    report.error(codes::UNEXPECTED_TOKEN, &axis.span, message, help);
     Err(Stop)
 }
 
-fn not_an_axis(word: &str) -> Option<&'static str> {
-    match word {
+fn not_an_axis(name: &str) -> Option<&'static str> {
+    match name {
         "keep" => Some("write `keep 8;`, without a colon"),
         "where" => Some("write `where |f| f.depth > 0.5;`, without a colon"),
         "fragment" | "uniform" => Some("write `fragment { depth: f32 }`, without a colon"),
-        "fn" | "buffer" => Some("choose from the axes, such as `storage`, `sync`, `sort`"),
+        "fn" | "buffer" => Some("write an axis, such as `storage`, `sync` or `sort`"),
         _ => None,
     }
 }
 
 fn alternative(cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
-    let value = match own_file(cursor, report)? {
+    let value = match user_file(cursor, report)? {
         Some(file) => file,
-        None => word(cursor, "a value", report)?,
+        None => identifier(cursor, "a value", report)?,
     };
-    let options = match cursor.braces() {
+    let options = match cursor.take_braces() {
         Some(group) => options(&group, report),
         None => Vec::new(),
     };
     Ok(Alternative { value, options })
 }
 
-/// `wgsl("path")`, if that comes next: a file of the user's own in place of a word of the registry.
-fn own_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<String>>, Stop> {
-    let Some(TokenTree::Group(group)) = cursor.peek_second().filter(|_| cursor.at_word("wgsl")) else {
+/// Parses `wgsl("path")` if it is next: a user file in place of a name of the registry.
+fn user_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<String>>, Stop> {
+    let Some(TokenTree::Group(group)) = cursor.peek_second().filter(|_| cursor.at_keyword("wgsl")) else {
         return Ok(None);
     };
     if group.delimiter() != Delimiter::Parenthesis {
@@ -128,36 +130,32 @@ fn own_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<S
     let mut inside = Cursor::inside(group);
     cursor.take();
     cursor.take();
-    let origin = inside.origin(report);
+    let span = inside.source_span(report);
     let path = inside.take().and_then(|token| syn::parse2::<syn::LitStr>(token.into()).ok()).map(|path| path.value());
     match path.filter(|path| is_relative(path) && inside.is_done()) {
-        Some(path) => Ok(Some(Spanned::new(Alternative::value_of_file(&path), origin))),
+        Some(path) => Ok(Some(Spanned::new(Alternative::value_of_file(&path), span))),
         None => {
-            let message = "a path in quotes belongs between the parentheses, relative to this description";
-            report.error(codes::UNEXPECTED, &origin, message, "write `storage: wgsl(\"my_storage.wgsl\");`");
+            let message = "expected a quoted path, relative to the description";
+            report.error(codes::UNEXPECTED_TOKEN, &span, message, "write `storage: wgsl(\"my_storage.wgsl\");`");
             Err(Stop)
         }
     }
 }
 
-/// Paths appear in generated text, which must not depend on where a description lies.
+/// Returns whether a path is relative. Paths appear in generated source, which must not depend on the description's folder.
 fn is_relative(path: &str) -> bool {
     let is_plain = !path.is_empty() && !path.contains(|letter: char| letter.is_control() || letter == '\\');
     is_plain && !Path::new(path).is_absolute() && !path.starts_with('/')
 }
 
-fn word(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
+fn identifier(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
     match cursor.peek() {
-        Some(TokenTree::Ident(word)) => {
-            let word = names::written(word, report);
+        Some(TokenTree::Ident(name)) => {
+            let name = names::written(name, report);
             cursor.take();
-            Ok(names::word(&word, report))
+            Ok(names::identifier(&name, report))
         }
-        _ => {
-            let message = format!("{what} belongs here, not {}", cursor.describe());
-            report.error(codes::UNEXPECTED, &cursor.origin(report), message, format!("write `{SHAPE}`"));
-            Err(Stop)
-        }
+        _ => Err(cursor.expected(what, format!("write `{SHAPE}`"), report)),
     }
 }
 
@@ -169,56 +167,48 @@ fn options(group: &Group, report: &mut Report) -> Options {
     while !cursor.is_done() {
         match option(&mut cursor, report) {
             Ok(option) => options.push(option),
-            Err(Stop) => while !cursor.is_done() && !cursor.sign(',') && cursor.take().is_some() {},
+            Err(Stop) => cursor.skip_past_comma(),
         }
     }
     options
 }
 
 fn option(cursor: &mut Cursor, report: &mut Report) -> Result<(Spanned<String>, Spanned<OptionValue>), Stop> {
-    let name = word(cursor, "an option", report)?;
-    if !cursor.sign(':') {
-        return Err(option_shape(cursor, "`:`", report));
+    let name = identifier(cursor, "an option", report)?;
+    if !cursor.take_punct(':') {
+        return Err(cursor.expected("`:`", OPTION_HELP, report));
     }
-    let origin = cursor.origin(report);
+    let span = cursor.source_span(report);
     let value = match cursor.peek() {
         Some(TokenTree::Literal(_)) => OptionValue::Number(number(cursor, report)?),
-        Some(TokenTree::Ident(word)) => {
-            let word = names::written(word, report);
+        Some(TokenTree::Ident(name)) => {
+            let name = names::written(name, report);
             cursor.take();
-            OptionValue::Word(names::word(&word, report).value)
+            OptionValue::Name(names::identifier(&name, report).value)
         }
-        _ => return Err(option_shape(cursor, "a number or a word", report)),
+        _ => return Err(cursor.expected("a number or a name", OPTION_HELP, report)),
     };
-    if !cursor.sign(',') && !cursor.is_done() {
-        return Err(option_shape(cursor, "`,`", report));
+    if !cursor.take_punct(',') && !cursor.is_done() {
+        return Err(cursor.expected("`,`", OPTION_HELP, report));
     }
-    Ok((name, Spanned::new(value, origin)))
+    Ok((name, Spanned::new(value, span)))
 }
 
-fn option_shape(cursor: &Cursor, what: &str, report: &mut Report) -> Stop {
-    let message = format!("{what} belongs here, not {}", cursor.describe());
-    report.error(codes::UNEXPECTED, &cursor.origin(report), message, "write `{ limit: 4096, order: front }`");
-    Stop
-}
-
-/// What `keep` begins with: a number, or `all`.
-pub(crate) fn count(cursor: &mut Cursor, report: &mut Report) -> Result<Spanned<KeepCount>, Stop> {
-    let origin = cursor.origin(report);
-    if cursor.word("all") {
-        return Ok(Spanned::new(KeepCount::All, origin));
+/// Parses the count of `keep`: a number, or `all`.
+pub(super) fn count(cursor: &mut Cursor, report: &mut Report) -> Result<Spanned<KeepCount>, Stop> {
+    let span = cursor.source_span(report);
+    if cursor.take_keyword("all") {
+        return Ok(Spanned::new(KeepCount::All, span));
     }
     if matches!(cursor.peek(), Some(TokenTree::Literal(_))) {
-        return Ok(Spanned::new(KeepCount::AtMost(number(cursor, report)?), origin));
+        return Ok(Spanned::new(KeepCount::AtMost(number(cursor, report)?), span));
     }
-    let message = format!("how many to keep belongs here, not {}", cursor.describe());
-    report.error(codes::UNEXPECTED, &origin, message, "write `keep 8;` or `keep all;`");
-    Err(Stop)
+    Err(cursor.expected("a number or `all`", "write `keep 8;` or `keep all;`", report))
 }
 
-/// A whole number of 32 bits; the next token is a literal.
+/// Parses an integer of 32 bits; the next token is a literal.
 fn number(cursor: &mut Cursor, report: &mut Report) -> Result<u32, Stop> {
-    let origin = cursor.origin(report);
+    let span = cursor.source_span(report);
     let found = cursor.describe();
     let literal = match cursor.take() {
         Some(token) => syn::parse2::<syn::LitInt>(token.into()),
@@ -228,14 +218,14 @@ fn number(cursor: &mut Cursor, report: &mut Report) -> Result<u32, Stop> {
         Ok(literal) if matches!(literal.suffix(), "" | "u32" | "usize") => match literal.base10_parse::<u32>() {
             Ok(value) => Ok(value),
             Err(_) => {
-                let message = format!("{found} does not fit 32 bits");
-                report.error(codes::OUT_OF_RANGE, &origin, message, format!("the greatest number is {}", u32::MAX));
+                let message = format!("integer {found} out of range for 32 bits");
+                report.error(codes::OUT_OF_RANGE, &span, message, format!("the maximum is {}", u32::MAX));
                 Err(Stop)
             }
         },
         _ => {
-            let message = format!("a whole number belongs here, not {found}");
-            report.error(codes::UNEXPECTED, &origin, message, "write digits only, such as `8`");
+            let message = format!("expected an integer, found {found}");
+            report.error(codes::UNEXPECTED_TOKEN, &span, message, "write digits only, such as `8`");
             Err(Stop)
         }
     }

@@ -1,98 +1,98 @@
-//! A walk over tokens, one level of brackets at a time.
+//! A cursor over the tokens of one level of brackets.
 //!
-//! In: the tokens of one level. Out: tokens, or the place where something else stands. Nothing here reports mistakes.
+//! Input: the tokens of one level. Output: tokens, or an "expected …, found …" error at the next token.
 
-use fragbuf_model::Origin;
+use fragbuf_model::{SourceSpan, codes};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
-use crate::report::Report;
+use crate::report::{Report, Stop};
 
-/// The tokens of one level that are still to be read.
-pub(crate) struct Cursor {
+/// The remaining tokens of one level.
+pub(super) struct Cursor {
     tokens: Vec<TokenTree>,
     next: usize,
-    /// What a message points at when the tokens have run out.
+    /// The span that messages use after the last token.
     end: Option<Span>,
 }
 
 impl Cursor {
-    /// All of these tokens.
-    pub(crate) fn new(tokens: TokenStream) -> Self {
+    /// Returns a cursor over these tokens.
+    pub(super) fn new(tokens: TokenStream) -> Self {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let end = tokens.last().map(TokenTree::span);
         Cursor { tokens, next: 0, end }
     }
 
-    /// What stands inside these brackets.
-    pub(crate) fn inside(group: &Group) -> Self {
+    /// Returns a cursor over the tokens inside brackets.
+    pub(super) fn inside(group: &Group) -> Self {
         Cursor { tokens: group.stream().into_iter().collect(), next: 0, end: Some(group.span_close()) }
     }
 
-    /// The next token, which stays.
-    pub(crate) fn peek(&self) -> Option<&TokenTree> {
+    /// Returns the next token without taking it.
+    pub(super) fn peek(&self) -> Option<&TokenTree> {
         self.tokens.get(self.next)
     }
 
-    /// The token after the next.
-    pub(crate) fn peek_second(&self) -> Option<&TokenTree> {
+    /// Returns the token after the next without taking it.
+    pub(super) fn peek_second(&self) -> Option<&TokenTree> {
         self.tokens.get(self.next + 1)
     }
 
-    /// How many tokens were taken.
-    pub(crate) fn position(&self) -> usize {
+    /// Returns the number of tokens taken.
+    pub(super) fn position(&self) -> usize {
         self.next
     }
 
     /// Takes the next token.
-    pub(crate) fn take(&mut self) -> Option<TokenTree> {
+    pub(super) fn take(&mut self) -> Option<TokenTree> {
         let token = self.tokens.get(self.next).cloned();
         self.next += usize::from(token.is_some());
         token
     }
 
-    /// Whether nothing is left.
-    pub(crate) fn is_done(&self) -> bool {
+    /// Returns whether all tokens are taken.
+    pub(super) fn is_done(&self) -> bool {
         self.next >= self.tokens.len()
     }
 
-    /// Whether the next token is this sign.
-    pub(crate) fn at_sign(&self, sign: char) -> bool {
-        is_sign(self.peek(), sign)
+    /// Returns whether the next token is this punctuation character.
+    pub(super) fn at_punct(&self, character: char) -> bool {
+        is_punct(self.peek(), character)
     }
 
-    /// Takes the next token if it is this sign.
-    pub(crate) fn sign(&mut self, sign: char) -> bool {
-        let found = self.at_sign(sign);
+    /// Takes the next token if it is this punctuation character; returns whether it is.
+    pub(super) fn take_punct(&mut self, character: char) -> bool {
+        let found = self.at_punct(character);
         self.next += usize::from(found);
         found
     }
 
-    /// Whether the next token is this word.
-    pub(crate) fn at_word(&self, word: &str) -> bool {
-        matches!(self.peek(), Some(TokenTree::Ident(found)) if found == word)
+    /// Returns whether the next token is this keyword.
+    pub(super) fn at_keyword(&self, keyword: &str) -> bool {
+        matches!(self.peek(), Some(TokenTree::Ident(found)) if found == keyword)
     }
 
-    /// Takes the next token if it is this word.
-    pub(crate) fn word(&mut self, word: &str) -> bool {
-        let found = self.at_word(word);
+    /// Takes the next token if it is this keyword; returns whether it is.
+    pub(super) fn take_keyword(&mut self, keyword: &str) -> bool {
+        let found = self.at_keyword(keyword);
         self.next += usize::from(found);
         found
     }
 
-    /// Takes the next token if it is any word.
-    pub(crate) fn any_word(&mut self) -> Option<Ident> {
+    /// Takes the next token if it is an identifier.
+    pub(super) fn take_identifier(&mut self) -> Option<Ident> {
         match self.peek() {
-            Some(TokenTree::Ident(word)) => {
-                let word = word.clone();
+            Some(TokenTree::Ident(identifier)) => {
+                let identifier = identifier.clone();
                 self.next += 1;
-                Some(word)
+                Some(identifier)
             }
             _ => None,
         }
     }
 
     /// Takes the next token if it is `{ … }`.
-    pub(crate) fn braces(&mut self) -> Option<Group> {
+    pub(super) fn take_braces(&mut self) -> Option<Group> {
         match self.peek() {
             Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
                 let group = group.clone();
@@ -103,25 +103,37 @@ impl Cursor {
         }
     }
 
-    /// The place of the next token, or of the end.
-    pub(crate) fn origin(&self, report: &Report) -> Origin {
+    /// Takes all tokens up to and including the next `,`.
+    pub(super) fn skip_past_comma(&mut self) {
+        while !self.is_done() && !self.take_punct(',') && self.take().is_some() {}
+    }
+
+    /// Reports that `what` is expected in place of the next token.
+    pub(super) fn expected(&self, what: &str, help: impl Into<String>, report: &mut Report) -> Stop {
+        let message = format!("expected {what}, found {}", self.describe());
+        report.error(codes::UNEXPECTED_TOKEN, &self.source_span(report), message, help);
+        Stop
+    }
+
+    /// Returns the source span of the next token, or of the end.
+    pub(super) fn source_span(&self, report: &Report) -> SourceSpan {
         report.at(self.span())
     }
 
-    /// The span of the next token, or of the end.
-    pub(crate) fn span(&self) -> Span {
+    /// Returns the span of the next token, or of the end.
+    pub(super) fn span(&self) -> Span {
         self.peek().map(TokenTree::span).or(self.end).unwrap_or_else(Span::call_site)
     }
 
-    /// The span of what a message points at when the tokens have run out.
-    pub(crate) fn end(&self) -> Span {
+    /// Returns the span that messages use after the last token.
+    pub(super) fn end(&self) -> Span {
         self.end.unwrap_or_else(Span::call_site)
     }
 
-    /// The next token in the words of a message.
-    pub(crate) fn describe(&self) -> String {
+    /// Returns the next token as a message names it.
+    pub(super) fn describe(&self) -> String {
         match self.peek() {
-            None => "the end".to_string(),
+            None => "the end of the input".to_string(),
             Some(TokenTree::Group(group)) => match group.delimiter() {
                 Delimiter::Parenthesis => "`(`".to_string(),
                 Delimiter::Brace => "`{`".to_string(),
@@ -133,11 +145,11 @@ impl Cursor {
     }
 }
 
-/// Whether a token is this sign.
-pub(crate) fn is_sign(token: Option<&TokenTree>, sign: char) -> bool {
-    matches!(token, Some(TokenTree::Punct(punct)) if punct.as_char() == sign)
+/// Returns whether a token is this punctuation character.
+pub(super) fn is_punct(token: Option<&TokenTree>, character: char) -> bool {
+    matches!(token, Some(TokenTree::Punct(punct)) if punct.as_char() == character)
 }
 
-fn shortened(text: &str) -> String {
-    if text.chars().count() <= 24 { text.to_string() } else { text.chars().take(21).chain("...".chars()).collect() }
+fn shortened(token: &str) -> String {
+    if token.chars().count() <= 24 { token.to_string() } else { token.chars().take(21).chain("...".chars()).collect() }
 }

@@ -1,119 +1,110 @@
 //! The grammar of a description: one buffer, and the items in its braces.
 //!
-//! In: tokens without documentation comments. Out: a [`Draft`] without its closures' meaning checked by anyone but
-//! [`crate::functions`]. After a mistake, reading goes on behind the next `;` or `{ … }` of the same level, so that all
-//! mistakes of a description come at once.
+//! Input: tokens without documentation comments. Output: a [`RawDescription`], whose functions are not type-checked.
+//! After an error, parsing continues after the next `;` or `{ … }` of the same level, so that all errors of a description
+//! are reported together.
 
 mod blocks;
 mod choices;
 mod closures;
 mod cursor;
 mod items;
-mod names;
+mod recovery;
 
-pub(crate) use blocks::Row;
-pub(crate) use choices::given as given_choice;
-pub(crate) use closures::{RawFunction, RawParameter, whole_closure, whole_helper};
-pub use closures::{Role, Written};
-pub(crate) use items::Items;
-pub(crate) use names::{buffer as buffer_name, word};
+pub(crate) use choices::from_builder as choice_from_builder;
+pub(crate) use closures::{whole_closure, whole_helper};
 
-use fragbuf_model::{Diagnostic, Draft, Origin, Spanned, codes};
+use fragbuf_model::{Diagnostic, SourceSpan, Spanned, codes};
 use proc_macro2::{Group, TokenStream};
 
-use crate::functions;
-use crate::report::Report;
+use crate::items::RawDescription;
+use crate::names;
+use crate::report::{FIRST, Report};
 use cursor::Cursor;
 
-/// A mistake was reported; the rest of the item is not worth reading.
-pub(crate) struct Stop;
-
-/// The whole text: `buffer Name from preset { … }`.
-pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<(Draft, Vec<Written>)> {
+/// Parses a whole description: `buffer Name from preset { … }`.
+pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<RawDescription> {
     let mut cursor = Cursor::new(tokens);
     find_buffer(&mut cursor, report)?;
-    let start = cursor.origin(report);
-    cursor.word("buffer");
+    let start = cursor.source_span(report);
+    cursor.take_keyword("buffer");
     let name = name_of_buffer(&mut cursor, report);
     let preset = preset(&mut cursor, report);
     let body = body(&mut cursor, report)?;
-    let mut items = Items::default();
-    items.read(&mut Cursor::inside(&body), report);
+    let items = items::items(&mut Cursor::inside(&body), report);
     after_buffer(&cursor, &start, report);
-    let written = std::mem::take(&mut items.written);
-    Some((functions::finish(name, preset, items, report), written))
+    Some(RawDescription { name, preset, items })
 }
 
-/// Goes to the word `buffer`.
+/// Moves to the keyword `buffer`.
 fn find_buffer(cursor: &mut Cursor, report: &mut Report) -> Option<()> {
-    const SHAPE: &str = "begin with `buffer Name { … }`";
-    if cursor.at_word("buffer") {
+    const SHAPE: &str = "start with `buffer Name { … }`";
+    if cursor.at_keyword("buffer") {
         return Some(());
     }
-    let (origin, found) = (cursor.origin(report), cursor.describe());
-    while !cursor.is_done() && !cursor.at_word("buffer") {
+    let (span, found) = (cursor.source_span(report), cursor.describe());
+    while !cursor.is_done() && !cursor.at_keyword("buffer") {
         cursor.take();
     }
     if cursor.is_done() {
-        report.error(codes::MISSING_BUFFER, &origin, "there is no `buffer` here", SHAPE);
+        report.error(codes::MISSING_BUFFER, &span, format!("expected `buffer`, found {found}"), SHAPE);
         return None;
     }
-    report.error(codes::UNEXPECTED, &origin, format!("{found} stands before the buffer"), SHAPE);
+    report.error(codes::UNEXPECTED_TOKEN, &span, format!("unexpected {found} before `buffer`"), SHAPE);
     Some(())
 }
 
 fn name_of_buffer(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
-    let origin = cursor.origin(report);
-    let word = if cursor.at_word("from") { None } else { cursor.any_word() };
-    let Some(word) = word else {
-        let message = format!("the buffer's name belongs here, not {}", cursor.describe());
-        report.error(codes::UNEXPECTED, &origin, message, "write `buffer Name { … }`");
-        return Spanned::new("Unnamed".to_string(), origin);
+    let span = cursor.source_span(report);
+    let name = if cursor.at_keyword("from") { None } else { cursor.take_identifier() };
+    let Some(name) = name else {
+        let message = format!("expected a buffer name, found {}", cursor.describe());
+        report.error(codes::UNEXPECTED_TOKEN, &span, message, "write `buffer Name { … }`");
+        return Spanned::new("Unnamed".to_string(), span);
     };
-    let word = names::written(&word, report);
-    names::buffer(&word, report)
+    let name = names::written(&name, report);
+    names::buffer(&name, report)
 }
 
 fn preset(cursor: &mut Cursor, report: &mut Report) -> Option<Spanned<String>> {
-    if !cursor.word("from") {
+    if !cursor.take_keyword("from") {
         return None;
     }
-    let origin = cursor.origin(report);
-    match cursor.any_word() {
-        Some(word) => Some(Spanned::new(word.to_string(), origin)),
+    let span = cursor.source_span(report);
+    match cursor.take_identifier() {
+        Some(name) => Some(Spanned::new(name.to_string(), span)),
         None => {
-            let message = format!("a technique's name belongs after `from`, not {}", cursor.describe());
-            report.error(codes::UNEXPECTED, &origin, message, "for example `from kplus_array`");
+            let message = format!("expected a technique name after `from`, found {}", cursor.describe());
+            report.error(codes::UNEXPECTED_TOKEN, &span, message, "for example `from kplus_array`");
             None
         }
     }
 }
 
 fn body(cursor: &mut Cursor, report: &mut Report) -> Option<Group> {
-    if let Some(group) = cursor.braces() {
+    if let Some(group) = cursor.take_braces() {
         return Some(group);
     }
-    let message = format!("`{{` belongs here, not {}", cursor.describe());
-    report.error(codes::UNEXPECTED, &cursor.origin(report), message, "write `buffer Name from preset { … }`");
+    cursor.expected("`{`", "write `buffer Name from preset { … }`", report);
     loop {
-        if let Some(group) = cursor.braces() {
+        if let Some(group) = cursor.take_braces() {
             return Some(group);
         }
         cursor.take()?;
     }
 }
 
-fn after_buffer(cursor: &Cursor, first: &Origin, report: &mut Report) {
+fn after_buffer(cursor: &Cursor, first: &SourceSpan, report: &mut Report) {
     if cursor.is_done() {
         return;
     }
-    let origin = cursor.origin(report);
-    if cursor.at_word("buffer") {
-        let message = "a second buffer is described here";
-        let diagnostic = Diagnostic::new(codes::DUPLICATE, &origin, message, "put each buffer into a file of its own");
-        report.push(diagnostic.label(first, "the first is here"));
+    let span = cursor.source_span(report);
+    if cursor.at_keyword("buffer") {
+        let message = "expected one buffer, found a second";
+        let diagnostic = Diagnostic::new(codes::DUPLICATE, &span, message, "put each buffer into a separate file");
+        report.push(diagnostic.label(first, FIRST));
     } else {
-        let message = format!("{} stands after the buffer", cursor.describe());
-        report.error(codes::UNEXPECTED, &origin, message, "put it inside the buffer's braces, or leave it out");
+        let message = format!("unexpected {} after the buffer", cursor.describe());
+        report.error(codes::UNEXPECTED_TOKEN, &span, message, "move it into the buffer's braces, or remove it");
     }
 }

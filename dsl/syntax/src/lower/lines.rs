@@ -1,27 +1,32 @@
-//! Lines of WGSL, each with the place in the user's text that it comes from.
+//! Lines of WGSL, each with the span in the user's source that it was lowered from.
 //!
-//! In: lines without indentation. Out: text with 4 spaces per level, and as many places as lines.
+//! Input: lines without indentation. Output: source with 4 spaces per level, and one span per line.
 
-use fragbuf_model::Origin;
+use fragbuf_model::SourceSpan;
 
-use super::Lowered;
+/// A function in WGSL.
+pub(crate) struct WgslFunction {
+    pub source: String,
+    /// The span of each line.
+    pub lines: Vec<SourceSpan>,
+}
 
-/// What is written so far.
+/// The lines so far.
 #[derive(Default)]
 pub(super) struct Lines {
-    text: String,
-    places: Vec<Origin>,
+    source: String,
+    spans: Vec<SourceSpan>,
     level: usize,
 }
 
 impl Lines {
-    pub(super) fn push(&mut self, line: String, origin: &Origin) {
+    pub(super) fn push(&mut self, line: String, span: &SourceSpan) {
         for _ in 0..self.level {
-            self.text.push_str("    ");
+            self.source.push_str("    ");
         }
-        self.text.push_str(&line);
-        self.text.push('\n');
-        self.places.push(origin.clone());
+        self.source.push_str(&line);
+        self.source.push('\n');
+        self.spans.push(span.clone());
     }
 
     pub(super) fn indent(&mut self) {
@@ -32,7 +37,7 @@ impl Lines {
         self.level = self.level.saturating_sub(1);
     }
 
-    pub(super) fn finish(self) -> Lowered {
-        Lowered { text: self.text, lines: self.places }
+    pub(super) fn finish(self) -> WgslFunction {
+        WgslFunction { source: self.source, lines: self.spans }
     }
 }

@@ -1,105 +1,105 @@
 //! `for`: over a range, or over the fragments of a pixel.
 //!
-//! In: a typed loop. Out: WGSL's `for`, whose bounds are evaluated once, before the first round, as in Rust.
+//! Input: a typed loop. Output: WGSL's `for`, whose bounds are evaluated once before the first iteration, as in Rust.
 
-use fragbuf_model::Origin;
+use fragbuf_model::SourceSpan;
 
-use super::Lowering;
+use super::lowering::{Destination, Lowering};
 use super::needs::{assigns, is_plain};
-use super::statements::Destination;
-use super::text::{Level, Text};
-use crate::tree::{Block, Expr, For, Kind, Operator, Over, VariableId};
+use super::source::{ExprSource, Precedence};
+use crate::tree::{Block, Expr, For, Kind, Operator, Sequence, VariableId};
 use crate::types::Type;
 
 impl Lowering<'_> {
-    pub(super) fn for_loop(&mut self, each: &For, origin: &Origin) {
+    /// Writes a loop.
+    pub(super) fn for_loop(&mut self, each: &For, span: &SourceSpan) {
         if self.dead {
             return;
         }
-        match &each.over {
-            Over::Range { variable, kind, from, to, inclusive, reversed } => {
-                let kind = self.function.inference.settle(*kind);
-                let from_text = match reversed {
-                    // Backwards, the start is what every round compares with.
+        match &each.sequence {
+            Sequence::Range { variable, ty, from, to, inclusive, reversed } => {
+                let ty = self.function.inference.resolve_or_default(*ty);
+                let from_source = match reversed {
+                    // In reverse, every iteration compares with the start.
                     true => self.bound(*variable, "start", from),
                     false => self.start(from, to),
                 };
-                let to_text = self.bound(*variable, "end", to);
+                let to_source = self.bound(*variable, "end", to);
                 if self.dead {
                     return;
                 }
                 self.names.open();
                 match reversed {
-                    false => self.forward(*variable, &from_text, &to_text, *inclusive, &each.body, origin),
-                    true => self.backward(*variable, kind, &from_text, &to_text, &each.body, origin),
+                    false => self.forward(*variable, &from_source, &to_source, *inclusive, &each.body, span),
+                    true => self.backward(*variable, ty, &from_source, &to_source, &each.body, span),
                 }
             }
-            Over::Fragments { index, fragment, reversed: false } => {
+            Sequence::Fragments { index, fragment, reversed: false } => {
                 self.names.open();
-                self.each_fragment(*index, *fragment, &each.body, origin);
+                self.each_fragment(*index, *fragment, &each.body, span);
             }
-            Over::Fragments { index, fragment, reversed: true } => {
+            Sequence::Fragments { index, fragment, reversed: true } => {
                 self.names.open();
-                self.each_fragment_backward(*index, *fragment, &each.body, origin);
+                self.each_fragment_backward(*index, *fragment, &each.body, span);
             }
         }
         self.names.close();
         self.dead = false;
     }
 
-    /// The first number; it is read before the end of the range is evaluated.
-    fn start(&mut self, from: &Expr, to: &Expr) -> Text {
-        let text = self.value(from);
-        if assigns(to) && !self.is_stable(from) { self.bind("value", &text, &from.origin) } else { text }
+    /// Returns the start of the range, which is evaluated before the end.
+    fn start(&mut self, from: &Expr, to: &Expr) -> ExprSource {
+        let source = self.value(from);
+        if assigns(to) && !self.is_stable(from) { self.bind("value", &source, &from.span) } else { source }
     }
 
-    /// A bound that every round compares with, as text that stays the same throughout the loop.
-    fn bound(&mut self, variable: Option<VariableId>, which: &str, expr: &Expr) -> Text {
-        let text = self.value(expr);
+    /// Returns a bound that every iteration compares with. Its value does not change during the loop.
+    fn bound(&mut self, variable: Option<VariableId>, which: &str, expr: &Expr) -> ExprSource {
+        let source = self.value(expr);
         let simple =
             is_plain(expr) || matches!(expr.kind, Kind::LayerCount) || is_count(expr) || self.is_constant(expr);
         if simple && self.is_stable(expr) {
-            return text;
+            return source;
         }
-        let name = self.wanted(variable, "index");
-        self.bind(&format!("{name}_{which}"), &text, &expr.origin)
+        let name = self.user_name(variable, "index");
+        self.bind(&format!("{name}_{which}"), &source, &expr.span)
     }
 
     fn forward(
         &mut self,
         variable: Option<VariableId>,
-        from: &Text,
-        to: &Text,
+        from: &ExprSource,
+        to: &ExprSource,
         inclusive: bool,
         body: &Block,
-        origin: &Origin,
+        span: &SourceSpan,
     ) {
         let name = self.declare(variable, "index");
         let operator = if inclusive { Operator::LessEqual } else { Operator::Less };
-        let condition = Text::binary(operator, &Text::primary(name.clone()), to);
-        self.emit(format!("for (var {name} = {}; {}; {name}++) {{", from.text, condition.text), origin);
+        let condition = ExprSource::binary(operator, &ExprSource::primary(name.clone()), to);
+        self.emit(format!("for (var {name} = {}; {}; {name}++) {{", from.source, condition.source), span);
         self.body(body, |_| {});
     }
 
-    /// Counts one above, so that the condition is right for unsigned numbers too.
+    /// Writes a reverse loop. Its counter is one above the index, so that the condition also holds for unsigned integers.
     fn backward(
         &mut self,
         variable: Option<VariableId>,
-        kind: Type,
-        from: &Text,
-        to: &Text,
+        ty: Type,
+        from: &ExprSource,
+        to: &ExprSource,
         body: &Block,
-        origin: &Origin,
+        span: &SourceSpan,
     ) {
-        let wanted = self.wanted(variable, "index");
-        let next = self.names.fresh(&format!("{wanted}_next"));
-        let condition = Text::binary(Operator::Greater, &Text::primary(next.clone()), from);
-        self.emit(format!("for (var {next} = {}; {}; {next}--) {{", to.text, condition.text), origin);
-        let one = if kind == Type::I32 { "1i" } else { "1u" };
+        let name = self.user_name(variable, "index");
+        let next = self.names.fresh(&format!("{name}_next"));
+        let condition = ExprSource::binary(Operator::Greater, &ExprSource::primary(next.clone()), from);
+        self.emit(format!("for (var {next} = {}; {}; {next}--) {{", to.source, condition.source), span);
+        let one = if ty == Type::I32 { "1i" } else { "1u" };
         self.body(body, |lowering| {
             if variable.is_some() {
                 let name = lowering.declare(variable, "index");
-                lowering.emit(format!("let {name} = {next} - {one};"), origin);
+                lowering.emit(format!("let {name} = {next} - {one};"), span);
             }
         });
     }
@@ -109,18 +109,18 @@ impl Lowering<'_> {
         index: Option<VariableId>,
         fragment: Option<VariableId>,
         body: &Block,
-        origin: &Origin,
+        span: &SourceSpan,
     ) {
-        let wanted = self.wanted(fragment, "f");
+        let name = self.user_name(fragment, "f");
         let counter = match index {
             Some(_) => self.declare(index, "index"),
-            None => self.names.fresh(&format!("{wanted}_index")),
+            None => self.names.fresh(&format!("{name}_index")),
         };
-        self.emit(format!("for (var {counter} = 0u; {counter} < layer_count(); {counter}++) {{"), origin);
+        self.emit(format!("for (var {counter} = 0u; {counter} < layer_count(); {counter}++) {{"), span);
         self.body(body, |lowering| {
             if fragment.is_some() {
                 let name = lowering.declare(fragment, "f");
-                lowering.emit(format!("let {name} = layer({counter});"), origin);
+                lowering.emit(format!("let {name} = layer({counter});"), span);
             }
         });
     }
@@ -130,49 +130,50 @@ impl Lowering<'_> {
         index: Option<VariableId>,
         fragment: Option<VariableId>,
         body: &Block,
-        origin: &Origin,
+        span: &SourceSpan,
     ) {
-        let wanted = self.wanted(index.or(fragment), "f");
-        let next = self.names.fresh(&format!("{wanted}_next"));
-        self.emit(format!("for (var {next} = layer_count(); {next} > 0u; {next}--) {{"), origin);
+        let name = self.user_name(index.or(fragment), "f");
+        let next = self.names.fresh(&format!("{name}_next"));
+        self.emit(format!("for (var {next} = layer_count(); {next} > 0u; {next}--) {{"), span);
         self.body(body, |lowering| {
-            let mut at = Text { text: format!("{next} - 1u"), level: Level::Additive };
+            let mut at = ExprSource { source: format!("{next} - 1u"), precedence: Precedence::Additive };
             if index.is_some() {
                 let name = lowering.declare(index, "index");
-                lowering.emit(format!("let {name} = {};", at.text), origin);
-                at = Text::primary(name);
+                lowering.emit(format!("let {name} = {};", at.source), span);
+                at = ExprSource::primary(name);
             }
             if fragment.is_some() {
                 let name = lowering.declare(fragment, "f");
-                lowering.emit(format!("let {name} = layer({});", at.text), origin);
+                lowering.emit(format!("let {name} = layer({});", at.source), span);
             }
         });
     }
 
+    /// Writes the body after the lines of `first`.
     fn body(&mut self, body: &Block, first: impl FnOnce(&mut Self)) {
         self.open();
         first(self);
-        self.block_contents(body, &Destination::Nothing);
+        self.block_contents(body, &Destination::Unused);
         self.close();
         self.lines.push("}".to_string(), &body.end);
     }
 
-    /// The user's name for a loop's variable, or `otherwise` for `_`.
-    fn wanted(&self, variable: Option<VariableId>, otherwise: &str) -> String {
+    /// Returns the user's name of a loop variable, or `default` for `_`.
+    fn user_name(&self, variable: Option<VariableId>, default: &str) -> String {
         let variable = variable.and_then(|id| self.function.variables.get(id));
-        variable.map_or(otherwise, |variable| variable.name.as_str()).to_string()
+        variable.map_or(default, |variable| variable.name.as_str()).to_string()
     }
 
-    fn declare(&mut self, variable: Option<VariableId>, otherwise: &str) -> String {
-        let name = self.names.fresh(&self.wanted(variable, otherwise));
+    fn declare(&mut self, variable: Option<VariableId>, default: &str) -> String {
+        let name = self.names.fresh(&self.user_name(variable, default));
         if let Some(id) = variable {
-            self.spell(id, name.clone());
+            self.set_name(id, name.clone());
         }
         name
     }
 }
 
-/// `fragments.len()` as another type of whole number.
+/// Returns whether this is `fragments.len()` cast to another integer type.
 fn is_count(expr: &Expr) -> bool {
     matches!(&expr.kind, Kind::Cast(inner) if matches!(inner.kind, Kind::LayerCount))
 }

@@ -1,84 +1,78 @@
-//! Calls from the method table: the row's spelling with the arguments put in.
+//! Calls from the method table: a row's WGSL with the arguments inserted.
 //!
-//! In: a row's spelling and arguments. Out: text. An argument that the spelling repeats is named first, unless it is a
-//! name already; and a call in which all is constant gets one named argument, so that WGSL does not evaluate it when the
-//! shader is created and refuse what Rust gives infinity for.
+//! Input: a row's WGSL and arguments. Output: source. An argument that the template repeats is bound to a name first, unless
+//! it is a name. If all arguments are constant, one is bound to a name: otherwise WGSL evaluates the call when the shader
+//! is created, and rejects it where Rust returns infinity.
 
-use super::Lowering;
+use super::lowering::Lowering;
 use super::needs::{is_plain, occurs_twice};
-use super::text::{Level, Text, arguments_text};
+use super::source::{ExprSource, Precedence, arguments_source};
 use crate::methods::Spelling;
 use crate::tree::Expr;
 
 impl Lowering<'_> {
-    pub(super) fn method(&mut self, spelling: Spelling, arguments: &[Expr]) -> Text {
-        let mut texts = self.operands(&arguments.iter().collect::<Vec<_>>());
+    /// Writes a method call.
+    pub(super) fn method(&mut self, spelling: Spelling, arguments: &[Expr]) -> ExprSource {
+        let mut sources = self.operands(&arguments.iter().collect::<Vec<_>>());
         let all_constant = self.all_constant(arguments);
-        for (index, (argument, text)) in arguments.iter().zip(&mut texts).enumerate() {
+        for (index, (argument, source)) in arguments.iter().zip(&mut sources).enumerate() {
             let repeated = occurs_twice(spelling, index) && !is_plain(argument);
             if repeated || (all_constant && index == 0) {
-                *text = self.bind("value", text, &argument.origin);
+                *source = self.bind("value", source, &argument.span);
             }
         }
         match spelling {
-            Spelling::Call(name) => Text::call(name, &texts),
-            Spelling::Text(template) => {
+            Spelling::Call(name) => ExprSource::call(name, &sources),
+            Spelling::Template(template) => {
                 let receiver = arguments.first().map(|receiver| self.function.type_of(receiver));
-                fill(template, &texts, receiver.map_or("f32", |receiver| receiver.wgsl()))
+                fill(template, &sources, receiver.map_or("f32", |receiver| receiver.wgsl()))
             }
         }
     }
-
-    /// Gives a value a name: writes `let name = …;`.
-    pub(super) fn bind(&mut self, wanted: &str, text: &Text, origin: &fragbuf_model::Origin) -> Text {
-        let name = self.names.fresh(wanted);
-        self.emit(format!("let {name} = {};", text.text), origin);
-        Text::primary(name)
-    }
 }
 
-/// A spelling with its `$0`, `$1`, … replaced.
-pub(super) fn fill(template: &str, arguments: &[Text], own: &str) -> Text {
-    let mut text = String::new();
+/// Returns a template with `$0`, `$1`, … replaced by the arguments and `$T` by the receiver's type.
+pub(super) fn fill(template: &str, arguments: &[ExprSource], receiver: &str) -> ExprSource {
+    let mut source = String::new();
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('$') {
-        text.push_str(before);
+        source.push_str(before);
         let mut letters = after.chars();
         let mark = letters.next();
         rest = letters.as_str();
         match mark.and_then(|mark| mark.to_digit(10)).and_then(|index| arguments.get(index as usize)) {
-            Some(argument) => text.push_str(&placed(argument, &text, rest)),
-            None => text.push_str(own),
+            Some(argument) => source.push_str(&inserted(argument, &source, rest)),
+            None => source.push_str(receiver),
         }
     }
-    text.push_str(rest);
-    Text { text, level: level(template) }
+    source.push_str(rest);
+    ExprSource { source, precedence: precedence(template) }
 }
 
-/// An argument as it stands between what precedes and what follows.
-fn placed(argument: &Text, before: &str, after: &str) -> String {
+/// Returns an argument with the parentheses that it needs between `before` and `after`.
+fn inserted(argument: &ExprSource, before: &str, after: &str) -> String {
     if after.starts_with('.') {
         return argument.postfixed();
     }
     let opens = before.ends_with('(') || before.ends_with(", ");
     let closes = after.starts_with(')') || after.starts_with(", ");
     match opens && closes {
-        true => arguments_text(std::slice::from_ref(argument)),
+        true => arguments_source(std::slice::from_ref(argument)),
         false => argument.unary(),
     }
 }
 
-/// The level of a spelling: its outermost operator.
-fn level(template: &str) -> Level {
+/// Returns the precedence of the outermost operator of a template.
+fn precedence(template: &str) -> Precedence {
     let mut depth = 0_i32;
-    let mut found = if template.starts_with('-') { Level::Unary } else { Level::Primary };
+    let mut found = if template.starts_with('-') { Precedence::Unary } else { Precedence::Primary };
     for (index, letter) in template.char_indices() {
         let spaced = template.get(..index).is_some_and(|before| before.ends_with(' '));
         match letter {
             '(' => depth += 1,
             ')' => depth -= 1,
-            '+' | '-' if depth == 0 && spaced => return Level::Additive,
-            '*' | '/' | '%' if depth == 0 && spaced => found = Level::Multiplicative,
+            '+' | '-' if depth == 0 && spaced => return Precedence::Additive,
+            '*' | '/' | '%' if depth == 0 && spaced => found = Precedence::Multiplicative,
             _ => {}
         }
     }

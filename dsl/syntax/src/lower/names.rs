@@ -1,11 +1,11 @@
-//! Names inside a WGSL function: the user's, unless one would be taken twice.
+//! Names inside a WGSL function: the user's names, made unique.
 //!
-//! In: the name the user wrote. Out: a name that nothing visible has. Rust lets a name be declared again beside the first
-//! (`let x = x + 1.0;`), WGSL does not.
+//! Input: a name as the user wrote it. Output: a name that no visible declaration has. Rust allows a name to be redeclared in
+//! the same scope (`let x = x + 1.0;`), WGSL does not.
 
 use fragbuf_model::mangled;
 
-/// The names that are visible where printing is.
+/// The names that are visible at the current line.
 pub(super) struct Names {
     scopes: Vec<Vec<String>>,
 }
@@ -17,21 +17,23 @@ impl Default for Names {
 }
 
 impl Names {
+    /// Opens a scope.
     pub(super) fn open(&mut self) {
         self.scopes.push(Vec::new());
     }
 
+    /// Closes the innermost scope.
     pub(super) fn close(&mut self) {
         self.scopes.pop();
     }
 
-    /// `wanted`, or the first of `wanted_1`, `wanted_2`, … that is free.
-    pub(super) fn fresh(&mut self, wanted: &str) -> String {
-        let mut name = mangled(wanted).into_owned();
+    /// Declares `name`, or the first of `name_1`, `name_2`, … that is free, and returns it.
+    pub(super) fn fresh(&mut self, requested: &str) -> String {
+        let mut name = mangled(requested).into_owned();
         let mut count = 0_u32;
         while self.is_visible(&name) {
             count += 1;
-            name = mangled(&format!("{wanted}_{count}")).into_owned();
+            name = mangled(&format!("{requested}_{count}")).into_owned();
         }
         if let Some(scope) = self.scopes.last_mut() {
             scope.push(name.clone());

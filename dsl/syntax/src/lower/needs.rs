@@ -1,18 +1,19 @@
-//! What an expression needs from its surroundings when it is printed.
+//! Properties of expressions that the printer needs.
 //!
-//! In: a typed expression. Out: whether statements must stand before it, whether it changes a variable, whether it can be
-//! written twice, whether `select` can hold it.
+//! Input: a typed expression. Output: whether it needs statements before it, changes a variable, can be written twice, or can
+//! be an arm of `select`.
 
+use super::lowering::Lowering;
+use crate::fold;
 use crate::methods::Spelling;
-use crate::tree::{Block, Expr, Function, Kind, Statement};
+use crate::tree::{Block, Expr, Function, If, Kind, Statement};
 use crate::types::Type;
-use crate::{fold, tree};
 
-/// How large an arm of `select` may be.
-const CHEAP: usize = 8;
+/// The maximum number of nodes in an arm of `select`.
+const MAX_ARM: usize = 8;
 
-impl super::Lowering<'_> {
-    /// Whether statements must stand before the expression.
+impl Lowering<'_> {
+    /// Returns whether the expression needs statements before it.
     pub(super) fn needs_statements(&self, expr: &Expr) -> bool {
         let itself = match &expr.kind {
             Kind::If(branch) => !self.is_select(branch, expr),
@@ -27,7 +28,7 @@ impl super::Lowering<'_> {
             || value_of(&expr.kind).is_some_and(|value| self.needs_statements(value))
     }
 
-    /// Whether some argument must get a name: it occurs twice in the text, or all are constants.
+    /// Returns whether an argument must be bound to a name: it occurs twice in the template, or all arguments are constant.
     pub(super) fn binds(&self, spelling: Spelling, arguments: &[Expr]) -> bool {
         let twice = |(index, argument): (usize, &Expr)| occurs_twice(spelling, index) && !is_plain(argument);
         arguments.iter().enumerate().any(twice) || self.all_constant(arguments)
@@ -41,25 +42,25 @@ impl super::Lowering<'_> {
         fold::constant(expr, self.function).is_some()
     }
 
-    /// Whether a conversion needs more than WGSL's: Rust stops at the greatest number, WGSL at the last float before it.
+    /// Returns whether a conversion needs `select`: Rust saturates at the greatest integer, WGSL at the last float before it.
     pub(super) fn saturates(&self, inner: &Expr, cast: &Expr) -> bool {
         self.function.type_of(inner) == Type::F32 && self.function.type_of(cast).is_integer()
     }
 
-    /// Whether a branch can be written as `select`: both arms small, without effects, and safe to evaluate.
-    pub(super) fn is_select(&self, branch: &tree::If, expr: &Expr) -> bool {
-        let (Some(then), Some(otherwise)) = (only_value(&branch.then), &branch.otherwise) else { return false };
-        let otherwise = match &otherwise.kind {
+    /// Returns whether a branch can be a `select`: both arms are small, have no effects and are safe to evaluate.
+    pub(super) fn is_select(&self, branch: &If, expr: &Expr) -> bool {
+        let (Some(then), Some(else_branch)) = (only_value(&branch.then), &branch.else_branch) else { return false };
+        let else_branch = match &else_branch.kind {
             Kind::Block(block) => only_value(block),
             _ => None,
         };
-        let Some(otherwise) = otherwise else { return false };
+        let Some(else_branch) = else_branch else { return false };
         let value = !matches!(self.function.type_of(expr), Type::Fragment | Type::Unit | Type::Never);
-        let cheap = |arm: &Expr| self.is_safe(arm) && size(arm) <= CHEAP;
-        value && cheap(then) && cheap(otherwise) && !self.is_constant(&branch.condition)
+        let cheap = |arm: &Expr| self.is_safe(arm) && size(arm) <= MAX_ARM;
+        value && cheap(then) && cheap(else_branch) && !self.is_constant(&branch.condition)
     }
 
-    /// Whether evaluating it when Rust would not cannot matter.
+    /// Returns whether the expression can be evaluated where Rust does not evaluate it.
     fn is_safe(&self, expr: &Expr) -> bool {
         let itself = match &expr.kind {
             Kind::Helper(..) | Kind::Layer(_) | Kind::LayerCount | Kind::Element(..) => false,
@@ -70,27 +71,27 @@ impl super::Lowering<'_> {
         itself && expr.kind.operands().into_iter().all(|operand| self.is_safe(operand))
     }
 
-    /// Whether its value cannot change while other operands are evaluated.
+    /// Returns whether the value cannot change while other operands are evaluated.
     pub(super) fn is_stable(&self, expr: &Expr) -> bool {
         !reads_mutable(expr, self.function)
     }
 }
 
-/// The value of a block that has nothing else.
+/// Returns the value of a block without statements.
 pub(super) fn only_value(block: &Block) -> Option<&Expr> {
     if block.statements.is_empty() { block.value.as_deref() } else { None }
 }
 
-/// Whether it is a name, a literal, or a field of such: text that may be written twice.
+/// Returns whether it is a name, a literal, or a field of such: it may be written twice.
 pub(super) fn is_plain(expr: &Expr) -> bool {
     match &expr.kind {
-        Kind::Variable(_) | Kind::Float(_) | Kind::Whole(_) | Kind::Bool(_) | Kind::Uniform(_) => true,
+        Kind::Variable(_) | Kind::Float(_) | Kind::Integer(_) | Kind::Bool(_) | Kind::Uniform(_) => true,
         Kind::Attribute(base, _) | Kind::Components(base, _) => is_plain(base),
         _ => false,
     }
 }
 
-/// Whether evaluating it assigns a variable.
+/// Returns whether the expression assigns a variable.
 pub(super) fn assigns(expr: &Expr) -> bool {
     let within = |block: &Block| {
         let statement = |statement: &Statement| match statement {
@@ -103,6 +104,7 @@ pub(super) fn assigns(expr: &Expr) -> bool {
         || expr.kind.block().is_some_and(within)
 }
 
+/// Returns whether the expression reads a mutable variable.
 fn reads_mutable(expr: &Expr, function: &Function) -> bool {
     let within = |block: &Block| {
         let statement = |statement: &Statement| match statement {
@@ -116,11 +118,11 @@ fn reads_mutable(expr: &Expr, function: &Function) -> bool {
         || expr.kind.block().is_some_and(within)
 }
 
-/// How often an argument stands in the text of a method.
+/// Returns whether an argument occurs more than once in the WGSL of a method.
 pub(super) fn occurs_twice(spelling: Spelling, index: usize) -> bool {
     match spelling {
         Spelling::Call(_) => false,
-        Spelling::Text(text) => text.matches(&format!("${index}")).count() > 1,
+        Spelling::Template(template) => template.matches(&format!("${index}")).count() > 1,
     }
 }
 
@@ -128,7 +130,7 @@ fn size(expr: &Expr) -> usize {
     1 + expr.kind.operands().into_iter().map(size).sum::<usize>()
 }
 
-/// The value at the end of a block, which `operands` leaves out.
+/// Returns the final value of a block, which `operands` omits.
 fn value_of(kind: &Kind) -> Option<&Expr> {
     match kind {
         Kind::Block(block) => block.value.as_deref(),

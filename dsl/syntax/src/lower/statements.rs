@@ -1,41 +1,30 @@
 //! Statements: blocks, variables, assignments and branches.
 //!
-//! In: typed statements, and where the value of the last goes. Out: lines. After a line that never ends normally,
-//! nothing is written: some validators refuse what cannot be reached.
+//! Input: typed statements, and the destination of the final value. Output: lines. Nothing is written after a diverging
+//! line: some validators reject unreachable code.
 
-use fragbuf_model::Origin;
+use fragbuf_model::SourceSpan;
 
-use super::Lowering;
+use super::lowering::{Destination, Lowering};
 use super::needs::only_value;
-use super::text::Text;
+use super::source::ExprSource;
 use crate::tree::{Block, Expr, If, Kind, Operator, Statement, VariableId};
 use crate::types::Type;
 
-/// Where a value goes.
-#[derive(Clone, Debug)]
-pub(super) enum Destination {
-    /// Nowhere: only what evaluating it does is wanted.
-    Nothing,
-    /// Out of the function.
-    Return,
-    /// Into this variable.
-    Assign(String),
-}
-
 impl Lowering<'_> {
-    /// Begins a block.
+    /// Opens a block.
     pub(super) fn open(&mut self) {
         self.lines.indent();
         self.names.open();
     }
 
-    /// Ends a block; what was unreachable inside may be reached behind it.
+    /// Closes a block.
     pub(super) fn close(&mut self) {
         self.names.close();
         self.lines.dedent();
     }
 
-    /// The statements of a block, without its braces.
+    /// Writes the statements and the value of a block without its braces.
     pub(super) fn block_contents(&mut self, block: &Block, destination: &Destination) {
         self.statements(block);
         if let Some(value) = &block.value {
@@ -46,88 +35,88 @@ impl Lowering<'_> {
     fn statements(&mut self, block: &Block) {
         for statement in &block.statements {
             match statement {
-                Statement::Let { variable, value, origin } => self.variable(*variable, value, origin),
-                Statement::Expr(expr) => self.statement(expr, &Destination::Nothing),
+                Statement::Let { variable, value, span } => self.variable(*variable, value, span),
+                Statement::Expr(expr) => self.statement(expr, &Destination::Unused),
             }
         }
     }
 
-    /// A block in the middle of an expression: its statements come first, its value is the text.
-    pub(super) fn flattened(&mut self, block: &Block) -> Text {
+    /// Writes the statements of a block inside an expression, and returns the source of its value.
+    pub(super) fn flattened(&mut self, block: &Block) -> ExprSource {
         self.statements(block);
         match &block.value {
             Some(value) => self.value(value),
-            None => Text::primary("0u"),
+            None => ExprSource::primary("0u"),
         }
     }
 
-    /// Evaluates an expression and puts its value where it belongs.
+    /// Writes an expression and stores its value in the destination.
     pub(super) fn store(&mut self, expr: &Expr, destination: &Destination) {
         match (&expr.kind, destination) {
-            (_, Destination::Nothing) => self.statement(expr, destination),
+            (_, Destination::Unused) => self.statement(expr, destination),
             (Kind::If(branch), _) if !self.is_select(branch, expr) => self.branch(branch, expr, destination),
             (Kind::Block(block), _) => self.block_contents(block, destination),
             (Kind::Return(_) | Kind::Break | Kind::Continue, _) => self.statement(expr, destination),
             (_, Destination::Return) => {
-                let text = self.value(expr);
-                self.emit(format!("return {};", text.text), &expr.origin);
+                let source = self.value(expr);
+                self.emit(format!("return {};", source.source), &expr.span);
                 self.dead = true;
             }
             (_, Destination::Assign(name)) => {
-                let text = self.value(expr);
-                self.emit(format!("{name} = {};", text.text), &expr.origin);
+                let source = self.value(expr);
+                self.emit(format!("{name} = {};", source.source), &expr.span);
             }
         }
     }
 
-    /// An expression that stands as a statement.
+    /// Writes an expression as a statement.
     pub(super) fn statement(&mut self, expr: &Expr, destination: &Destination) {
         match &expr.kind {
             Kind::If(branch) => self.branch(branch, expr, destination),
-            Kind::Block(block) => self.nested(block, &expr.origin),
-            Kind::For(each) => self.for_loop(each, &expr.origin),
-            Kind::Assign { place, operator, value } => self.assign(place, *operator, value, &expr.origin),
+            Kind::Block(block) => self.nested(block, &expr.span),
+            Kind::For(each) => self.for_loop(each, &expr.span),
+            Kind::Assign { place, operator, value } => self.assign(place, *operator, value, &expr.span),
             Kind::Return(value) => {
                 self.store(value, &Destination::Return);
                 self.dead = true;
             }
-            Kind::Break => self.jump("break;", &expr.origin),
-            Kind::Continue => self.jump("continue;", &expr.origin),
-            // A value that nobody wants: only the statements it needs have an effect.
+            Kind::Break => self.jump("break;", &expr.span),
+            Kind::Continue => self.jump("continue;", &expr.span),
+            // The value is unused: only the statements that it needs have an effect.
             _ if self.needs_statements(expr) => drop(self.value(expr)),
             _ => {}
         }
     }
 
-    fn jump(&mut self, line: &str, origin: &Origin) {
-        self.emit(line.to_string(), origin);
+    fn jump(&mut self, line: &str, span: &SourceSpan) {
+        self.emit(line.to_string(), span);
         self.dead = true;
     }
 
-    fn nested(&mut self, block: &Block, origin: &Origin) {
+    fn nested(&mut self, block: &Block, span: &SourceSpan) {
         if self.dead {
             return;
         }
-        self.emit("{".to_string(), origin);
+        self.emit("{".to_string(), span);
         self.open();
-        self.block_contents(block, &Destination::Nothing);
+        self.block_contents(block, &Destination::Unused);
         self.close();
         self.lines.push("}".to_string(), &block.end);
     }
 
-    /// `let`: a `var` where it is assigned later.
-    fn variable(&mut self, variable: Option<VariableId>, value: &Expr, origin: &Origin) {
-        let Some(id) = variable else { return self.statement(value, &Destination::Nothing) };
+    /// Writes `let`, or `var` for a mutable variable.
+    fn variable(&mut self, variable: Option<VariableId>, value: &Expr, span: &SourceSpan) {
+        let Some(id) = variable else { return self.statement(value, &Destination::Unused) };
         let Some(declared) = self.function.variables.get(id) else { return };
         let (name, mutable, annotated) = (declared.name.clone(), declared.mutable, declared.annotated);
-        let ty = self.function.inference.settle(declared.kind);
+        let ty = self.function.inference.resolve_or_default(declared.ty);
         if !ty.is_value() {
-            return self.statement(value, &Destination::Nothing);
+            return self.statement(value, &Destination::Unused);
         }
-        // The statements of a block come first; its value is what the name gets.
+        // The statements of a block come first; the variable gets its value.
         let mut value = value;
         while let Kind::Block(block) = &value.kind {
-            let Some(last) = &block.value else { return self.block_contents(block, &Destination::Nothing) };
+            let Some(last) = &block.value else { return self.block_contents(block, &Destination::Unused) };
             self.statements(block);
             value = last;
         }
@@ -135,38 +124,38 @@ impl Lowering<'_> {
             && !self.is_select(branch, value)
         {
             let name = self.names.fresh(&name);
-            self.emit(format!("var {name}: {};", ty.wgsl()), origin);
+            self.emit(format!("var {name}: {};", ty.wgsl()), span);
             self.store(value, &Destination::Assign(name.clone()));
-            return self.spell(id, name);
+            return self.set_name(id, name);
         }
-        let text = self.value(value);
+        let source = self.value(value);
         let name = self.names.fresh(&name);
-        let word = if mutable { "var" } else { "let" };
+        let keyword = if mutable { "var" } else { "let" };
         let written = if annotated { format!(": {}", ty.wgsl()) } else { String::new() };
-        self.emit(format!("{word} {name}{written} = {};", text.text), origin);
-        self.spell(id, name);
+        self.emit(format!("{keyword} {name}{written} = {};", source.source), span);
+        self.set_name(id, name);
     }
 
-    fn assign(&mut self, place: &Expr, operator: Option<Operator>, value: &Expr, origin: &Origin) {
+    fn assign(&mut self, place: &Expr, operator: Option<Operator>, value: &Expr, span: &SourceSpan) {
         if let (None, Kind::Variable(id), true) = (operator, &place.kind, self.is_statement_value(value)) {
             let name = self.name_of(*id);
             return self.store(value, &Destination::Assign(name));
         }
-        // Rust evaluates the value before the place.
+        // Rust evaluates the value before the place expression.
         let shift = operator.is_some_and(Operator::is_shift);
-        let text = if shift { self.shift_count(value) } else { self.value(value) };
-        let place_text = self.value(place).text;
+        let source = if shift { self.shift_count(value) } else { self.value(value) };
+        let target = self.value(place).source;
         let line = match operator {
-            None => format!("{place_text} = {};", text.text),
+            None => format!("{target} = {};", source.source),
             Some(Operator::BitXor) if self.function.type_of(place) == Type::Bool => {
-                format!("{place_text} = {};", Text::binary(Operator::NotEqual, &self.value(place), &text).text)
+                format!("{target} = {};", ExprSource::binary(Operator::NotEqual, &self.value(place), &source).source)
             }
-            Some(operator) => format!("{place_text} {}= {};", operator.sign(), text.text),
+            Some(operator) => format!("{target} {}= {};", operator.symbol(), source.source),
         };
-        self.emit(line, origin);
+        self.emit(line, span);
     }
 
-    /// Whether a value is a branch or block that can assign by itself, in each of its ways.
+    /// Returns whether a value is a branch or block whose arms can contain the assignment.
     fn is_statement_value(&self, value: &Expr) -> bool {
         match &value.kind {
             Kind::If(branch) => !self.is_select(branch, value),
@@ -180,43 +169,43 @@ impl Lowering<'_> {
         if self.dead {
             return;
         }
-        self.emit(format!("if {} {{", condition.text), &expr.origin);
+        self.emit(format!("if {} {{", condition.source), &expr.span);
         let then_dead = self.arm(&branch.then, destination);
-        let else_dead = match &branch.otherwise {
+        let else_dead = match &branch.else_branch {
             None => false,
-            Some(otherwise) => self.otherwise(otherwise, destination),
+            Some(else_branch) => self.else_branch(else_branch, destination),
         };
         self.lines.push("}".to_string(), self.end_of_branch(branch));
         self.dead = then_dead && else_dead;
     }
 
-    /// The arms behind the first: `} else if … {` and `} else {`. Says whether none of them ends normally.
-    fn otherwise(&mut self, otherwise: &Expr, destination: &Destination) -> bool {
-        match &otherwise.kind {
+    /// Writes the arms after the first, `} else if … {` and `} else {`. Returns whether all of them diverge.
+    fn else_branch(&mut self, else_branch: &Expr, destination: &Destination) -> bool {
+        match &else_branch.kind {
             Kind::If(branch) if !self.needs_statements(&branch.condition) => {
                 let condition = self.value(&branch.condition);
-                self.emit(format!("}} else if {} {{", condition.text), &otherwise.origin);
+                self.emit(format!("}} else if {} {{", condition.source), &else_branch.span);
                 let then_dead = self.arm(&branch.then, destination);
-                let rest = branch.otherwise.as_ref();
-                let rest_dead = rest.is_some_and(|rest| self.otherwise(rest, destination));
+                let rest = branch.else_branch.as_ref();
+                let rest_dead = rest.is_some_and(|rest| self.else_branch(rest, destination));
                 then_dead && rest_dead
             }
             Kind::Block(block) if block.statements.is_empty() && block.value.is_none() => false,
             Kind::Block(block) => {
-                self.emit("} else {".to_string(), &otherwise.origin);
+                self.emit("} else {".to_string(), &else_branch.span);
                 self.arm(block, destination)
             }
             _ => {
-                self.emit("} else {".to_string(), &otherwise.origin);
+                self.emit("} else {".to_string(), &else_branch.span);
                 self.open();
-                self.store(otherwise, destination);
+                self.store(else_branch, destination);
                 self.close();
                 std::mem::replace(&mut self.dead, false)
             }
         }
     }
 
-    /// One way of a branch; says whether it never ends normally.
+    /// Writes one arm of a branch. Returns whether it diverges.
     fn arm(&mut self, block: &Block, destination: &Destination) -> bool {
         self.open();
         self.block_contents(block, destination);
@@ -224,8 +213,8 @@ impl Lowering<'_> {
         std::mem::replace(&mut self.dead, false)
     }
 
-    fn end_of_branch<'b>(&self, branch: &'b If) -> &'b Origin {
-        match branch.otherwise.as_ref().map(|otherwise| &otherwise.kind) {
+    fn end_of_branch<'b>(&self, branch: &'b If) -> &'b SourceSpan {
+        match branch.else_branch.as_ref().map(|else_branch| &else_branch.kind) {
             Some(Kind::Block(block)) => &block.end,
             Some(Kind::If(inner)) => self.end_of_branch(inner),
             _ => &branch.then.end,

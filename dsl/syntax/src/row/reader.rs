@@ -1,173 +1,184 @@
-//! The pieces that statements are made of, each read or reported.
+//! The parts of statements: names, numbers, capabilities and formulas.
+//!
+//! Input: a line. Output: the parsed part, or an error.
 
-use fragbuf_model::{Code, Diagnostic, Diagnostics, Origin, Spanned, codes, mangled};
+use fragbuf_model::{Code, Diagnostic, Diagnostics, SourceSpan, Spanned, codes, mangled};
 use fragbuf_templates::Shorthand;
-use fragbuf_templates::vocabulary::{Capability, Fact, Formula, FormulaError, Given, Permits, Place, Written};
+use fragbuf_templates::vocabulary::{
+    Capability, DescriptionValues, Feature, Formula, FormulaError, Permits, RowItem, RowItemSpan,
+};
 
 use super::line::Line;
-use crate::near;
+use crate::report::Stop;
+use crate::unknown_name;
 
-/// A mistake was reported; the rest of the line is not worth reading.
-pub(super) struct Stop;
-
+/// A parsed part, or the mark that an error was reported.
 pub(super) type Read<T> = Result<T, Stop>;
 
-/// The operators of formulas, in the words of a message.
+/// The operators of formulas, for messages.
 const OPERATORS: &str = "`+ - * /`, `== != < <= > >=`, `&& ||`";
 
-/// The mistakes so far.
+/// The errors and spans so far.
 pub(super) struct Reader {
-    pub(super) faults: Diagnostics,
-    /// Names and formulas that are right as far as the row goes, for what only a description can tell.
-    pub(super) places: Vec<Place>,
+    pub(super) diagnostics: Diagnostics,
+    /// The spans of names and formulas that are valid in the row, for errors that depend on a description.
+    pub(super) item_spans: Vec<RowItemSpan>,
 }
 
 impl Reader {
-    /// A word; `what` it is and the `shape` of the statement are for the message.
-    pub(super) fn word(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
-        match line.word() {
-            Some(word) => Ok(word),
+    /// Parses a name. The message says that `what` is expected, and shows the `shape` of the statement.
+    pub(super) fn name(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
+        match line.name() {
+            Some(name) => Ok(name),
             None => self.unexpected(line, what, shape),
         }
     }
 
-    /// A word that WGSL takes as a name and generated code leaves free.
-    pub(super) fn name(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
-        let word = self.word(line, what, shape)?;
-        let plain = !word.value.contains('-') && !word.value.starts_with(|first: char| first.is_ascii_digit());
-        if plain && mangled(&word.value) == word.value.as_str() {
-            return Ok(word);
+    /// Parses a name that is valid in WGSL and unused by generated code.
+    pub(super) fn wgsl_name(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<Spanned<String>> {
+        let name = self.name(line, what, shape)?;
+        let plain = !name.value.contains('-') && !name.value.starts_with(|first: char| first.is_ascii_digit());
+        if plain && mangled(&name.value) == name.value.as_str() {
+            return Ok(name);
         }
-        let message = format!("`{}` cannot be {what}", word.value);
-        let hint = "choose a name of letters, digits and `_` that neither WGSL nor generated code has";
-        self.stop(codes::ROW, &word.origin, message, hint)
+        let message = format!("`{}` cannot be {what}", name.value);
+        let help = "choose a name of letters, digits and `_` that neither WGSL nor generated code uses";
+        self.stop(codes::INVALID_ROW, &name.span, message, help)
     }
 
-    pub(super) fn sign(&mut self, line: &mut Line<'_>, sign: char, shape: &str) -> Read<()> {
-        if line.sign(sign) { Ok(()) } else { self.unexpected(line, &format!("`{sign}`"), shape) }
+    /// Parses a punctuation character.
+    pub(super) fn punct(&mut self, line: &mut Line<'_>, character: char, shape: &str) -> Read<()> {
+        if line.punct(character) { Ok(()) } else { self.unexpected(line, &format!("`{character}`"), shape) }
     }
 
+    /// Parses an integer of 32 bits.
     pub(super) fn number(&mut self, line: &mut Line<'_>) -> Read<Spanned<u32>> {
-        let word = self.word(line, "a number", "digits only, such as `8`")?;
-        let Ok(number) = word.value.parse() else {
-            let message = format!("`{}` is no whole number of 32 bits", word.value);
-            return self.stop(codes::ROW, &word.origin, message, "write digits only, such as `8`");
+        let name = self.name(line, "a number", "digits only, such as `8`")?;
+        let Ok(number) = name.value.parse() else {
+            let message = format!("expected an integer of 32 bits, found `{}`", name.value);
+            return self.stop(codes::INVALID_ROW, &name.span, message, "write digits only, such as `8`");
         };
-        Ok(Spanned::new(number, word.origin))
+        Ok(Spanned::new(number, name.span))
     }
 
-    pub(super) fn facts(&mut self, line: &mut Line<'_>) -> Read<Vec<Fact>> {
-        let mut facts = vec![self.fact(line)?];
-        while line.sign(',') {
-            facts.push(self.fact(line)?);
+    /// Parses a list of capabilities.
+    pub(super) fn capabilities(&mut self, line: &mut Line<'_>) -> Read<Vec<Capability>> {
+        let mut capabilities = vec![self.capability(line)?];
+        while line.punct(',') {
+            capabilities.push(self.capability(line)?);
         }
-        Ok(facts)
+        Ok(capabilities)
     }
 
-    /// Facts that other rows offer, and capabilities that targets do, in one list.
-    pub(super) fn requirements(&mut self, line: &mut Line<'_>) -> Read<(Vec<Fact>, Vec<Capability>)> {
-        let (mut facts, mut capabilities) = (Vec::new(), Vec::new());
+    /// Parses a list of capabilities of other rows and features of targets.
+    pub(super) fn requirements(&mut self, line: &mut Line<'_>) -> Read<(Vec<Capability>, Vec<Feature>)> {
+        let (mut capabilities, mut features) = (Vec::new(), Vec::new());
         loop {
-            let word = self.word(line, "a fact or a capability", "`critical`, `fragment-atomics`")?;
-            match Capability::ALL.iter().find(|capability| capability.word() == word.value) {
-                Some(capability) => capabilities.push(*capability),
-                None => facts.push(self.fact_of(&word, Capability::ALL)?),
+            let name = self.name(line, "a capability or a feature", "`mutual-exclusion`, `fragment-atomics`")?;
+            match Feature::ALL.iter().find(|feature| feature.name() == name.value) {
+                Some(feature) => features.push(*feature),
+                None => capabilities.push(self.capability_of(&name, Feature::ALL)?),
             }
-            if !line.sign(',') {
-                return Ok((facts, capabilities));
+            if !line.punct(',') {
+                return Ok((capabilities, features));
             }
         }
     }
 
-    pub(super) fn fact(&mut self, line: &mut Line<'_>) -> Read<Fact> {
-        let word = self.word(line, "a fact", "`keeps-best`, `keeps-all`, `critical`")?;
-        self.fact_of(&word, &[])
+    /// Parses a capability.
+    pub(super) fn capability(&mut self, line: &mut Line<'_>) -> Read<Capability> {
+        let name = self.name(line, "a capability", "`keeps-best`, `keeps-all`, `mutual-exclusion`")?;
+        self.capability_of(&name, &[])
     }
 
-    /// A formula over what the description gives.
+    /// Parses a formula over the symbols of a description.
     pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
-        let text = line.until(&[]);
-        let symbols: Vec<&str> = Given::symbols().map(|symbol| symbol.name).collect();
-        self.formula(&text, &symbols)?;
-        Ok(text.value.into())
+        let formula = line.until(&[]);
+        let symbols: Vec<&str> = DescriptionValues::symbols().map(|symbol| symbol.name).collect();
+        self.formula(&formula, &symbols)?;
+        Ok(formula.value.into())
     }
 
-    /// The fact of a word; where there is none, the hint knows capabilities that could stand there too.
-    fn fact_of(&mut self, word: &Spanned<String>, capabilities: &[Capability]) -> Read<Fact> {
-        if let Some(fact) = Fact::ALL.iter().find(|fact| fact.word() == word.value) {
-            return Ok(*fact);
+    /// Returns the capability of this name. The help lists the `features` that are also valid here.
+    fn capability_of(&mut self, name: &Spanned<String>, features: &[Feature]) -> Read<Capability> {
+        if let Some(capability) = Capability::ALL.iter().find(|capability| capability.name() == name.value) {
+            return Ok(*capability);
         }
-        if Capability::ALL.iter().any(|capability| capability.word() == word.value) {
-            let message = format!("`{}` is a capability, which targets offer and rows require", word.value);
-            let hint = format!("leave it out here, and write `//: requires {}` where the row needs it", word.value);
-            return self.stop(codes::UNKNOWN_FACT, &word.origin, message, hint);
+        if Feature::ALL.iter().any(|feature| feature.name() == name.value) {
+            let message = format!("`{}` is a feature of targets, not a capability of rows", name.value);
+            let help = format!("remove it here; if the row needs it, write `//: requires {}`", name.value);
+            return self.stop(codes::UNKNOWN_CAPABILITY, &name.span, message, help);
         }
-        let facts = Fact::ALL.iter().map(|fact| fact.word());
-        let known: Vec<String> = facts.chain(capabilities.iter().map(|capability| capability.word())).collect();
-        let message = format!("there is no fact `{}`", word.value);
-        self.stop(codes::UNKNOWN_FACT, &word.origin, message, near::hint(&word.value, &known))
+        let capabilities = Capability::ALL.iter().map(|capability| capability.name());
+        let known: Vec<String> = capabilities.chain(features.iter().map(|feature| feature.name())).collect();
+        let message = format!("unknown capability `{}`", name.value);
+        self.stop(codes::UNKNOWN_CAPABILITY, &name.span, message, unknown_name::help(&name.value, &known))
     }
 
-    /// What one name of a hazard permits.
-    pub(super) fn permits(&mut self, word: &Spanned<String>) -> Read<Permits> {
-        if let Some(Shorthand::Permits(permits)) = Shorthand::of(&word.value) {
+    /// Returns what the name of a hazard permits.
+    pub(super) fn permits(&mut self, name: &Spanned<String>) -> Read<Permits> {
+        if let Some(Shorthand::Permits(permits)) = Shorthand::of(&name.value) {
             return Ok(permits);
         }
         let known = Shorthand::ALL.into_iter().filter(|(_, one)| matches!(one, Shorthand::Permits(_)));
         let known: Vec<&str> = known.map(|(name, _)| name).collect();
-        let message = format!("a hazard cannot permit `{}`", word.value);
-        self.stop(codes::ROW, &word.origin, message, near::hint(&word.value, &known))
+        let message = format!("a hazard cannot permit `{}`", name.value);
+        self.stop(codes::INVALID_ROW, &name.span, message, unknown_name::help(&name.value, &known))
     }
 
-    /// The value of a word in a table.
-    pub(super) fn one_of<T: Copy>(&mut self, word: &Spanned<String>, table: &[(&str, T)], what: &str) -> Read<T> {
-        if let Some((_, value)) = table.iter().find(|(name, _)| *name == word.value) {
+    /// Returns the value of a name in a table.
+    pub(super) fn one_of<T: Copy>(&mut self, name: &Spanned<String>, table: &[(&str, T)], what: &str) -> Read<T> {
+        if let Some((_, value)) = table.iter().find(|(key, _)| *key == name.value) {
             return Ok(*value);
         }
         let known: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-        self.stop(codes::ROW, &word.origin, format!("`{}` is {what}", word.value), near::hint(&word.value, &known))
+        let message = format!("expected {what}, found `{}`", name.value);
+        self.stop(codes::INVALID_ROW, &name.span, message, unknown_name::help(&name.value, &known))
     }
 
-    /// Reports a formula that cannot be read, that depends on what it may not, or that has no value whatever that is.
+    /// Reports a formula that does not parse, uses other symbols, or has no value for any values of its symbols.
     pub(super) fn formula(&mut self, formula: &Spanned<String>, symbols: &[impl AsRef<str>]) -> Read<()> {
         let symbols: Vec<&str> = symbols.iter().map(AsRef::as_ref).collect();
-        let Err(error) = readable(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
+        let Err(error) = check_formula(&Formula::from(formula.value.clone()), &symbols) else { return Ok(()) };
         let known = || {
             let symbols = symbols.join(", ");
             format!("the formula may use {symbols}, {OPERATORS}, min, max, ceil_div, pow2 and log2_ceil")
         };
-        let (problem, hint) = match &error {
-            FormulaError::Unbound(symbol) => (format!("`{symbol}` is no name that a formula may use here"), known()),
-            FormulaError::Malformed { text, .. } => (format!("`{text}` is no formula"), known()),
-            other => (other.to_string(), other.hint().to_owned()),
+        let (problem, help) = match &error {
+            FormulaError::Unbound(symbol) => (format!("cannot use `{symbol}` in this formula"), known()),
+            FormulaError::Malformed { text, .. } => (format!("`{text}` is not a formula"), known()),
+            other => (other.to_string(), other.help().to_owned()),
         };
-        self.stop(codes::ROW, &formula.origin, problem, hint)
+        self.stop(codes::INVALID_ROW, &formula.span, problem, help)
     }
 
-    /// Keeps the place of a name or a formula.
-    pub(super) fn stands(&mut self, what: Written, text: &Spanned<String>) {
-        let Origin { line, column, length, .. } = text.origin;
-        self.places.push(Place { what, text: text.value.clone().into(), line, column, length });
+    /// Records the span of a name or a formula.
+    pub(super) fn record_span(&mut self, item: RowItem, source: &Spanned<String>) {
+        let SourceSpan { line, column, length, .. } = source.span;
+        self.item_spans.push(RowItemSpan { item, text: source.value.clone().into(), line, column, length });
     }
 
+    /// Reports that `what` is expected in place of the next name or character.
     pub(super) fn unexpected<T>(&mut self, line: &mut Line<'_>, what: &str, shape: &str) -> Read<T> {
-        let message = format!("{what} belongs here, not {}", line.describe());
-        let origin = line.here();
-        self.stop(codes::ROW, &origin, message, format!("write {shape}"))
+        let message = format!("expected {what}, found {}", line.describe());
+        let span = line.here();
+        self.stop(codes::INVALID_ROW, &span, message, format!("write {shape}"))
     }
 
-    pub(super) fn stop<T>(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) -> Read<T> {
-        self.fault(code, at, message, hint);
+    /// Reports an error and stops parsing the line.
+    pub(super) fn stop<T>(&mut self, code: Code, at: &SourceSpan, message: String, help: impl Into<String>) -> Read<T> {
+        self.error(code, at, message, help);
         Err(Stop)
     }
 
-    pub(super) fn fault(&mut self, code: Code, at: &Origin, message: String, hint: impl Into<String>) {
-        self.faults.push(Diagnostic::new(code, at, message, hint));
+    /// Reports an error.
+    pub(super) fn error(&mut self, code: Code, at: &SourceSpan, message: String, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::new(code, at, message, help));
     }
 }
 
-/// Whether a formula can be read, is over these symbols, and has a value for some of theirs.
-fn readable(formula: &Formula, symbols: &[&str]) -> Result<(), FormulaError> {
+/// Returns an error if a formula does not parse, uses other symbols, or has no value for any values of its symbols.
+fn check_formula(formula: &Formula, symbols: &[&str]) -> Result<(), FormulaError> {
     let expression = formula.read()?;
     if let Some(symbol) = expression.symbols().into_iter().find(|symbol| !symbols.contains(symbol)) {
         return Err(FormulaError::Unbound(symbol.to_owned()));

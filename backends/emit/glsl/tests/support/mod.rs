@@ -1,4 +1,4 @@
-//! What the tests share: WGSL in, GLSL out, and the outside judges of it.
+//! Shared by the tests: parses WGSL, prints GLSL and validates it with glslang and spirv-val.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
@@ -8,6 +8,7 @@ use fragbuf_glsl::{Dialect, Marker, Options, Slot, Unit, Unprintable};
 use naga::ShaderStage;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
+/// The markers, by the names of their functions.
 pub const MARKERS: &[(&str, Marker)] = &[
     ("memory_fence", Marker::MemoryFence),
     ("is_helper_lane", Marker::HelperLane),
@@ -16,8 +17,10 @@ pub const MARKERS: &[(&str, Marker)] = &[
     ("critical_end", Marker::CriticalEnd),
 ];
 
+/// Every dialect.
 pub const ALL: [Dialect; 3] = [Dialect::OpenGl450, Dialect::Vulkan450, Dialect::Es310];
 
+/// Parses and validates WGSL.
 pub fn parse(source: &str) -> (naga::Module, ModuleInfo) {
     let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities: Capabilities::all() };
     let mut frontend = naga::front::wgsl::Frontend::new_with_options(options);
@@ -27,10 +30,12 @@ pub fn parse(source: &str) -> (naga::Module, ModuleInfo) {
     (module, info)
 }
 
+/// Prints a unit without plain loads.
 pub fn print(source: &str, unit: Unit, dialect: Dialect) -> Result<String, Vec<Unprintable>> {
     print_with(source, unit, dialect, &[])
 }
 
+/// Prints a unit.
 pub fn print_with(
     source: &str,
     unit: Unit,
@@ -51,7 +56,7 @@ pub fn print_with(
     fragbuf_glsl::print(&module, &info, source, unit, &options)
 }
 
-/// The body of the one function of a library, or of the named function, as printed.
+/// Returns the printed definition of a function.
 pub fn function(text: &str, name: &str) -> String {
     let start = text.lines().position(|line| line.contains(&format!(" {name}(")) && line.ends_with('{'));
     let start = start.unwrap_or_else(|| panic!("no function {name} in\n{text}"));
@@ -60,6 +65,7 @@ pub fn function(text: &str, name: &str) -> String {
     lines[..=end].join("\n") + "\n"
 }
 
+/// Returns the file extension of a stage.
 pub fn suffix(stage: ShaderStage) -> &'static str {
     match stage {
         ShaderStage::Vertex => "vert",
@@ -68,7 +74,7 @@ pub fn suffix(stage: ShaderStage) -> &'static str {
     }
 }
 
-/// Hands a text to glslang, and what comes of it to spirv-val.
+/// Validates GLSL with glslang; for Vulkan, also the resulting SPIR-V with spirv-val.
 pub fn accept(text: &str, name: &str, stage: &str, dialect: Dialect) -> Result<(), String> {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("glsl");
     std::fs::create_dir_all(&directory).unwrap();
@@ -90,6 +96,7 @@ pub fn accept(text: &str, name: &str, stage: &str, dialect: Dialect) -> Result<(
     .map_err(|message| format!("{name}, {label}:\n{message}\n{text}"))
 }
 
+/// Runs a command; its output is the error.
 fn run(command: &mut Command) -> Result<(), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().unwrap_or_else(|error| panic!("{program} must be installed for this test: {error}"));

@@ -1,6 +1,5 @@
-//! The frame of a manifest: its steps, which are the commands of the lowered frame, and what passes say.
-//!
-//! In: a plan. Out: one JSON object per command, in order. Loops are their beginnings and ends, by the numbers of steps.
+//! Writes the `steps` of a manifest: one JSON object per command of the lowered frame, in order. A loop is a pair of steps that
+//! refer to each other by index.
 
 use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, Parity, Plan, PlannedPass, Range, ResourceId};
 use fragbuf_templates::vocabulary::{
@@ -8,14 +7,14 @@ use fragbuf_templates::vocabulary::{
 };
 use serde_json::{Map, Value, json};
 
-use super::dashed;
+use crate::names::kebab_case;
 
-/// The steps of a frame.
+/// Returns the steps of a frame.
 pub(super) fn steps(plan: &Plan) -> Value {
     plan.frame.commands.iter().map(|command| step(plan, command)).collect()
 }
 
-/// Pairs of resources that exchange their roles, and how they stand once the frame is over.
+/// Returns the pairs of resources that the frame exchanges, and whether each is exchanged at the end of the frame.
 pub(super) fn exchanges(plan: &Plan) -> Value {
     let ends = plan.frame.exchanges.iter().zip(&plan.frame.end);
     ends.map(|(pair, parity)| exchanged(plan, *pair, parity)).collect()
@@ -35,7 +34,7 @@ fn step(plan: &Plan, command: &Command) -> Value {
         Action::Host(decision) => object(host(plan, decision)),
         Action::Loop(id) => {
             let looped = &plan.frame.loops[id.0];
-            object(json!({ "do": "loop", "at_most": looped.at_most.to_string(), "end": looped.end }))
+            object(json!({ "do": "loop", "max_iterations": looped.max_iterations.to_string(), "end": looped.end }))
         }
         Action::LoopEnd(id) => loop_end(plan, *id),
     };
@@ -60,9 +59,9 @@ fn loop_end(plan: &Plan, id: LoopId) -> Map<String, Value> {
     let mut map = object(json!({ "do": "loop_end", "begin": looped.begin }));
     match looped.until {
         LoopUntil::Times => {}
-        LoopUntil::WordIsZero(word) => drop(map.insert("until".into(), json!({ "zero": name(plan, word) }))),
+        LoopUntil::WordIsZero(word) => drop(map.insert("until".into(), json!({ "word_is_zero": name(plan, word) }))),
         LoopUntil::NoSamples(pass) => {
-            drop(map.insert("until".into(), json!({ "no_samples": plan.passes[pass.0].anchor })));
+            drop(map.insert("until".into(), json!({ "no_samples": plan.passes[pass.0].name })));
         }
     }
     map
@@ -78,10 +77,10 @@ fn host(plan: &Plan, decision: &Decision) -> Value {
     json!({ "do": "host", "function": decision.name, "reads": reads, "sets": sets })
 }
 
-/// Whether a command uses one of a pair.
+/// Tests whether a command uses one resource of a pair.
 fn uses(plan: &Plan, command: &Command, pair: &[ResourceId; 2]) -> bool {
     match &command.action {
-        Action::Pass(id) => pair.iter().any(|resource| plan.passes[id.0].touches(name(plan, *resource))),
+        Action::Pass(id) => pair.iter().any(|resource| plan.passes[id.0].accesses(name(plan, *resource))),
         Action::Clear { resource, .. } => pair.contains(resource),
         Action::Copy { from, to } => pair.contains(from) || pair.contains(to),
         Action::Host(decision) => decision.reads.iter().any(|range| pair.contains(&range.resource)),
@@ -93,8 +92,8 @@ fn uses(plan: &Plan, command: &Command, pair: &[ResourceId; 2]) -> bool {
     }
 }
 
-/// When two resources stand for each other: where `odd` differs from whether the finished iterations of `loops`, given by
-/// their first steps, are odd in number.
+/// Describes when two resources are exchanged: if exactly one of these holds: `odd` is true; the total of finished iterations of
+/// `loops` is odd. `loops` are the indices of the loops' first steps.
 fn exchanged(plan: &Plan, pair: [ResourceId; 2], parity: &Parity) -> Value {
     let loops: Vec<usize> = parity.loops.iter().map(|id| plan.frame.loops[id.0].begin).collect();
     json!({ "resources": pair.map(|id| name(plan, id)), "odd": parity.is_odd, "loops": loops })
@@ -105,7 +104,7 @@ fn pass_json(pass: &PlannedPass) -> Map<String, Value> {
         pass.uses.iter().map(|usage| (usage.resource.clone(), access(usage.access).into())).collect();
     let mut map = Map::new();
     map.insert("do".into(), "pass".into());
-    map.insert("pass".into(), pass.anchor.clone().into());
+    map.insert("pass".into(), pass.name.clone().into());
     let kind = match &pass.kind {
         Kind::Geometry => "geometry",
         Kind::Fullscreen => "fullscreen",
@@ -167,7 +166,7 @@ fn state(state: &State) -> Value {
     let targets = state.targets.iter().map(|t| json!({ "resource": t.resource, "blend": blend(t.blend) }));
     map.insert("targets".into(), targets.collect());
     if let Some(samples) = &state.samples {
-        let coverage = dashed(&format!("{:?}", samples.coverage));
+        let coverage = kebab_case(&format!("{:?}", samples.coverage));
         let (count, mask) = (&samples.count.0, &samples.mask.0);
         map.insert("samples".into(), json!({ "count": count, "mask": mask, "coverage": coverage }));
     }
@@ -175,14 +174,14 @@ fn state(state: &State) -> Value {
 }
 
 fn compare_name(compare: Compare) -> String {
-    dashed(&format!("{compare:?}"))
+    kebab_case(&format!("{compare:?}"))
 }
 
 fn stencil_operation(operation: StencilOperation) -> String {
-    dashed(&format!("{operation:?}"))
+    kebab_case(&format!("{operation:?}"))
 }
 
-/// Blending as factors that every API has: source, destination, operation.
+/// Returns blending as the factors and the operation that every API has.
 fn blend(blend: Blend) -> Value {
     let (source, destination, operation) = match blend {
         Blend::Replace => ("one", "zero", "add"),
@@ -192,5 +191,5 @@ fn blend(blend: Blend) -> Value {
         Blend::Min => ("one", "one", "min"),
         Blend::Add => ("one", "one", "add"),
     };
-    json!({ "name": dashed(&format!("{blend:?}")), "source": source, "destination": destination, "operation": operation })
+    json!({ "name": kebab_case(&format!("{blend:?}")), "source": source, "destination": destination, "operation": operation })
 }

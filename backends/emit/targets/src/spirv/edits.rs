@@ -1,18 +1,18 @@
-//! What naga cannot write in SPIR-V, put in afterwards: the built-in for helper invocations, the ends of an interlock,
+//! Edits naga's SPIR-V to add what naga cannot write: the built-in for helper invocations, the begin and end of an interlock,
 //! and the sample mask as an array.
 //!
-//! In: the words of a module with one entry point, in which markers are functions with names. Out: the same module, calls
-//! to markers replaced, with what they need declared. A module without such calls comes back as it was.
+//! The input is a module with one entry point in which markers are named functions. The output has each call of a marker
+//! replaced, and the required declarations. A module without such calls is returned unchanged.
 
 use rspirv::binary::Assemble;
 use rspirv::dr::{Instruction, Module, Operand, load_words};
 use rspirv::spirv::{BuiltIn, Capability, Decoration, ExecutionMode, Op, StorageClass, Word};
 
 use super::sample_mask;
+use crate::emission::InterlockOrder;
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
-use crate::target::InterlockOrder;
 
-/// Whether there may be something to edit in the words of an entry point: its module calls a marker, or it has a sample mask.
+/// Tests whether the words of an entry point may need an edit: its module has a marker, or it uses the sample mask.
 pub(super) fn may_apply(module: &naga::Module, entry: &str, prefix: &str) -> bool {
     let markers = [CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE].map(|marker| format!("{prefix}{marker}"));
     let is_marker = |name: &String| markers.contains(name);
@@ -24,7 +24,7 @@ pub(super) fn may_apply(module: &naga::Module, entry: &str, prefix: &str) -> boo
 
 /// Applies the edits; `prefix` precedes the markers' names.
 pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Result<Vec<u32>, String> {
-    let mut module = load_words(&words).map_err(|error| format!("naga's SPIR-V cannot be read back: {error}"))?;
+    let mut module = load_words(&words).map_err(|error| format!("rspirv cannot parse naga's SPIR-V: {error}"))?;
     let begin = replace(&mut module, &format!("{prefix}{CRITICAL_BEGIN}"), |_| {
         Some(Instruction::new(Op::BeginInvocationInterlockEXT, None, None, vec![]))
     });
@@ -35,11 +35,11 @@ pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Res
         declare_interlock(&mut module, order)?;
     }
     let helper = read_helper_invocation(&mut module, &format!("{prefix}{HELPER_LANE}"))?;
-    let mask = sample_mask::mend(&mut module)?;
+    let mask = sample_mask::correct(&mut module)?;
     Ok(if begin || end || helper || mask { module.assemble() } else { words })
 }
 
-/// Replaces every call of the function called `name`; whether there was one.
+/// Replaces every call of the function `name`. Returns whether there was one.
 fn replace(module: &mut Module, name: &str, with: impl Fn(&Instruction) -> Option<Instruction>) -> bool {
     let Some(function) = named(module, name) else { return false };
     let mut found = false;
@@ -84,7 +84,7 @@ fn entry_point(module: &Module) -> Result<Word, String> {
     }
 }
 
-/// Every call becomes a load of an input variable that is the built-in.
+/// Replaces every call by a load of the built-in input variable. Returns whether there was one.
 fn read_helper_invocation(module: &mut Module, name: &str) -> Result<bool, String> {
     let Some(function) = named(module, name) else { return Ok(false) };
     let call = module.all_inst_iter().find(|instruction| calls(instruction, function));

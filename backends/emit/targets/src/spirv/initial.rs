@@ -1,14 +1,11 @@
-//! Private variables without an initial value, where naga writes zeros and no read sees them.
-//!
-//! In: the words of a module, and names of variables that are written before they are read. Out: the same words without the
-//! initializers of these variables.
+//! Removes the zero initialisers that naga writes for private variables, from variables that are written before they are read.
 
 use rspirv::spirv::{Op, StorageClass, Word};
 
-/// Words in front of the first instruction.
+/// Words before the first instruction.
 const HEADER: usize = 5;
 
-/// Leaves the initializers of the variables out.
+/// Removes the initialisers of the named variables.
 pub(super) fn without(words: Vec<u32>, written_first: &[String]) -> Vec<u32> {
     if written_first.is_empty() {
         return words;
@@ -23,7 +20,7 @@ pub(super) fn without(words: Vec<u32>, written_first: &[String]) -> Vec<u32> {
         let (instruction, after) = rest.split_at(length);
         match (first & 0xffff, instruction) {
             (NAME, [_, id, name @ ..]) if names.iter().any(|wanted| wanted == name) => variables.push(*id),
-            // Type, result, storage class, initializer.
+            // Type, result, storage class, initialiser.
             (VARIABLE, [_, ty, id, PRIVATE, _]) if variables.contains(id) => {
                 out.extend_from_slice(&[(4 << 16) | VARIABLE, *ty, *id, PRIVATE]);
                 rest = after;
@@ -41,7 +38,7 @@ const NAME: u32 = Op::Name as u32;
 const VARIABLE: u32 = Op::Variable as u32;
 const PRIVATE: u32 = StorageClass::Private as u32;
 
-/// A name as SPIR-V has it: bytes from the lowest on, and at least one zero behind them.
+/// Encodes a string literal of SPIR-V: little-endian bytes with at least one trailing zero.
 fn literal(name: &str) -> Vec<u32> {
     let mut bytes = name.as_bytes().to_vec();
     bytes.resize(name.len() / 4 * 4 + 4, 0);
@@ -54,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_variables_named_lose_their_initializer() {
+    fn only_named_variables_lose_their_initialiser() {
         let name = |id: u32, text: &str| {
             let words = literal(text);
             [vec![((2 + words.len() as u32) << 16) | NAME, id], words].concat()

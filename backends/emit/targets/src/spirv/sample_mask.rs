@@ -1,13 +1,13 @@
-//! The sample mask as Vulkan wants it. naga declares the built-in as one word; Vulkan has it as an array of words
-//! (VUID-SampleMask-SampleMask-04359), of which one holds every sample there is.
+//! Corrects the type of the sample mask. naga declares the built-in as one word; Vulkan requires an array of words
+//! (VUID-SampleMask-SampleMask-04359), of which one word holds every sample.
 //!
-//! In: a module with one entry point. Out: the same, with the variable's type changed and every access led to the array's
-//! first word. A module without the built-in stays as it was.
+//! The input is a module with one entry point. In the output the variable has the array type and every access goes to its first
+//! word. A module without the built-in is unchanged.
 
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{BuiltIn, Decoration, Op, StorageClass, Word};
 
-/// Whether an entry point has the built-in, as an input or an output, by itself or in a struct.
+/// Tests whether an entry point has the built-in as an input or an output, by itself or in a struct.
 pub(super) fn is_in(module: &naga::Module, function: &naga::Function) -> bool {
     let is_mask = |binding: Option<&naga::Binding>| binding == Some(&naga::Binding::BuiltIn(naga::BuiltIn::SampleMask));
     let holds = |kind: naga::Handle<naga::Type>| match &module.types[kind].inner {
@@ -19,14 +19,14 @@ pub(super) fn is_in(module: &naga::Module, function: &naga::Function) -> bool {
     arguments.chain(results).any(|(binding, kind)| is_mask(binding) || holds(kind))
 }
 
-/// Mends every variable that is the sample mask, input or output; whether there was one.
-pub(super) fn mend(module: &mut Module) -> Result<bool, String> {
+/// Corrects every sample mask variable. Returns whether there was one.
+pub(super) fn correct(module: &mut Module) -> Result<bool, String> {
     let variables: Vec<Word> = module.annotations.iter().filter_map(mask_variable).collect();
-    let mut mended = false;
+    let mut corrected = false;
     for variable in variables {
-        mended |= mend_variable(module, variable)?;
+        corrected |= correct_variable(module, variable)?;
     }
-    Ok(mended)
+    Ok(corrected)
 }
 
 fn mask_variable(annotation: &Instruction) -> Option<Word> {
@@ -39,17 +39,17 @@ fn mask_variable(annotation: &Instruction) -> Option<Word> {
     }
 }
 
-/// A variable that is one word so far.
+/// A variable whose type is one word.
 struct Variable {
-    /// Its place among the global values.
-    place: usize,
-    /// The pointer to a word, which is its type so far.
+    /// Its index among the global values.
+    index: usize,
+    /// The type of the variable: pointer to a word.
     pointer: Word,
     class: StorageClass,
     word: Word,
 }
 
-fn mend_variable(module: &mut Module, id: Word) -> Result<bool, String> {
+fn correct_variable(module: &mut Module, id: Word) -> Result<bool, String> {
     let Some(variable) = one_word(module, id) else { return Ok(false) };
     let header = module.header.as_mut().ok_or("a module without a header")?;
     let [zero, one, array, pointer] = std::array::from_fn(|index| header.bound + index as u32);
@@ -62,27 +62,27 @@ fn mend_variable(module: &mut Module, id: Word) -> Result<bool, String> {
         Instruction::new(Op::TypeArray, None, Some(array), vec![Operand::IdRef(variable.word), Operand::IdRef(one)]),
         Instruction::new(Op::TypePointer, None, Some(pointer), vec![class, Operand::IdRef(array)]),
     ];
-    if let Some(declared) = module.types_global_values.get_mut(variable.place) {
+    if let Some(declared) = module.types_global_values.get_mut(variable.index) {
         declared.result_type = Some(pointer);
     }
-    module.types_global_values.splice(variable.place..variable.place, new);
-    lead_to_first(module, id, &variable, zero)?;
+    module.types_global_values.splice(variable.index..variable.index, new);
+    redirect_to_first(module, id, &variable, zero)?;
     Ok(true)
 }
 
 fn one_word(module: &Module, id: Word) -> Option<Variable> {
-    let place = module.types_global_values.iter().position(|declared| declared.result_id == Some(id))?;
-    let pointer = module.types_global_values.get(place)?.result_type?;
+    let index = module.types_global_values.iter().position(|declared| declared.result_id == Some(id))?;
+    let pointer = module.types_global_values.get(index)?.result_type?;
     let found = |id: Word| module.types_global_values.iter().find(|declared| declared.result_id == Some(id));
     let [Operand::StorageClass(class), Operand::IdRef(word)] = *found(pointer)?.operands.as_slice() else {
         return None;
     };
     let is_word = found(word)?.class.opcode == Op::TypeInt;
-    is_word.then_some(Variable { place, pointer, class, word })
+    is_word.then_some(Variable { index, pointer, class, word })
 }
 
-/// Every load and store of the variable becomes one of its first word.
-fn lead_to_first(module: &mut Module, id: Word, variable: &Variable, zero: Word) -> Result<(), String> {
+/// Redirects every load and store of the variable to its first word.
+fn redirect_to_first(module: &mut Module, id: Word, variable: &Variable, zero: Word) -> Result<(), String> {
     let mut bound = module.header.as_ref().ok_or("a module without a header")?.bound;
     for block in module.functions.iter_mut().flat_map(|function| &mut function.blocks) {
         let mut instructions = Vec::with_capacity(block.instructions.len());
@@ -90,8 +90,8 @@ fn lead_to_first(module: &mut Module, id: Word, variable: &Variable, zero: Word)
             let touches = matches!(instruction.class.opcode, Op::Load | Op::Store)
                 && instruction.operands.first() == Some(&Operand::IdRef(id));
             if touches {
-                let place = vec![Operand::IdRef(id), Operand::IdRef(zero)];
-                instructions.push(Instruction::new(Op::AccessChain, Some(variable.pointer), Some(bound), place));
+                let operands = vec![Operand::IdRef(id), Operand::IdRef(zero)];
+                instructions.push(Instruction::new(Op::AccessChain, Some(variable.pointer), Some(bound), operands));
                 if let Some(operand) = instruction.operands.first_mut() {
                     *operand = Operand::IdRef(bound);
                 }
@@ -149,18 +149,18 @@ mod tests {
     #[test]
     fn input_and_output_become_arrays() {
         let words = written(BOTH_WAYS);
-        assert!(validated("as-naga-writes-it", &words).contains("04359"), "naga has been mended: this file can go");
+        assert!(validated("as-naga-writes-it", &words).contains("04359"), "naga has been fixed: remove this file");
         let mut module = load_words(&words).unwrap();
-        assert!(mend(&mut module).unwrap());
-        assert_eq!(validated("mended", &module.assemble()), "");
-        assert!(!mend(&mut module).unwrap(), "what is mended stays as it is");
+        assert!(correct(&mut module).unwrap());
+        assert_eq!(validated("corrected", &module.assemble()), "");
+        assert!(!correct(&mut module).unwrap(), "a corrected module is unchanged");
     }
 
     #[test]
-    fn what_has_no_mask_stays_as_it_was() {
+    fn a_module_without_a_mask_is_unchanged() {
         let words = written(NEITHER);
         let mut module = load_words(&words).unwrap();
-        assert!(!mend(&mut module).unwrap());
+        assert!(!correct(&mut module).unwrap());
         assert_eq!(module.assemble(), load_words(&words).unwrap().assemble());
     }
 }

@@ -1,17 +1,18 @@
-//! Fixed function on small draws whose results are known beforehand: tests, blending, samples, attributes, early tests.
+//! Fixed-function operations on small draws with known results: tests, blending, samples, attributes, early tests.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU32;
 
-use fragbuf_interpreter::{Options, Program};
+use fragbuf_interpreter::{Bytecode, Options};
 use fragbuf_templates::vocabulary::{Blend, Compare, Coverage, StencilOperation, TextureFormat};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-use crate::attachment::{Attachments, Depth, Stencil, Target};
-use crate::device::Order;
-use crate::draw::{Call as Triangles, Draw, draw};
+use crate::attachment::{Attachments, ColorAttachment, DepthAttachment, StencilAttachment};
+use crate::draw::draw;
+use crate::draw_call::{DrawArguments, DrawCall};
 use crate::memory::{Words, read, words};
+use crate::settings::FragmentOrder;
 use crate::texel::Texel;
 use crate::view::View;
 
@@ -20,66 +21,66 @@ const PIXELS: usize = (SIZE * SIZE) as usize;
 
 const COMMON: &str = "
 enable primitive_index;
-struct Varyings {
+struct VertexOutput {
     @builtin(position) position: vec4<f32>,
     @location(0) color: vec4<f32>,
     @location(1) @interpolate(linear) straight: f32,
     @location(2) @interpolate(flat) id: u32,
 }
 @group(0) @binding(0) var<storage, read_write> list: array<atomic<u32>>;
-@vertex fn corner(@location(0) position: vec4<f32>, @location(1) color: vec4<f32>) -> Varyings {
-    return Varyings(position, color, color.r, u32(color.a * 10.0));
+@vertex fn corner(@location(0) position: vec4<f32>, @location(1) color: vec4<f32>) -> VertexOutput {
+    return VertexOutput(position, color, color.r, u32(color.a * 10.0));
 }
 ";
 
-const PLAIN: &str = "@fragment fn main(in: Varyings) -> @location(0) vec4<f32> { return in.color; }";
+const PLAIN: &str = "@fragment fn main(in: VertexOutput) -> @location(0) vec4<f32> { return in.color; }";
 
-/// Corners and colours of triangles.
+/// The corners and colours of triangles.
 type Corners = Vec<([f32; 4], [f32; 4])>;
 
-/// The whole frame at a depth, in a colour.
+/// Returns a triangle over the whole frame at a depth, in a colour.
 fn whole(depth: f32, color: [f32; 4]) -> Corners {
     [[-1.0, 1.0], [-1.0, -3.0], [3.0, 1.0]].map(|[x, y]| ([x, y, depth, 1.0], color)).to_vec()
 }
 
-/// One draw of a shader; the samples that passed.
-struct Call<'a> {
-    text: &'a str,
+/// A draw call of one shader.
+struct TestDraw<'a> {
+    shader: &'a str,
     attachments: Attachments<'a>,
     list: &'a Words,
     coverage: Coverage,
 }
 
-impl Call<'_> {
+impl TestDraw<'_> {
     fn draw(&self, corners: &Corners) -> u64 {
         self.try_draw(corners).unwrap()
     }
 
     fn try_draw(&self, corners: &Corners) -> Result<u64, String> {
-        let text = format!("{COMMON}{}", self.text);
+        let shader = format!("{COMMON}{}", self.shader);
         let module =
-            naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+            naga::front::wgsl::parse_str(&shader).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&shader)));
         let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
-        let program = |name: &str| Program::entry_point(&module, &info, name, &Options::default()).unwrap();
+        let program = |name: &str| Bytecode::entry_point(&module, &info, name, &Options::default()).unwrap();
         let (vertex, fragment) = (program("corner"), program("main"));
         let numbers = corners.iter().flat_map(|(position, color)| position.iter().chain(color));
         let vertices: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
         let wide = Mutex::new(());
-        let view = |program: &Program| {
+        let view = |program: &Bytecode| {
             let buffers = program.buffers.iter().map(|_| &self.list[..]).collect();
             View { buffers, textures: Vec::new(), wide: &wide }
         };
         let indices: Vec<u32> = (0..corners.len() as u32).collect();
-        let call = Draw {
+        let call = DrawCall {
             vertex: (&vertex, view(&vertex)),
             fragment: (&fragment, view(&fragment)),
             vertices: &vertices,
             indices: Some(&indices),
-            call: Triangles::once(indices.len() as u32 / 3),
+            arguments: DrawArguments::once(indices.len() as u32 / 3),
             size: (SIZE, SIZE),
             attachments: self.attachments.clone(),
             coverage: self.coverage,
-            order: Order::Submission,
+            order: FragmentOrder::Submission,
         };
         Ok(draw(&call, &|_| {})?.samples)
     }
@@ -93,15 +94,15 @@ fn none<'a>(samples: u32) -> Attachments<'a> {
     Attachments { pixels: PIXELS, samples, mask: u32::MAX, ..Attachments::default() }
 }
 
-fn target(words: &[AtomicU32], blend: Blend) -> Target<'_> {
-    Target { words, texel: Texel::Output, blend }
+fn target(words: &[AtomicU32], blend: Blend) -> ColorAttachment<'_> {
+    ColorAttachment { words, texel: Texel::Output, blend }
 }
 
-/// Draws one after the other into one float target; what stands in its first pixel.
+/// Draws one after the other into one float attachment; returns its first pixel.
 fn first(attachments: Attachments<'_>, blend: Blend, draws: &[Corners]) -> [f32; 4] {
     let (output, list) = (zeros(4 * PIXELS), zeros(64));
     let attachments = Attachments { targets: vec![target(&output, blend)], ..attachments };
-    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::PerSample };
+    let call = TestDraw { shader: PLAIN, attachments, list: &list, coverage: Coverage::PerSample };
     for corners in draws {
         call.draw(corners);
     }
@@ -113,7 +114,7 @@ const RED: [f32; 4] = [0.5, 0.0, 0.0, 0.5];
 const BLUE: [f32; 4] = [0.0, 0.125, 0.25, 0.25];
 
 #[test]
-fn blending_is_what_the_vocabulary_says() {
+fn blending_follows_the_vocabulary() {
     let draws = [whole(0.5, RED), whole(0.5, BLUE)];
     let cases = [
         (Blend::Replace, BLUE),
@@ -131,7 +132,7 @@ fn blending_is_what_the_vocabulary_says() {
 #[test]
 fn depth_is_compared_and_written() {
     let near_then_far = [whole(0.25, RED), whole(0.5, BLUE)];
-    // What the second draw leaves, where 0.25 has been written and where it has not, over a clear to 0.375.
+    // The result of the second draw after a clear to 0.375, with 0.25 written by the first draw or not.
     let cases = [
         (Compare::Less, true, RED),
         (Compare::LessEqual, true, RED),
@@ -145,7 +146,7 @@ fn depth_is_compared_and_written() {
         for (compare, writes, expected) in cases {
             let clear = if format == TextureFormat::Depth32Float { 0.375f32.to_bits() } else { 0x60_0000 << 8 | 7 };
             let depths = words(&[clear; PIXELS]);
-            let depth = Some(Depth { words: &depths, format, compare, writes });
+            let depth = Some(DepthAttachment { words: &depths, format, compare, writes });
             assert_eq!(
                 first(Attachments { depth, ..none(1) }, Blend::Replace, &near_then_far),
                 expected,
@@ -153,42 +154,44 @@ fn depth_is_compared_and_written() {
             );
             let is_written = writes && expected != [0.0; 4];
             assert_eq!(read(&depths)[0] != clear, is_written, "{compare:?} {format:?}");
-            assert!(format == TextureFormat::Depth32Float || read(&depths)[0] & 0xff == 7, "the stencil stays");
+            assert!(format == TextureFormat::Depth32Float || read(&depths)[0] & 0xff == 7, "the stencil is unchanged");
         }
     }
 }
 
 #[test]
-fn several_targets_get_their_own_colours() {
+fn several_attachments_get_separate_colours() {
     let (a, b, list) = (zeros(PIXELS), zeros(2 * PIXELS), zeros(64));
-    let bytes = Target { words: &a, texel: Texel::Format(TextureFormat::Rgba8Unorm), blend: Blend::Replace };
-    let pairs = Target { words: &b, texel: Texel::Format(TextureFormat::Rg32Float), blend: Blend::Max };
-    let text = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
-        @fragment fn main(in: Varyings) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
+    let bytes = ColorAttachment { words: &a, texel: Texel::Format(TextureFormat::Rgba8Unorm), blend: Blend::Replace };
+    let pairs = ColorAttachment { words: &b, texel: Texel::Format(TextureFormat::Rg32Float), blend: Blend::Max };
+    let shader = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
+        @fragment fn main(in: VertexOutput) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
     let attachments = Attachments { targets: vec![bytes, pairs], ..none(1) };
-    let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
+    let call = TestDraw { shader, attachments, list: &list, coverage: Coverage::PerSample };
     assert_eq!(call.draw(&whole(0.75, [1.0, 0.0, 0.2, 1.0])), PIXELS as u64);
     assert_eq!(read(&a), vec![0xff33_00ff; PIXELS]);
     assert_eq!(read(&b)[..2], [0, 0.75f32.to_bits()], "max(0, -0.75) and max(0, 0.75)");
 }
 
-/// Myers & Bavoil 2007: the i-th fragment of a pixel lands in sample i; where the middle decides, at edges too.
+/// Myers & Bavoil 2007: the i-th fragment of a pixel is stored in sample i; with whole-pixel coverage, at edges too.
 #[test]
 fn stencil_routing_sends_fragments_to_samples_one_by_one() {
     const SAMPLES: u32 = 4;
     let (routing, output, list) = (zeros(PIXELS * 4), zeros(4 * PIXELS * 4), zeros(64));
-    let stencil = |compare, fail, pass, reference| Stencil { words: &routing, compare, fail, pass, reference };
+    let stencil =
+        |compare, fail, pass, reference| StencilAttachment { words: &routing, compare, fail, pass, reference };
     for sample in 0..SAMPLES {
         let state = stencil(Compare::Always, StencilOperation::Keep, StencilOperation::Replace, sample + 2);
         let attachments = Attachments { stencil: Some(state), mask: 1 << sample, ..none(SAMPLES) };
-        let call = Call { text: "@fragment fn main() {}", attachments, list: &list, coverage: Coverage::WholePixel };
+        let call =
+            TestDraw { shader: "@fragment fn main() {}", attachments, list: &list, coverage: Coverage::WholePixel };
         assert_eq!(call.draw(&whole(0.5, RED)), PIXELS as u64);
     }
     let state = stencil(Compare::Equal, StencilOperation::DecrementClamp, StencilOperation::DecrementClamp, 2);
     let targets = vec![target(&output, Blend::Replace)];
     let attachments = Attachments { stencil: Some(state), targets, ..none(SAMPLES) };
-    let call = Call { text: PLAIN, attachments, list: &list, coverage: Coverage::WholePixel };
-    // The lower left half of the frame, thrice: the diagonal runs through pixels and leaves their samples on both sides.
+    let call = TestDraw { shader: PLAIN, attachments, list: &list, coverage: Coverage::WholePixel };
+    // The lower left half of the frame, three times. The diagonal divides the samples of pixels.
     let half = |red: f32| -> Corners {
         [[-1.0, 1.2], [-1.0, -1.0], [1.2, -1.0]].map(|[x, y]| ([x, y, 0.5, 1.0], [red, 0.0, 0.0, 1.0])).to_vec()
     };
@@ -199,58 +202,64 @@ fn stencil_routing_sends_fragments_to_samples_one_by_one() {
     let red = |sample: usize, pixel: usize| f32::from_bits(seen[4 * (sample * PIXELS + pixel)]);
     let mut covered = 0;
     for pixel in 0..PIXELS {
-        let held = [0, 1, 2, 3].map(|sample| red(sample, pixel));
-        assert!(held == [0.25, 0.5, 0.75, 0.0] || held == [0.0; 4], "pixel {pixel}: {held:?}");
-        covered += usize::from(held[0] > 0.0);
+        let stored = [0, 1, 2, 3].map(|sample| red(sample, pixel));
+        assert!(stored == [0.25, 0.5, 0.75, 0.0] || stored == [0.0; 4], "pixel {pixel}: {stored:?}");
+        covered += usize::from(stored[0] > 0.0);
     }
     assert!(covered > 6 && covered < PIXELS, "{covered}");
 }
 
 #[test]
 fn samples_are_covered_one_by_one_and_masked() {
-    // Everything left of x = 1.5 pixels.
+    // Covers everything left of x = 1.5 pixels.
     let left: Corners = [[-0.25, 5.0], [-9.0, 0.0], [-0.25, -5.0]].map(|[x, y]| ([x, y, 0.5, 1.0], RED)).to_vec();
     let shaders = [
-        // Of the standard eight, those left of the middle are 1, 3, 4 and 5.
+        // Of the eight standard samples, 1, 3, 4 and 5 are left of the centre.
         (PLAIN, 8 + 4),
         (
             "struct Out { @location(0) c: vec4<f32>, @builtin(sample_mask) mask: u32 }
-          @fragment fn main(in: Varyings) -> Out { return Out(in.color, 1u); }",
+          @fragment fn main(in: VertexOutput) -> Out { return Out(in.color, 1u); }",
             1,
         ),
         (
-            "@fragment fn main(in: Varyings, @builtin(sample_index) sample: u32) -> @location(0) vec4<f32> {
+            "@fragment fn main(in: VertexOutput, @builtin(sample_index) sample: u32) -> @location(0) vec4<f32> {
             if sample != 2u { discard; }
             return in.color;
           }",
             1,
         ),
     ];
-    for (text, expected) in shaders {
+    for (shader, expected) in shaders {
         let (output, list) = (zeros(4 * PIXELS * 8), zeros(64));
         let attachments = Attachments { targets: vec![target(&output, Blend::Replace)], ..none(8) };
-        let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
+        let call = TestDraw { shader, attachments, list: &list, coverage: Coverage::PerSample };
         let passed = call.draw(&left);
         let seen = read(&output);
         let written = (0..8 * PIXELS).filter(|texel| seen[4 * texel] != 0).count();
         assert_eq!(passed, written as u64);
-        assert_eq!(written, expected * SIZE as usize, "{text}");
+        assert_eq!(written, expected * SIZE as usize, "{shader}");
     }
 }
 
 #[test]
-fn early_tests_come_before_the_shader_and_survive_a_discard() {
+fn early_tests_precede_the_shader_and_write_before_a_discard() {
     for is_early in [false, true] {
         let (depths, list) = (words(&[0.5f32.to_bits(); PIXELS]), zeros(64));
-        let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
+        let depth = DepthAttachment {
+            words: &depths,
+            format: TextureFormat::Depth32Float,
+            compare: Compare::Less,
+            writes: true,
+        };
         let attachments = Attachments { depth: Some(depth), is_early, ..none(1) };
-        let text = "@fragment fn main(in: Varyings) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
-        let call = Call { text, attachments, list: &list, coverage: Coverage::PerSample };
+        let shader =
+            "@fragment fn main(in: VertexOutput) { atomicAdd(&list[0], 1u); if in.position.x < 2.0 { discard; } }";
+        let call = TestDraw { shader, attachments, list: &list, coverage: Coverage::PerSample };
         call.draw(&whole(0.75, RED));
         assert_eq!(
             read(&list)[0],
             if is_early { 0 } else { PIXELS as u32 },
-            "what lies behind runs only if tests are late"
+            "a fragment behind runs only if tests are late"
         );
         call.draw(&whole(0.25, RED));
         let expected = if is_early { 0.25f32 } else { 0.5 };
@@ -264,19 +273,21 @@ fn early_tests_come_before_the_shader_and_survive_a_discard() {
 }
 
 #[test]
-fn a_shader_may_say_its_depth() {
+fn a_shader_may_write_its_depth() {
     let (depths, list) = (words(&[1.0f32.to_bits(); PIXELS]), zeros(64));
-    let depth = Depth { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
-    let text = "@fragment fn main(in: Varyings) -> @builtin(frag_depth) f32 { return in.color.r; }";
+    let depth =
+        DepthAttachment { words: &depths, format: TextureFormat::Depth32Float, compare: Compare::Less, writes: true };
+    let shader = "@fragment fn main(in: VertexOutput) -> @builtin(frag_depth) f32 { return in.color.r; }";
     let attachments = Attachments { depth: Some(depth), ..none(1) };
-    Call { text, attachments, list: &list, coverage: Coverage::PerSample }.draw(&whole(0.1, [0.625, 0.0, 0.0, 0.0]));
+    TestDraw { shader, attachments, list: &list, coverage: Coverage::PerSample }
+        .draw(&whole(0.1, [0.625, 0.0, 0.0, 0.0]));
     assert_eq!(read(&depths)[5], 0.625f32.to_bits());
 }
 
 #[test]
-fn attributes_are_interpolated_as_they_are_declared() {
-    let text =
-        "@fragment fn main(in: Varyings, @builtin(primitive_index) index: u32, @builtin(front_facing) front: bool) {
+fn attributes_are_interpolated_as_declared() {
+    let shader =
+        "@fragment fn main(in: VertexOutput, @builtin(primitive_index) index: u32, @builtin(front_facing) front: bool) {
         let at = 8u * (u32(in.position.y) * 4u + u32(in.position.x));
         atomicStore(&list[at], bitcast<u32>(in.color.r));
         atomicStore(&list[at + 1u], bitcast<u32>(in.straight));
@@ -286,13 +297,13 @@ fn attributes_are_interpolated_as_they_are_declared() {
         atomicStore(&list[at + 5u], bitcast<u32>(in.position.w));
     }";
     let list = zeros(8 * PIXELS);
-    // From w = 1 on the left to w = 3 on the right; red from 0 to 1; the first corner is 4, the others are 7 tenths.
+    // w is 1 on the left and 3 on the right, red goes from 0 to 1; alpha is 4 tenths at the first corner, 7 at the others.
     let corner = |x: f32, y: f32, w: f32, red: f32, tenths: f32| {
         ([x * w, y * w, 0.5 * w, w], [red, 0.0, 0.0, 0.1 * tenths + 0.05])
     };
     let (a, b) = (corner(-1.0, 1.0, 1.0, 0.0, 4.0), corner(-1.0, -1.0, 1.0, 0.0, 7.0));
     let (c, d) = (corner(1.0, -1.0, 3.0, 1.0, 7.0), corner(1.0, 1.0, 3.0, 1.0, 7.0));
-    Call { text, attachments: none(1), list: &list, coverage: Coverage::PerSample }.draw(&vec![a, b, c, a, c, d]);
+    TestDraw { shader, attachments: none(1), list: &list, coverage: Coverage::PerSample }.draw(&vec![a, b, c, a, c, d]);
     let seen = read(&list);
     for pixel in 0..PIXELS {
         let (x, y) = (pixel % 4, pixel / 4);
@@ -303,16 +314,16 @@ fn attributes_are_interpolated_as_they_are_declared() {
         assert!(close(words[0], share / 3.0 / inverse_w), "perspective at {x}, {y}");
         assert!(close(words[1], share), "linear at {x}, {y}");
         assert_eq!((words[2], words[4]), (4, 1), "flat and facing at {x}, {y}");
-        // Below the diagonal lies the first; samples on it are the second's, whose left edge it is... or the first's top.
+        // The first triangle is below the diagonal. The top-left rule assigns samples on it, which are not tested.
         assert!(x == y || words[3] == u32::from(x > y), "primitive at {x}, {y}");
         assert!(close(words[5], inverse_w));
     }
 }
 
 #[test]
-fn a_shader_that_does_not_end_is_an_error() {
+fn a_shader_that_does_not_terminate_is_an_error() {
     let list = zeros(1);
-    let text = "@fragment fn main(in: Varyings) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
-    let call = Call { text, attachments: none(1), list: &list, coverage: Coverage::PerSample };
-    assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("for ever"));
+    let shader = "@fragment fn main(in: VertexOutput) { loop { if atomicLoad(&list[0]) != 0u { break; } } }";
+    let call = TestDraw { shader, attachments: none(1), list: &list, coverage: Coverage::PerSample };
+    assert!(call.try_draw(&whole(0.5, RED)).unwrap_err().contains("does not terminate"));
 }

@@ -1,8 +1,7 @@
-//! Objects by their boxes: which of them are seen, as far as anybody has asked in this frame (D13 §3.3).
+//! Object culling by occlusion queries of bounding boxes (D13 §3.3).
 //!
-//! In: the words of vertices and the samples that passed. Out: the parts of the index list that are still drawn. An object whose box
-//! failed once stays dropped until the frame ends: what is peeled away does not come back. A box is drawn as it is, as on a GPU: what
-//! lies beyond by less than its depths are rounded by may be dropped with it.
+//! An object whose box failed once stays dropped until the frame ends: peeled layers do not return. A box is drawn without a
+//! margin, as on a GPU, so an object that is behind by less than the rounding of depths may be dropped too.
 
 use std::ops::Range;
 
@@ -11,16 +10,16 @@ use fragbuf_frame::box_vertices;
 use super::Frame;
 
 impl Frame<'_> {
-    /// The objects that the query `anchor` has not dropped.
-    pub(super) fn objects(&self, anchor: &str) -> Vec<Range<u32>> {
+    /// Returns the objects that the query `name` has not dropped.
+    pub(super) fn objects(&self, name: &str) -> Vec<Range<u32>> {
         let plan = &self.code.plan;
         let is_dropped =
-            |number: usize| plan.pass_id(anchor).is_some_and(|query| self.cursor.is_dropped(plan, query, number));
+            |number: usize| plan.pass_id(name).is_some_and(|query| self.cursor.is_dropped(plan, query, number));
         let all = self.mesh_objects().into_iter().enumerate();
         all.filter(|(number, _)| !is_dropped(*number)).map(|(_, object)| object).collect()
     }
 
-    /// All objects; a mesh that names none is one.
+    /// Returns all objects; a mesh without objects is one object.
     pub(super) fn mesh_objects(&self) -> Vec<Range<u32>> {
         let end = self.mesh.indices.len() as u32;
         let clipped = |object: &Range<u32>| object.start.min(end)..object.end.min(end);
@@ -28,7 +27,7 @@ impl Frame<'_> {
         if objects.is_empty() { std::iter::once(0..end).collect() } else { objects.iter().map(clipped).collect() }
     }
 
-    /// The corners of the box around an object, as vertices; `None`: it has none.
+    /// Returns the corners of the bounding box of an object as vertices; `None`: the object is empty.
     pub(super) fn corners(&self, object: &Range<u32>, stride: usize) -> Option<Vec<u32>> {
         let indices = self.mesh.indices.get(object.start as usize..object.end as usize)?;
         let positions =

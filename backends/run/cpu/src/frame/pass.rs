@@ -1,131 +1,149 @@
-//! One pass of a frame: its programs with the memory that they see, drawn or dispatched.
+//! Runs one pass of a frame: binds memory to its programs, then draws or dispatches.
 //!
-//! In: a run of a pass. Out: changed memory, the samples that passed, the time it took. What the pass says and this device does
-//! not run is refused by name before anything is changed.
+//! A pass that this device does not support is an error before it changes memory.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use fragbuf_codegen::{PassId, PlannedPass};
-use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, Run, Values, is_cut_by_near_plane, unsupported};
-use fragbuf_interpreter::{Program, Space};
+use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, PassRun, Values, is_cut_by_near_plane, unsupported};
+use fragbuf_interpreter::{Bytecode, Space};
 use fragbuf_templates::vocabulary::{Access, Coverage, Kind, Objects, Pass};
 
 use super::Frame;
-use super::call::{call, workgroups};
+use super::draw_arguments::{draw_arguments, workgroups};
 use crate::Error;
 use crate::attachment::Attachments;
+use crate::bound_texture::BoundTexture;
 use crate::code::PassCode;
 use crate::compute::compute;
-use crate::device::Stage;
-use crate::draw::{Call, Draw, Drawn, draw};
-use crate::interface::Varyings;
+use crate::draw::{DrawResult, draw};
+use crate::draw_call::{DrawArguments, DrawCall};
+use crate::interface::VertexOutputLayout;
 use crate::memory::{Words, words};
-use crate::sampled::Sampled;
+use crate::picture::PassProgress;
 use crate::vertices;
 use crate::view::View;
 
-/// The stages of a draw.
-type Stages<'a> = (&'a Program, &'a Program);
+/// The vertex and fragment programs of a draw.
+type StagePrograms<'a> = (&'a Bytecode, &'a Bytecode);
 
 impl Frame<'_> {
     /// Runs a pass.
-    pub(super) fn pass(&mut self, run: Run) -> Result<(), Error> {
+    pub(super) fn pass(&mut self, run: PassRun) -> Result<(), Error> {
         let code = self.code;
         let (pass, at) = (&code.plan.passes[run.pass.0], run.pass.0);
-        check(pass)?;
+        reject_feedback(pass)?;
         let start = Instant::now();
         self.device.memory.arrange(&code.plan, run.flipped);
         let values = self.device.values.in_iteration(run.iteration);
         let uniforms = words(&values.frame_words(&code.plan, 0, run.iteration)?);
-        let fault = match (&code.passes[at], &pass.kind) {
+        let out_of_bounds = match (&code.passes[at], &pass.kind) {
             (PassCode::Compute(program), Kind::Compute { .. }) => {
                 let counts = workgroups(self, pass, &values)?;
                 let view = self.view(program, &uniforms)?;
-                compute(program, &view, counts).map_err(|how| Error::Stuck { pass: pass.anchor.clone(), how })?
+                compute(program, &view, counts)
+                    .map_err(|reason| Error::NotTerminating { pass: pass.name.clone(), reason })?
             }
             (PassCode::Draw { vertex, fragment }, Kind::Geometry | Kind::Fullscreen) => {
                 let stages = (vertex, fragment);
                 let drawn = match pass.objects {
-                    Objects::Boxes => self.boxes(run.pass, &values, stages, &uniforms)?,
-                    _ => self.scene(pass, &values, stages, &uniforms)?,
+                    Objects::Boxes => self.draw_boxes(run.pass, &values, stages, &uniforms)?,
+                    _ => self.draw_scene(pass, &values, stages, &uniforms)?,
                 };
                 self.samples[at] = drawn.samples;
-                drawn.fault
+                drawn.out_of_bounds
             }
             _ => {
-                return Err(unsupported(format!("pass `{}`: its entry points are not of its kind", pass.anchor)).into());
+                return Err(
+                    unsupported(format!("pass `{}`, whose entry points do not match its kind", pass.name)).into()
+                );
             }
         };
-        if fault.is_some() && !self.out_of_bounds.contains(&pass.anchor) {
-            self.out_of_bounds.push(pass.anchor.clone());
+        if out_of_bounds.is_some() && !self.out_of_bounds.contains(&pass.name) {
+            self.out_of_bounds.push(pass.name.clone());
         }
         self.times[at] += start.elapsed().as_secs_f64() * 1000.0;
         Ok(())
     }
 
-    /// The scene, or a triangle over the whole frame.
-    fn scene(&self, pass: &PlannedPass, values: &Values, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
+    /// Draws the scene, or a triangle over the whole frame.
+    fn draw_scene(
+        &self,
+        pass: &PlannedPass,
+        values: &Values,
+        stages: StagePrograms<'_>,
+        uniforms: &Words,
+    ) -> Result<DrawResult, Error> {
         let (vertices, indices) = match pass.kind {
             Kind::Geometry => (self.mesh.vertices, Some(self.mesh.indices)),
             _ => (&[][..], None),
         };
-        let call =
-            Draw { vertices, indices, call: call(self, pass)?, ..self.prepared(pass, values, stages, uniforms)? };
-        // Millionths, so that threads can add them up.
+        let call = DrawCall {
+            vertices,
+            indices,
+            arguments: draw_arguments(self, pass)?,
+            ..self.empty_draw(pass, values, stages, uniforms)?
+        };
+        // In millionths, so that threads can add atomically.
         let done = AtomicU64::new(0);
         let report = |part: f64| {
             let before = done.fetch_add((1.0e6 * part) as u64, Ordering::Relaxed);
-            (self.progress)(Stage { pass: &pass.anchor, share: 1.0e-6 * before as f64 + part });
+            (self.progress)(PassProgress { pass: &pass.name, share: 1.0e-6 * before as f64 + part });
         };
-        draw(&call, &report).map_err(|what| refused(pass, what))
+        draw(&call, &report).map_err(|what| shader_error(pass, what))
     }
 
-    /// The box of every object that has not been dropped; what is found out of each is kept for the cursor. The samples of
-    /// all.
-    fn boxes(&mut self, query: PassId, values: &Values, stages: Stages<'_>, uniforms: &Words) -> Result<Drawn, Error> {
+    /// Draws the box of every object that is not dropped, and keeps the result per object for the cursor.
+    fn draw_boxes(
+        &mut self,
+        query: PassId,
+        values: &Values,
+        stages: StagePrograms<'_>,
+        uniforms: &Words,
+    ) -> Result<DrawResult, Error> {
         let pass = &self.code.plan.passes[query.0];
-        let mut all = Drawn::default();
-        let mut found = Vec::new();
-        let prepared = self.prepared(pass, values, stages, uniforms)?;
-        let varyings = Varyings::of(stages.0).map_err(|what| refused(pass, what))?;
+        let mut all = DrawResult::default();
+        let mut visible = Vec::new();
+        let empty = self.empty_draw(pass, values, stages, uniforms)?;
+        let layout = VertexOutputLayout::of(stages.0).map_err(|what| shader_error(pass, what))?;
         let stride = vertices::stride(stages.0);
         for (number, object) in self.mesh_objects().iter().enumerate() {
-            found.push(1);
-            let is_asked = !self.cursor.is_dropped(&self.code.plan, query, number);
-            let Some(corners) = self.corners(object, stride).filter(|_| is_asked) else { continue };
-            let placed = vertices::run((stages.0, &prepared.vertex.1), &corners, BOX_CORNERS, 0);
-            let placed = placed.map_err(|what| refused(pass, what))?;
-            let crosses = placed.chunks(varyings.stride).any(|vertex| {
-                let [_, _, z, w] = varyings.position_in(vertex);
+            visible.push(1);
+            let is_queried = !self.cursor.is_dropped(&self.code.plan, query, number);
+            let Some(corners) = self.corners(object, stride).filter(|_| is_queried) else { continue };
+            let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, BOX_CORNERS, 0);
+            let transformed = transformed.map_err(|what| shader_error(pass, what))?;
+            let crosses = transformed.chunks(layout.stride).any(|vertex| {
+                let [_, _, z, w] = layout.position_in(vertex);
                 is_cut_by_near_plane(z, w)
             });
-            let call = Draw {
+            let call = DrawCall {
                 vertices: &corners,
                 indices: Some(&BOX_TRIANGLES),
-                call: Call::once(BOX_TRIANGLES.len() as u32 / 3),
-                attachments: prepared.attachments.clone(),
-                vertex: prepared.vertex.clone(),
-                fragment: prepared.fragment.clone(),
-                ..prepared
+                arguments: DrawArguments::once(BOX_TRIANGLES.len() as u32 / 3),
+                attachments: empty.attachments.clone(),
+                vertex: empty.vertex.clone(),
+                fragment: empty.fragment.clone(),
+                ..empty
             };
-            let drawn = draw(&call, &|_| {}).map_err(|what| refused(pass, what))?;
+            let drawn = draw(&call, &|_| {}).map_err(|what| shader_error(pass, what))?;
             all.samples += drawn.samples;
-            all.fault = all.fault.or(drawn.fault);
-            found[number] = u32::from(drawn.samples > 0 || crosses);
+            all.out_of_bounds = all.out_of_bounds.or(drawn.out_of_bounds);
+            visible[number] = u32::from(drawn.samples > 0 || crosses);
         }
-        self.objects = found;
+        self.objects = visible;
         Ok(all)
     }
 
-    /// A draw of nothing: stages, attachments and what else the pass says.
-    fn prepared<'v>(
+    /// Returns a draw call of the pass without triangles.
+    fn empty_draw<'v>(
         &'v self,
         pass: &PlannedPass,
         values: &Values,
-        (vertex, fragment): (&'v Program, &'v Program),
+        (vertex, fragment): (&'v Bytecode, &'v Bytecode),
         uniforms: &'v Words,
-    ) -> Result<Draw<'v>, Error> {
+    ) -> Result<DrawCall<'v>, Error> {
         let plan = &self.code.plan;
         let settings = self.device.settings;
         let mut numbers = [1, u32::MAX, 0];
@@ -142,12 +160,12 @@ impl Frame<'_> {
             Some((self.device.memory.resources[index].as_slice(), plan.resources[index].resource.element))
         };
         let pixels = settings.width as usize * settings.height as usize;
-        Ok(Draw {
+        Ok(DrawCall {
             vertex: (vertex, self.view(vertex, uniforms)?),
             fragment: (fragment, self.view(fragment, uniforms)?),
             vertices: &[],
             indices: None,
-            call: Call::once(0),
+            arguments: DrawArguments::once(0),
             size: (settings.width, settings.height),
             attachments: Attachments::of(pass, numbers, &textures, (&self.output, pixels))?,
             coverage,
@@ -155,8 +173,8 @@ impl Frame<'_> {
         })
     }
 
-    /// The buffers and textures of a program, by the plan's bindings.
-    fn view<'v>(&'v self, program: &Program, frame: &'v Words) -> Result<View<'v>, Error> {
+    /// Binds the resources of the plan to the buffers and textures of a program.
+    fn view<'v>(&'v self, program: &Bytecode, frame: &'v Words) -> Result<View<'v>, Error> {
         let resources = &self.code.plan.resources;
         let planned = |binding: u32| {
             let index = resources.iter().position(|planned| planned.binding == binding)?;
@@ -177,19 +195,19 @@ impl Frame<'_> {
             let found = texture.binding.and_then(|(_, binding)| planned(binding));
             let (words, element) =
                 found.ok_or_else(|| unsupported(format!("`{}`, which the plan does not have", texture.name)))?;
-            Sampled::of(texture, words, element, size)
+            BoundTexture::of(texture, words, element, size)
         });
         let textures = textures.collect::<Result<_, fragbuf_frame::Error>>()?;
         Ok(View { buffers: buffers.collect(), textures, wide: &self.wide })
     }
 }
 
-fn refused(pass: &Pass, what: String) -> Error {
-    Error::Shader { pass: pass.anchor.clone(), what }
+fn shader_error(pass: &Pass, what: String) -> Error {
+    Error::Shader { pass: pass.name.clone(), what }
 }
 
-/// Refuses what no device runs: a texture that is read while it is drawn to. Depth that is only tested may be read.
-fn check(pass: &Pass) -> Result<(), Error> {
+/// Rejects a texture that the pass both reads and writes. It may read depth that it only tests.
+fn reject_feedback(pass: &Pass) -> Result<(), Error> {
     let state = &pass.state;
     let is_written = |name: &str| {
         let depth = state.depth.as_ref().is_some_and(|depth| depth.resource == name && depth.write);
@@ -199,7 +217,7 @@ fn check(pass: &Pass) -> Result<(), Error> {
     let sampled = pass.uses.iter().filter(|usage| usage.access == Access::Sampled);
     match sampled.into_iter().find(|usage| is_written(&usage.resource)) {
         Some(usage) => {
-            let what = format!("pass `{}`: `{}`, which it reads and draws to at once", pass.anchor, usage.resource);
+            let what = format!("pass `{}`: `{}`, which it both reads and draws to", pass.name, usage.resource);
             Err(unsupported(what).into())
         }
         None => Ok(()),

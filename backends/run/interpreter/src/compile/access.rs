@@ -1,54 +1,54 @@
-//! Parts of values and of what pointers point to.
+//! Compiles accesses to elements and members, of values and through pointers.
 
 use naga::{Expression, Handle};
 
-use super::place::{Home, Spot};
-use super::{Compiler, Result, Value};
+use super::compiler::{Compiler, Result, Value};
+use super::pointer::{Pointer, PointerBase};
 use crate::operation::Op;
 
 impl Compiler<'_> {
-    /// `base[index]`
+    /// Compiles `base[index]`.
     pub(super) fn access(&mut self, base: Handle<Expression>, index: Handle<Expression>) -> Result<Value> {
-        let inner = self.pointee_or_own(base)?;
+        let inner = self.pointee_or_type(base)?;
         let index = self.words(index)?;
         if self.is_pointer(base) {
-            let spot = self.spot(base)?;
-            return Ok(Value::Spot(self.indexed(spot, &inner, index)?));
+            let target = self.pointer(base)?;
+            return Ok(Value::Pointer(self.element_indexed(target, &inner, index)?));
         }
         let first = self.words(base)?;
-        let length = self.shapes.dense(&inner)?;
-        // A value is a variable that nobody writes.
-        let whole = Spot { home: Home::Local { first, length }, offset: 0, moving: None };
-        let part = self.indexed(whole, &inner, index)?;
-        let kind = self.shapes.part_type(&inner, 0)?;
+        let length = self.layouts.dense(&inner)?;
+        // A value is like a variable that is never written.
+        let whole = Pointer::to_variable(first, length);
+        let part = self.element_indexed(whole, &inner, index)?;
+        let kind = self.layouts.element_type(&inner, 0)?;
         Ok(Value::Words(self.load(part, &kind)?))
     }
 
-    /// `base.member`, or `base[number]` with a number that is known.
+    /// Compiles `base.member`, or `base[number]` with a constant number.
     pub(super) fn access_at(&mut self, base: Handle<Expression>, number: u32) -> Result<Value> {
-        let inner = self.pointee_or_own(base)?;
+        let inner = self.pointee_or_type(base)?;
         if self.is_pointer(base) {
-            let spot = self.spot(base)?;
-            if let Ok(parts) = self.shapes.parts(&inner)
-                && parts.count.is_none()
+            let target = self.pointer(base)?;
+            if let Ok(elements) = self.layouts.elements(&inner)
+                && elements.count.is_none()
             {
                 let index = self.constant(number);
-                return Ok(Value::Spot(self.indexed(spot, &inner, index)?));
+                return Ok(Value::Pointer(self.element_indexed(target, &inner, index)?));
             }
-            return Ok(Value::Spot(self.part_of(spot, &inner, number)?));
+            return Ok(Value::Pointer(self.element_at(target, &inner, number)?));
         }
         let first = self.words(base)?;
-        Ok(Value::Words(first + self.shapes.part(&inner, number)?.dense))
+        Ok(Value::Words(first + self.layouts.element_offset(&inner, number)?.dense))
     }
 
-    /// Elements of an array at the end of a buffer.
+    /// Compiles `arrayLength` of an array at the end of a buffer.
     pub(super) fn array_length(&mut self, array: Handle<Expression>) -> Result<u32> {
-        let spot = self.spot(array)?;
-        let inner = self.pointee_or_own(array)?;
-        let stride = self.shapes.parts(&inner)?.stride.buffer;
-        let Home::Shared { buffer } = spot.home else { return Err("the length of a variable".to_owned()) };
+        let target = self.pointer(array)?;
+        let inner = self.pointee_or_type(array)?;
+        let stride = self.layouts.elements(&inner)?.stride.buffer;
+        let PointerBase::Buffer { buffer } = target.base else { return Err("the length of a variable".to_owned()) };
         let to = self.take(1);
-        self.push(Op::Length { to, buffer, offset: spot.offset, stride });
+        self.push(Op::Length { to, buffer, offset: target.offset, stride });
         Ok(to)
     }
 }

@@ -1,14 +1,14 @@
-//! Conversions of value and of type.
+//! Compiles value conversions and bit casts.
 
 use naga::{Expression, Handle, ScalarKind};
 
-use super::{Compiler, Result};
+use super::compiler::{Compiler, Result};
 use crate::operation::{Op, Word};
 use crate::scalar::Unary;
 use crate::wide::Wide;
 
 impl Compiler<'_> {
-    /// `kind(expression)`, or the same bits as another kind where `bytes` says nothing.
+    /// Compiles `kind(expression)`; if `bytes` is `None`, a bit cast.
     pub(super) fn convert(
         &mut self,
         expression: Handle<Expression>,
@@ -18,13 +18,13 @@ impl Compiler<'_> {
         use ScalarKind::{Bool, Float, Sint, Uint};
         let inner = self.type_of(expression);
         let (from, width) = self.kind_of(inner)?;
-        let count = self.shapes.dense(inner)? / width;
+        let count = self.layouts.dense(inner)? / width;
         let a = self.words(expression)?;
         let wide = match bytes {
             None => return Ok(a),
             Some(8) if kind != Float => true,
             Some(1 | 4) => false,
-            Some(bytes) => return Err(format!("numbers of {} bits", 8 * bytes)),
+            Some(bytes) => return Err(format!("{}-bit numbers", 8 * bytes)),
         };
         Ok(match (width, wide) {
             (1, false) => {

@@ -1,47 +1,47 @@
-//! Expressions: each becomes words of the frame, or a place.
+//! Compiles expressions to words, pointers or textures.
 
 use naga::{Expression, Handle, RelationalFunction, TypeInner, VectorSize};
 
+use super::compiler::{Compiler, Result, Value};
 use super::constant::literal_words;
-use super::place::Spot;
-use super::{Compiler, Result, Value};
+use super::pointer::Pointer;
+use crate::layout::{count, is_pointer};
 use crate::operation::{Op, Word};
 use crate::scalar::{Binary, Ternary, Unary};
-use crate::shape::{count, is_pointer};
 
 impl Compiler<'_> {
-    /// What an expression is: what it was emitted as, or what it is anywhere.
+    /// Returns the value of an expression. An expression that needs no `Emit` statement is compiled at its first use.
     pub(super) fn value(&mut self, expression: Handle<Expression>) -> Result<Value> {
-        match self.frame.values[expression.index()] {
+        match self.callee.values[expression.index()] {
             Some(value) => Ok(value),
             None => {
                 self.emit(expression)?;
-                self.frame.values[expression.index()].ok_or_else(|| "a result before its statement".to_owned())
+                self.callee.values[expression.index()].ok_or_else(|| "a result that precedes its statement".to_owned())
             }
         }
     }
 
-    /// Evaluates an expression where the program stands.
+    /// Compiles an expression at the current instruction.
     pub(super) fn emit(&mut self, expression: Handle<Expression>) -> Result<()> {
         let value = self.evaluate(expression)?;
-        self.frame.values[expression.index()] = Some(value);
+        self.callee.values[expression.index()] = Some(value);
         Ok(())
     }
 
     fn evaluate(&mut self, expression: Handle<Expression>) -> Result<Value> {
-        let function = self.frame.function;
+        let function = self.callee.function;
         let words = match &function.expressions[expression] {
-            Expression::Literal(literal) => self.row(&literal_words(literal)?),
+            Expression::Literal(literal) => self.constants(&literal_words(literal)?),
             Expression::Constant(constant) => {
                 let words = self.constant_value(self.module.constants[*constant].init)?;
-                self.row(&words)
+                self.constants(&words)
             }
             Expression::Override(handle) => {
                 let init = self.module.overrides[*handle].init.ok_or("an override without a value")?;
                 let words = self.constant_value(init)?;
-                self.row(&words)
+                self.constants(&words)
             }
-            Expression::ZeroValue(kind) => self.zero_value(self.shapes.inner(*kind))?,
+            Expression::ZeroValue(kind) => self.zero_value(self.layouts.inner(*kind))?,
             Expression::Compose { components, .. } => self.compose(components)?,
             Expression::Access { base, index } => return self.access(*base, *index),
             Expression::AccessIndex { base, index } => return self.access_at(*base, *index),
@@ -58,23 +58,23 @@ impl Compiler<'_> {
             }
             Expression::FunctionArgument(number) => {
                 return self
-                    .frame
+                    .callee
                     .arguments
                     .get(*number as usize)
                     .copied()
                     .ok_or_else(|| "a missing argument".to_owned());
             }
             Expression::GlobalVariable(handle) => {
-                return self.globals.get(handle).copied().ok_or_else(|| "a variable that was refused".to_owned());
+                return self.globals.get(handle).copied().ok_or_else(|| "an unsupported variable".to_owned());
             }
             Expression::LocalVariable(handle) => {
-                let place = self.frame.locals[handle.index()].ok_or("a variable that was refused")?;
-                return Ok(Value::Spot(Spot::local(place.0, place.1)));
+                let (first, length) = self.callee.locals[handle.index()].ok_or("an unsupported variable")?;
+                return Ok(Value::Pointer(Pointer::to_variable(first, length)));
             }
             Expression::Load { pointer } => {
-                let spot = self.spot(*pointer)?;
-                let inner = self.shapes.pointee(self.type_of(*pointer))?;
-                self.load(spot, &inner)?
+                let target = self.pointer(*pointer)?;
+                let inner = self.layouts.pointee(self.type_of(*pointer))?;
+                self.load(target, &inner)?
             }
             Expression::Unary { op, expr } => self.unary(*op, *expr)?,
             Expression::Binary { op, left, right } => self.binary(*op, *left, *right)?,
@@ -89,7 +89,7 @@ impl Compiler<'_> {
             Expression::CallResult(_)
             | Expression::AtomicResult { .. }
             | Expression::WorkGroupUniformLoadResult { .. } => {
-                return Err("a result before its statement".to_owned());
+                return Err("a result that precedes its statement".to_owned());
             }
             Expression::ImageLoad { image, coordinate, array_index: None, sample, level } => {
                 self.texel(*image, *coordinate, sample.or(*level))?
@@ -111,14 +111,14 @@ impl Compiler<'_> {
         Ok(Value::Words(words))
     }
 
-    fn row(&mut self, words: &[u32]) -> Word {
-        if let [one] = words { self.constant(*one) } else { self.constants_in_a_row(words) }
+    fn constants(&mut self, words: &[u32]) -> Word {
+        if let [one] = words { self.constant(*one) } else { self.consecutive_constants(words) }
     }
 
     fn compose(&mut self, components: &[Handle<Expression>]) -> Result<Word> {
         let mut parts = Vec::with_capacity(components.len());
         for component in components {
-            let width = self.shapes.dense(self.type_of(*component))?;
+            let width = self.layouts.dense(self.type_of(*component))?;
             parts.push((self.words(*component)?, width));
         }
         let to = self.take(parts.iter().map(|(_, width)| width).sum());
@@ -147,9 +147,9 @@ impl Compiler<'_> {
         reject: Handle<Expression>,
     ) -> Result<Word> {
         let inner = self.type_of(accept);
-        let total = self.shapes.dense(inner)?;
-        let conditions = self.shapes.dense(self.type_of(condition))?;
-        // A vector of conditions decides component by component, a single one decides all.
+        let total = self.layouts.dense(inner)?;
+        let conditions = self.layouts.dense(self.type_of(condition))?;
+        // A vector of conditions selects component by component, a scalar selects all.
         let each = if conditions == 1 { total } else { total / conditions };
         let (a, b, c) = (self.words(condition)?, self.words(accept)?, self.words(reject)?);
         let to = self.take(total);
@@ -161,7 +161,7 @@ impl Compiler<'_> {
     }
 
     fn relational(&mut self, function: RelationalFunction, argument: Handle<Expression>) -> Result<Word> {
-        let words = self.shapes.dense(self.type_of(argument))?;
+        let words = self.layouts.dense(self.type_of(argument))?;
         let a = self.words(argument)?;
         let op = match function {
             RelationalFunction::All => Err(Binary::And),
@@ -181,7 +181,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// `a[0] op a[1] op …`
+    /// Computes `a[0] op a[1] op …`.
     pub(super) fn fold(&mut self, op: Binary, a: Word, words: u32) -> Word {
         let mut sum = a;
         for word in 1..words {
@@ -196,9 +196,9 @@ impl Compiler<'_> {
         is_pointer(self.type_of(expression))
     }
 
-    /// What an expression points to, or its own type.
-    pub(super) fn pointee_or_own(&self, expression: Handle<Expression>) -> Result<TypeInner> {
+    /// Returns the type that an expression points to, or its own type.
+    pub(super) fn pointee_or_type(&self, expression: Handle<Expression>) -> Result<TypeInner> {
         let inner = self.type_of(expression);
-        if is_pointer(inner) { self.shapes.pointee(inner) } else { Ok(inner.clone()) }
+        if is_pointer(inner) { self.layouts.pointee(inner) } else { Ok(inner.clone()) }
     }
 }

@@ -1,25 +1,25 @@
-//! The end of compilation: constants get their words, and what can be known of the program is found out.
+//! Finishes a compilation: numbers the constants and analyses the program.
 
-use crate::live::{liveness, loops};
+use crate::bytecode::{Bytecode, InterfaceVariable};
+use crate::live::{in_loops, liveness};
 use crate::memory::Atomic;
 use crate::operation::{CONSTANT, Op, Word};
-use crate::program::{Input, Program};
 
-use super::Compiler;
+use super::compiler::Compiler;
 
 impl Compiler<'_> {
-    /// The word that always holds this number.
+    /// Returns the word of a constant.
     pub(super) fn constant(&mut self, number: u32) -> Word {
         if let Some(word) = self.constant_words.get(&number) {
             return *word;
         }
-        let word = self.constants_in_a_row(&[number]);
+        let word = self.consecutive_constants(&[number]);
         self.constant_words.insert(number, word);
         word
     }
 
-    /// The first of words that always hold these numbers.
-    pub(super) fn constants_in_a_row(&mut self, numbers: &[u32]) -> Word {
+    /// Returns the first of consecutive words with these constants.
+    pub(super) fn consecutive_constants(&mut self, numbers: &[u32]) -> Word {
         if let [one] = numbers
             && let Some(word) = self.constant_words.get(one)
         {
@@ -30,31 +30,36 @@ impl Compiler<'_> {
         first
     }
 
-    pub(super) fn finish(mut self, inputs: Vec<Input>, outputs: Vec<Input>, workgroup_size: [u32; 3]) -> Program {
-        let first_constant = self.highest;
-        let settled = |word: Word| if word >= CONSTANT { word - CONSTANT + first_constant } else { word };
+    pub(super) fn finish(
+        mut self,
+        inputs: Vec<InterfaceVariable>,
+        outputs: Vec<InterfaceVariable>,
+        workgroup_size: [u32; 3],
+    ) -> Bytecode {
+        let first_constant = self.peak;
+        let final_word = |word: Word| if word >= CONSTANT { word - CONSTANT + first_constant } else { word };
         for op in &mut self.ops {
-            op.touches(&mut |_, word, count| {
+            op.visit_operands(&mut |_, word, count| {
                 if count > 0 {
-                    *word = settled(*word);
+                    *word = final_word(*word);
                 }
             });
         }
-        // Outputs follow each other without a gap.
+        // Outputs are consecutive.
         let result =
             outputs.first().map_or(0, |first| first.words.start)..outputs.last().map_or(0, |last| last.words.end);
         let live = liveness(&self.ops, first_constant, &result);
         self.classify(&live.unread);
-        let mut image = self.privates;
-        let privates = image.len();
-        image.resize(first_constant as usize, 0);
-        image.extend(self.constants);
-        Program {
-            in_loop: loops(&self.ops),
+        let mut initial_words = self.privates;
+        let privates = initial_words.len();
+        initial_words.resize(first_constant as usize, 0);
+        initial_words.extend(self.constants);
+        Bytecode {
+            in_loop: in_loops(&self.ops),
             ops: self.ops,
             site_of: self.site_of,
             sites: self.sites,
-            image,
+            initial_words,
             privates,
             live: live.at_stops,
             inputs,
@@ -66,33 +71,34 @@ impl Compiler<'_> {
         }
     }
 
-    /// Which buffers the program writes, and which of them only by operations that commute. What is only read is read
-    /// without a stop.
+    /// Determines which buffers the program writes, and which only by operations that commute. Loads from the other
+    /// buffers become `Op::Constant`, at which machines do not stop.
     fn classify(&mut self, unread: &[usize]) {
         for (number, buffer) in self.buffers.iter_mut().enumerate() {
             let number = number as u16;
             let mut only: Option<Atomic> = None;
             let mut commutes = true;
             for (at, op) in self.ops.iter().enumerate() {
-                if let Op::Load { buffer: own, words: 2, .. }
-                | Op::Store { buffer: own, words: 2, .. }
-                | Op::Atomic { buffer: own, words: 2, .. } = *op
+                if let Op::Load { buffer: accessed, words: 2, .. }
+                | Op::Store { buffer: accessed, words: 2, .. }
+                | Op::Atomic { buffer: accessed, words: 2, .. } = *op
                 {
-                    buffer.is_wide |= own == number;
+                    buffer.is_wide |= accessed == number;
                 }
                 match *op {
-                    Op::Store { buffer: own, is_atomic, .. } if own == number => {
+                    Op::Store { buffer: accessed, is_atomic, .. } if accessed == number => {
                         buffer.is_written = true;
                         buffer.is_coherent |= is_atomic;
                         commutes = false;
                     }
-                    Op::Atomic { buffer: own, function, .. } if own == number => {
+                    Op::Atomic { buffer: accessed, function, .. } if accessed == number => {
                         buffer.is_written = true;
                         buffer.is_coherent = true;
-                        let goes = !matches!(function, Atomic::Exchange | Atomic::CompareExchange | Atomic::Subtract);
-                        commutes &= goes && *only.get_or_insert(function) == function && unread.contains(&at);
+                        let is_commutative =
+                            !matches!(function, Atomic::Exchange | Atomic::CompareExchange | Atomic::Subtract);
+                        commutes &= is_commutative && *only.get_or_insert(function) == function && unread.contains(&at);
                     }
-                    Op::Load { buffer: own, is_atomic, .. } if own == number => {
+                    Op::Load { buffer: accessed, is_atomic, .. } if accessed == number => {
                         buffer.is_coherent |= is_atomic;
                         commutes = false;
                     }

@@ -1,33 +1,25 @@
-//! Statements: blocks, branches, loops, stores, atomics, barriers.
+//! Compiles statements: blocks, branches, loops, stores, atomics and barriers.
 
 use naga::{
     AtomicFunction, Barrier, Block, Expression, Handle, ScalarKind, Statement, SwitchCase, SwitchValue, TypeInner,
 };
 
-use super::{Compiler, Result, Value};
+use super::compiler::{Compiler, PendingJumps, Result, Value};
+use crate::layout::{Layouts, scalar_of};
 use crate::memory::Atomic;
 use crate::operation::{Op, Word};
 use crate::scalar::Binary;
-use crate::shape::{Shapes, number};
-
-/// Jumps out of a loop or switch, to be told where to.
-#[derive(Default)]
-pub(super) struct Jumps {
-    breaks: Vec<usize>,
-    continues: Vec<usize>,
-    is_loop: bool,
-}
 
 impl<'m> Compiler<'m> {
     pub(super) fn block(&mut self, block: &'m Block) {
         for (statement, span) in block.span_iter() {
             self.at(*span);
             if let Err(what) = self.statement(statement) {
-                self.refuse(what);
+                self.report_unsupported(what);
             }
             if matches!(statement, Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue)
             {
-                // Nothing after it is ever reached.
+                // The statements after it are unreachable.
                 break;
             }
         }
@@ -37,31 +29,31 @@ impl<'m> Compiler<'m> {
         match statement {
             Statement::Emit(range) => {
                 for expression in range.clone() {
-                    self.at(self.frame.function.expressions.get_span(expression));
+                    self.at(self.callee.function.expressions.get_span(expression));
                     self.emit(expression)?;
                 }
             }
             Statement::Block(block) => self.block(block),
             Statement::If { condition, accept, reject } => self.branch(*condition, accept, reject)?,
             Statement::Switch { selector, cases } => self.switch(*selector, cases)?,
-            Statement::Loop { body, continuing, break_if } => self.repeat(body, continuing, *break_if)?,
+            Statement::Loop { body, continuing, break_if } => self.loop_statement(body, continuing, *break_if)?,
             Statement::Break => {
                 let jump = self.push(Op::Jump { to: 0 });
-                self.frame.loops.last_mut().ok_or("a break without a loop")?.breaks.push(jump);
+                self.callee.loops.last_mut().ok_or("a break outside a loop")?.breaks.push(jump);
             }
             Statement::Continue => {
                 let jump = self.push(Op::Jump { to: 0 });
-                let mut loops = self.frame.loops.iter_mut().rev();
-                loops.find(|jumps| jumps.is_loop).ok_or("a continue without a loop")?.continues.push(jump);
+                let mut loops = self.callee.loops.iter_mut().rev();
+                loops.find(|jumps| jumps.is_loop).ok_or("a continue outside a loop")?.continues.push(jump);
             }
             Statement::Return { value } => {
                 if let Some(value) = value {
-                    let count = self.shapes.dense(self.type_of(*value))?;
+                    let count = self.layouts.dense(self.type_of(*value))?;
                     let from = self.words(*value)?;
-                    self.push(Op::Copy { to: self.frame.result, from, count });
+                    self.push(Op::Copy { to: self.callee.result, from, count });
                 }
                 let jump = self.push(Op::Jump { to: 0 });
-                self.frame.returns.push(jump);
+                self.callee.returns.push(jump);
             }
             Statement::Kill => {
                 self.push(Op::Discard);
@@ -73,18 +65,18 @@ impl<'m> Compiler<'m> {
                 self.push(Op::Fence);
             }
             Statement::Store { pointer, value } => {
-                let spot = self.spot(*pointer)?;
-                let inner = self.shapes.pointee(self.type_of(*pointer))?;
+                let target = self.pointer(*pointer)?;
+                let inner = self.layouts.pointee(self.type_of(*pointer))?;
                 let from = self.words(*value)?;
-                self.store(spot, &inner, from)?;
+                self.store(target, &inner, from)?;
             }
             Statement::Atomic { pointer, fun, value, result } => self.atomic(*pointer, fun, *value, *result)?,
             Statement::WorkGroupUniformLoad { pointer, result } => {
                 self.push(Op::Barrier);
-                let spot = self.spot(*pointer)?;
-                let inner = self.shapes.pointee(self.type_of(*pointer))?;
-                let words = self.load(spot, &inner)?;
-                self.frame.values[result.index()] = Some(Value::Words(words));
+                let target = self.pointer(*pointer)?;
+                let inner = self.layouts.pointee(self.type_of(*pointer))?;
+                let words = self.load(target, &inner)?;
+                self.callee.values[result.index()] = Some(Value::Words(words));
                 self.push(Op::Barrier);
             }
             Statement::Call { function, arguments, result } => self.call(*function, arguments, *result)?,
@@ -99,17 +91,17 @@ impl<'m> Compiler<'m> {
         Ok(())
     }
 
-    fn here(&self) -> u32 {
+    fn next_index(&self) -> u32 {
         self.ops.len() as u32
     }
 
-    /// Tells jumps where they go: here.
-    pub(super) fn land(&mut self, jumps: &[usize]) {
-        let here = self.here();
-        self.aim(jumps, here);
+    /// Sets the target of jumps to the next instruction.
+    pub(super) fn patch_to_here(&mut self, jumps: &[usize]) {
+        let here = self.next_index();
+        self.patch(jumps, here);
     }
 
-    fn aim(&mut self, jumps: &[usize], target: u32) {
+    fn patch(&mut self, jumps: &[usize], target: u32) {
         for jump in jumps {
             if let Some(Op::Jump { to } | Op::JumpUnless { to, .. }) = self.ops.get_mut(*jump) {
                 *to = target;
@@ -122,33 +114,38 @@ impl<'m> Compiler<'m> {
         let to_reject = self.push(Op::JumpUnless { condition, to: 0 });
         self.block(accept);
         if reject.is_empty() {
-            self.land(&[to_reject]);
+            self.patch_to_here(&[to_reject]);
             return Ok(());
         }
         let to_end = self.push(Op::Jump { to: 0 });
-        self.land(&[to_reject]);
+        self.patch_to_here(&[to_reject]);
         self.block(reject);
-        self.land(&[to_end]);
+        self.patch_to_here(&[to_end]);
         Ok(())
     }
 
-    fn repeat(&mut self, body: &'m Block, continuing: &'m Block, break_if: Option<Handle<Expression>>) -> Result<()> {
-        let start = self.here();
-        self.frame.loops.push(Jumps { is_loop: true, ..Jumps::default() });
+    fn loop_statement(
+        &mut self,
+        body: &'m Block,
+        continuing: &'m Block,
+        break_if: Option<Handle<Expression>>,
+    ) -> Result<()> {
+        let start = self.next_index();
+        self.callee.loops.push(PendingJumps { is_loop: true, ..PendingJumps::default() });
         self.block(body);
-        let continues = self.frame.loops.last_mut().map(|jumps| std::mem::take(&mut jumps.continues));
-        self.land(&continues.unwrap_or_default());
+        let continues = self.callee.loops.last_mut().map(|jumps| std::mem::take(&mut jumps.continues));
+        self.patch_to_here(&continues.unwrap_or_default());
         self.block(continuing);
         let mut breaks = Vec::new();
         if let Some(condition) = break_if {
             let condition = self.words(condition)?;
-            let on = self.push(Op::JumpUnless { condition, to: 0 });
+            let next = self.push(Op::JumpUnless { condition, to: 0 });
             breaks.push(self.push(Op::Jump { to: 0 }));
-            self.land(&[on]);
+            self.patch_to_here(&[next]);
         }
         self.push(Op::Jump { to: start });
-        breaks.extend(self.frame.loops.pop().map(|jumps| jumps.breaks).unwrap_or_default());
-        self.land(&breaks);
+        breaks.extend(self.callee.loops.pop().map(|jumps| jumps.breaks).unwrap_or_default());
+        self.patch_to_here(&breaks);
         Ok(())
     }
 
@@ -170,25 +167,25 @@ impl<'m> Compiler<'m> {
             self.push(Op::Binary { op: Binary::NotEqual, to, a: selector, b });
             entries.push(vec![self.push(Op::JumpUnless { condition: to, to: 0 })]);
         }
-        let otherwise = self.push(Op::Jump { to: 0 });
-        self.frame.loops.push(Jumps::default());
+        let to_default = self.push(Op::Jump { to: 0 });
+        self.callee.loops.push(PendingJumps::default());
         for (index, case) in cases.iter().enumerate() {
-            self.land(&entries[index]);
+            self.patch_to_here(&entries[index]);
             if default == Some(index) {
-                self.land(&[otherwise]);
+                self.patch_to_here(&[to_default]);
             }
             self.block(&case.body);
             if !case.fall_through {
                 let jump = self.push(Op::Jump { to: 0 });
-                if let Some(jumps) = self.frame.loops.last_mut() {
+                if let Some(jumps) = self.callee.loops.last_mut() {
                     jumps.breaks.push(jump);
                 }
             }
         }
-        let breaks = self.frame.loops.pop().map(|jumps| jumps.breaks).unwrap_or_default();
-        self.land(&breaks);
+        let breaks = self.callee.loops.pop().map(|jumps| jumps.breaks).unwrap_or_default();
+        self.patch_to_here(&breaks);
         if default.is_none() {
-            self.land(&[otherwise]);
+            self.patch_to_here(&[to_default]);
         }
         Ok(())
     }
@@ -200,15 +197,15 @@ impl<'m> Compiler<'m> {
         value: Handle<Expression>,
         result: Option<Handle<Expression>>,
     ) -> Result<()> {
-        let spot = self.spot(pointer)?;
-        let inner = self.shapes.pointee(self.type_of(pointer))?;
-        let scalar = number(&inner).ok_or("an atomic operation on something else than a number")?;
+        let target = self.pointer(pointer)?;
+        let inner = self.layouts.pointee(self.type_of(pointer))?;
+        let scalar = scalar_of(&inner).ok_or("an atomic operation on a type other than a number")?;
         if scalar.kind == ScalarKind::Float {
             return Err("atomic operations on floats".to_owned());
         }
-        let words = Shapes::scalar(scalar)?;
+        let words = Layouts::scalar_words(scalar)?;
         let is_signed = scalar.kind == ScalarKind::Sint;
-        let (buffer, address) = self.shared_address(spot)?;
+        let (buffer, address) = self.shared_address(target)?;
         let value = self.words(value)?;
         let mut expected: Word = value;
         let function = match function {
@@ -231,23 +228,23 @@ impl<'m> Compiler<'m> {
         let to = self.take(words + exchanges);
         self.push(Op::Atomic { function, words: words as u8, buffer, to, address, value, expected });
         if let Some(result) = result {
-            self.frame.values[result.index()] = Some(Value::Words(to));
+            self.callee.values[result.index()] = Some(Value::Words(to));
         }
         Ok(())
     }
 
-    /// The words of an expression that is a value.
+    /// Returns the words of an expression that is a value.
     pub(super) fn words(&mut self, expression: Handle<Expression>) -> Result<Word> {
         match self.value(expression)? {
             Value::Words(words) => Ok(words),
-            Value::Spot(_) => Err("a pointer as a value".to_owned()),
+            Value::Pointer(_) => Err("a pointer as a value".to_owned()),
             Value::Texture(_) => Err("a texture as a value".to_owned()),
         }
     }
 
-    /// Whether an expression is of this kind of number.
+    /// Returns the scalar kind of a type and its width in words.
     pub(super) fn kind_of(&self, inner: &TypeInner) -> Result<(ScalarKind, u32)> {
-        let scalar = number(inner).ok_or("arithmetic on something else than numbers")?;
-        Ok((scalar.kind, Shapes::scalar(scalar)?))
+        let scalar = scalar_of(inner).ok_or("arithmetic on a type other than numbers")?;
+        Ok((scalar.kind, Layouts::scalar_words(scalar)?))
     }
 }

@@ -1,8 +1,8 @@
-//! WGSL's built-in functions. Those of vectors are taken apart into operations on single words.
+//! Compiles WGSL's built-in functions. Vector functions become operations on single words.
 
 use naga::{Expression, Handle, MathFunction, ScalarKind};
 
-use super::{Compiler, Result};
+use super::compiler::{Compiler, Result};
 use crate::operation::{Op, Word};
 use crate::packing::{Pack, Unpack};
 use crate::scalar::{Binary, Ternary, Unary};
@@ -12,10 +12,10 @@ impl Compiler<'_> {
     pub(super) fn math(&mut self, function: MathFunction, arguments: &[Handle<Expression>]) -> Result<Word> {
         let inner = self.type_of(arguments[0]);
         let (kind, width) = self.kind_of(inner)?;
-        let total = self.shapes.dense(inner)?;
+        let total = self.layouts.dense(inner)?;
         let mut words = Vec::with_capacity(arguments.len());
         for argument in arguments {
-            let count = self.shapes.dense(self.type_of(*argument))?;
+            let count = self.layouts.dense(self.type_of(*argument))?;
             words.push((self.words(*argument)?, count));
         }
         let a = words[0].0;
@@ -23,24 +23,24 @@ impl Compiler<'_> {
         if width == 2 {
             return self.wide_math(function, kind, a, &words, total / 2);
         }
-        if let Some(op) = packed(function) {
+        if let Some(op) = pack_op(function) {
             let from = if op == Pack::InsertBits { return self.insert_bits(&words, total) } else { a };
             let to = self.take(1);
             self.push(Op::Pack { op, to, a: from });
             return Ok(to);
         }
-        if let Some(op) = unpacked(function) {
+        if let Some(op) = unpack_op(function) {
             let to = self.take(op.components());
             self.push(Op::Unpack { op, to, a });
             return Ok(to);
         }
-        if let Some(op) = single(function, kind) {
+        if let Some(op) = unary_op(function, kind) {
             return Ok(self.each(op, a, total));
         }
-        if let Some(op) = double(function, kind) {
+        if let Some(op) = binary_op(function, kind) {
             return Ok(self.pairs(op, a, b, total));
         }
-        if let Some(op) = triple(function, kind) {
+        if let Some(op) = ternary_op(function, kind) {
             return Ok(self.triples(op, &words, total));
         }
         match function {
@@ -53,17 +53,17 @@ impl Compiler<'_> {
                 let raised = self.pairs(most, a, b, total);
                 Ok(self.pairs(least, raised, words[2].0, total))
             }
-            // Of an unsigned number.
+            // Unsigned.
             MathFunction::Abs => Ok(a),
             MathFunction::Modf => {
                 let whole = self.each(Unary::Trunc, a, total);
                 let rest = self.pairs(Binary::SubtractF, a, whole, total);
-                Ok(self.joined(&[(rest, total), (whole, total)]))
+                Ok(self.concatenated(&[(rest, total), (whole, total)]))
             }
             MathFunction::Frexp => {
                 let fraction = self.each(Unary::FrexpFraction, a, total);
                 let exponent = self.each(Unary::FrexpExponent, a, total);
-                Ok(self.joined(&[(fraction, total), (exponent, total)]))
+                Ok(self.concatenated(&[(fraction, total), (exponent, total)]))
             }
             MathFunction::Dot if kind == ScalarKind::Float => Ok(self.dot_of(a, b, total)),
             MathFunction::Dot => {
@@ -138,7 +138,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// Components one by one; an operand of a single word meets them all.
+    /// Applies an operation to each component; a scalar operand is used for all.
     fn triples(&mut self, op: Ternary, words: &[(Word, u32)], total: u32) -> Word {
         let at = |operand: usize, word: u32| {
             let (first, count) = words[operand];
@@ -153,18 +153,18 @@ impl Compiler<'_> {
 
     fn insert_bits(&mut self, words: &[(Word, u32)], total: u32) -> Result<Word> {
         let [(word, _), (new, _), (offset, _), (count, _)] = *words else {
-            return Err("insertBits with other arguments".to_owned());
+            return Err("`insertBits` with other arguments".to_owned());
         };
         let to = self.take(total);
         for number in 0..total {
-            let row = self.joined(&[(word + number, 1), (new + number, 1), (offset, 1), (count, 1)]);
+            let row = self.concatenated(&[(word + number, 1), (new + number, 1), (offset, 1), (count, 1)]);
             self.push(Op::Pack { op: Pack::InsertBits, to: to + number, a: row });
         }
         Ok(to)
     }
 
-    /// Rows of words, one after the other.
-    fn joined(&mut self, parts: &[(Word, u32)]) -> Word {
+    /// Copies ranges of words into consecutive words.
+    fn concatenated(&mut self, parts: &[(Word, u32)]) -> Word {
         let to = self.take(parts.iter().map(|(_, count)| count).sum());
         let mut at = to;
         for (from, count) in parts {
@@ -176,7 +176,7 @@ impl Compiler<'_> {
 
     fn repeated(&mut self, word: Word, count: u32) -> Word {
         let parts: Vec<(Word, u32)> = (0..count).map(|_| (word, 1)).collect();
-        self.joined(&parts)
+        self.concatenated(&parts)
     }
 
     fn dot_of(&mut self, a: Word, b: Word, total: u32) -> Word {
@@ -195,7 +195,7 @@ impl Compiler<'_> {
     fn cross(&mut self, a: Word, b: Word) -> Result<Word> {
         let rotated = |compiler: &mut Self, v: Word, by: u32| {
             let parts = [(v + by % 3, 1), (v + (by + 1) % 3, 1), (v + (by + 2) % 3, 1)];
-            compiler.joined(&parts)
+            compiler.concatenated(&parts)
         };
         let (a1, b2) = (rotated(self, a, 1), rotated(self, b, 2));
         let (a2, b1) = (rotated(self, a, 2), rotated(self, b, 1));
@@ -203,7 +203,7 @@ impl Compiler<'_> {
         Ok(self.pairs(Binary::SubtractF, left, right, 3))
     }
 
-    /// k = 1 - e3² (1 - dot(e2, e1)²); 0 where k < 0, else e3 e1 - (e3 dot(e2, e1) + √k) e2.
+    /// Computes `refract`: k = 1 - e3² (1 - dot(e2, e1)²); 0 if k < 0, else e3 e1 - (e3 dot(e2, e1) + √k) e2.
     fn refract(&mut self, a: Word, b: Word, ratio: Word, total: u32) -> Word {
         let one = self.constant(1f32.to_bits());
         let zero = self.constant(0);
@@ -229,7 +229,7 @@ impl Compiler<'_> {
     }
 }
 
-fn packed(function: MathFunction) -> Option<Pack> {
+fn pack_op(function: MathFunction) -> Option<Pack> {
     Some(match function {
         MathFunction::Pack4x8snorm => Pack::Snorm8,
         MathFunction::Pack4x8unorm => Pack::Unorm8,
@@ -245,7 +245,7 @@ fn packed(function: MathFunction) -> Option<Pack> {
     })
 }
 
-fn unpacked(function: MathFunction) -> Option<Unpack> {
+fn unpack_op(function: MathFunction) -> Option<Unpack> {
     Some(match function {
         MathFunction::Unpack4x8snorm => Unpack::Snorm8,
         MathFunction::Unpack4x8unorm => Unpack::Unorm8,
@@ -258,7 +258,7 @@ fn unpacked(function: MathFunction) -> Option<Unpack> {
     })
 }
 
-fn single(function: MathFunction, kind: ScalarKind) -> Option<Unary> {
+fn unary_op(function: MathFunction, kind: ScalarKind) -> Option<Unary> {
     let is_float = kind == ScalarKind::Float;
     let is_signed = kind == ScalarKind::Sint;
     Some(match function {
@@ -304,7 +304,7 @@ fn single(function: MathFunction, kind: ScalarKind) -> Option<Unary> {
     })
 }
 
-fn double(function: MathFunction, kind: ScalarKind) -> Option<Binary> {
+fn binary_op(function: MathFunction, kind: ScalarKind) -> Option<Binary> {
     Some(match (function, kind) {
         (MathFunction::Min, ScalarKind::Sint) => Binary::MinS,
         (MathFunction::Min, ScalarKind::Uint) => Binary::MinU,
@@ -322,7 +322,7 @@ fn double(function: MathFunction, kind: ScalarKind) -> Option<Binary> {
     })
 }
 
-fn triple(function: MathFunction, kind: ScalarKind) -> Option<Ternary> {
+fn ternary_op(function: MathFunction, kind: ScalarKind) -> Option<Ternary> {
     Some(match function {
         MathFunction::Fma => Ternary::FusedMultiplyAdd,
         MathFunction::Mix => Ternary::Mix,

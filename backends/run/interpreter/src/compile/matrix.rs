@@ -1,14 +1,14 @@
-//! Matrices: products, transposition, determinants. Columns lie one after the other.
+//! Compiles matrix products, transposition and determinants. Matrices are stored column by column.
 
 use naga::TypeInner;
 
-use super::{Compiler, Result};
+use super::compiler::{Compiler, Result};
+use crate::layout::count;
 use crate::operation::{Op, Word};
 use crate::scalar::Binary;
-use crate::shape::count;
 
 impl Compiler<'_> {
-    /// A product with a matrix in it; `None` where there is none, or only a single number beside it.
+    /// Compiles a product of a matrix with a matrix or vector; `None` for other operands.
     pub(super) fn product(&mut self, left: &TypeInner, a: Word, right: &TypeInner, b: Word) -> Result<Option<Word>> {
         let (rows, inner, columns, vector_left) = match (left, right) {
             (TypeInner::Matrix { columns: inner, rows, .. }, TypeInner::Matrix { columns, .. }) => {
@@ -34,7 +34,7 @@ impl Compiler<'_> {
         Ok(Some(to))
     }
 
-    /// The sum of products; `step` words lie between the left factors.
+    /// Computes a sum of products; the left factors are `step` words apart.
     fn dot(&mut self, a: Word, step: u32, b: Word, length: u32) -> Word {
         let mut sum = self.take(1);
         self.push(Op::Binary { op: Binary::MultiplyF, to: sum, a, b });
@@ -48,7 +48,7 @@ impl Compiler<'_> {
     }
 
     pub(super) fn transpose(&mut self, inner: &TypeInner, a: Word) -> Result<Word> {
-        let TypeInner::Matrix { columns, rows, .. } = inner else { return Err("a transposed vector".to_owned()) };
+        let TypeInner::Matrix { columns, rows, .. } = inner else { return Err("the transpose of a vector".to_owned()) };
         let (columns, rows) = (count(*columns), count(*rows));
         let to = self.take(columns * rows);
         for column in 0..columns {
@@ -59,17 +59,19 @@ impl Compiler<'_> {
         Ok(to)
     }
 
-    /// Expansion along the first column.
+    /// Computes the determinant by expansion along the first column.
     pub(super) fn determinant(&mut self, inner: &TypeInner, a: Word) -> Result<Word> {
-        let TypeInner::Matrix { columns, rows, .. } = inner else { return Err("a vector's determinant".to_owned()) };
+        let TypeInner::Matrix { columns, rows, .. } = inner else {
+            return Err("the determinant of a vector".to_owned());
+        };
         if columns != rows {
-            return Err("the determinant of a matrix that is not square".to_owned());
+            return Err("the determinant of a non-square matrix".to_owned());
         }
         let size = count(*columns);
         Ok(self.minor(a, size, &(1..size).collect::<Vec<_>>(), &(0..size).collect::<Vec<_>>(), 0))
     }
 
-    /// The determinant of the rows `rows` over the column `column` and the columns `others`.
+    /// Computes the minor of the rows `rows`, the column `column` and the columns `others`.
     fn minor(&mut self, a: Word, size: u32, others: &[u32], rows: &[u32], column: u32) -> Word {
         let at = |row: u32| a + column * size + row;
         let Some((next, rest)) = others.split_first() else { return at(rows[0]) };

@@ -1,35 +1,35 @@
-//! Textures: texels by column, row, and sample or level; extents.
+//! Compiles texture reads by column, row, and sample or level, and texture queries.
 //!
-//! In: flat textures that are read. Out: instructions. Whatever filters, has layers or is written is refused by name.
+//! Only 2D textures are read. Filtering, layers and writes are unsupported.
 
 use naga::{Expression, GlobalVariable, Handle, ImageClass, ImageDimension, ImageQuery, ScalarKind, TypeInner};
 
-use super::{Compiler, Result, Value};
+use super::compiler::{Compiler, Result, Value};
+use crate::bytecode::Texture;
 use crate::operation::{Op, Word};
-use crate::program::Texture;
 
 impl Compiler<'_> {
-    /// A variable that is a texture.
+    /// Declares a texture variable.
     pub(super) fn texture(&mut self, variable: &GlobalVariable) -> Result<Value> {
-        let TypeInner::Image { dim, arrayed, class } = self.shapes.inner(variable.ty) else {
+        let TypeInner::Image { dim, arrayed, class } = self.layouts.inner(variable.ty) else {
             return Err("samplers".to_owned());
         };
         if *dim != ImageDimension::D2 || *arrayed {
-            return Err("a texture that is not flat".to_owned());
+            return Err("a texture that is not 2D".to_owned());
         }
         let (kind, is_depth, is_multisampled) = match class {
             ImageClass::Sampled { kind, multi } => (*kind, false, *multi),
             ImageClass::Depth { multi } => (ScalarKind::Float, true, *multi),
             ImageClass::Storage { .. } | ImageClass::External => return Err("storage and external textures".to_owned()),
         };
-        let number = u16::try_from(self.textures.len()).map_err(|_| "so many textures".to_owned())?;
+        let number = u16::try_from(self.textures.len()).map_err(|_| "more than 65536 textures".to_owned())?;
         let name = variable.name.clone().unwrap_or_default();
         let binding = variable.binding.map(|binding| (binding.group, binding.binding));
         self.textures.push(Texture { name, binding, kind, is_depth, is_multisampled });
         Ok(Value::Texture(number))
     }
 
-    /// `textureLoad`.
+    /// Compiles `textureLoad`.
     pub(super) fn texel(
         &mut self,
         image: Handle<Expression>,
@@ -42,16 +42,16 @@ impl Compiler<'_> {
             Some(number) => self.words(number)?,
             None => self.constant(0),
         };
-        let place = self.take(3);
-        self.push(Op::Copy { to: place, from: coordinate, count: 2 });
-        self.push(Op::Copy { to: place + 2, from: number, count: 1 });
+        let coordinates = self.take(3);
+        self.push(Op::Copy { to: coordinates, from: coordinate, count: 2 });
+        self.push(Op::Copy { to: coordinates + 2, from: number, count: 1 });
         let count = if self.textures[usize::from(texture)].is_depth { 1 } else { 4 };
         let to = self.take(count);
-        self.push(Op::Texel { to, texture, place, count });
+        self.push(Op::Texel { to, texture, coordinates, count });
         Ok(to)
     }
 
-    /// `textureDimensions` and its kin. There is one level.
+    /// Compiles a texture query. Every texture has one level.
     pub(super) fn extent(&mut self, image: Handle<Expression>, query: &ImageQuery) -> Result<Word> {
         let texture = self.texture_of(image)?;
         match query {
@@ -67,7 +67,7 @@ impl Compiler<'_> {
     fn texture_of(&mut self, image: Handle<Expression>) -> Result<u16> {
         match self.value(image)? {
             Value::Texture(number) => Ok(number),
-            Value::Words(_) | Value::Spot(_) => Err("a texture that is a value".to_owned()),
+            Value::Words(_) | Value::Pointer(_) => Err("a texture as a value".to_owned()),
         }
     }
 }

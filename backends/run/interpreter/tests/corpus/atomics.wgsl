@@ -1,4 +1,4 @@
-// Atomic operations, with one invocation, whose results are certain. Compared to the bit.
+// Atomic operations of one invocation, so results are deterministic. Compared exactly.
 
 struct Header {
     count: atomic<u32>,

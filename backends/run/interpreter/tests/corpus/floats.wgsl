@@ -1,4 +1,4 @@
-// Floats: operators and what must come out to the bit, conversions, packing. Compared to the bit.
+// Floats: operators and functions with exact results, conversions and packing. Compared exactly.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read_write> results: array<u32>;

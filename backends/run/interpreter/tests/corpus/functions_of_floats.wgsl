@@ -1,4 +1,4 @@
-// Functions that WGSL allows to err, of vectors and matrices too. Compared within 1/2048 of the size.
+// Functions with an error bound in WGSL, also of vectors and matrices. Compared within 1/2048 of the magnitude.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read_write> results: array<f32>;

@@ -1,4 +1,4 @@
-// Variables, pointers, structures, padding, arrays, loops, switches, short circuits. Compared to the bit.
+// Variables, pointers, structures, padding, arrays, loops, switches and short-circuit evaluation. Compared exactly.
 
 struct Inner {
     a: u32,

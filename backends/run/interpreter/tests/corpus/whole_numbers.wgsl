@@ -1,4 +1,4 @@
-// Whole numbers: operators, conversions among them, bit functions. Compared to the bit.
+// Integers: operators, conversions and bit functions. Compared exactly.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read_write> results: array<u32>;

@@ -1,4 +1,4 @@
-// Whole numbers of 64 bits, atomics on them too. Compared to the bit.
+// 64-bit integers and atomics on them. Compared exactly.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read_write> results: array<u64>;

@@ -1,4 +1,4 @@
-// Workgroups: shared memory, barriers, identifiers. Compared to the bit.
+// Workgroups: shared memory, barriers and built-in ids. Compared exactly.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read_write> results: array<u32>;

@@ -1,4 +1,4 @@
-//! Adapters: which there are, and which one is meant.
+//! Lists the adapters and chooses one.
 
 use std::fmt;
 use std::future::Future;
@@ -8,21 +8,21 @@ use std::task::{Context, Poll, Waker};
 
 use crate::Error;
 
-/// Which adapter to take.
+/// The choice of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// The fastest that can run fragment buffers.
+    /// The fastest adapter that can run fragment buffers.
     Auto,
-    /// The one that runs on the CPU.
+    /// The adapter that runs on the CPU.
     Cpu,
-    /// The first whose name has this in it, in upper or lower case.
+    /// The first adapter whose name contains this text, ignoring case.
     Named(String),
 }
 
 impl FromStr for Choice {
     type Err = std::convert::Infallible;
 
-    /// `auto`, `cpu`, or a part of a name.
+    /// Parses `auto`, `cpu`, or a part of a name.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Ok(match text {
             "auto" => Choice::Auto,
@@ -42,15 +42,15 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Every adapter of this machine that can write buffers from fragment shaders, best first.
+/// Returns every adapter of this machine that can write buffers from fragment shaders, best first.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
-    able().iter().map(wgpu::Adapter::get_info).collect()
+    suitable_adapters().iter().map(wgpu::Adapter::get_info).collect()
 }
 
-/// The adapter that is meant.
+/// Returns the chosen adapter.
 pub(super) fn choose(choice: &Choice) -> Result<wgpu::Adapter, Error> {
-    let adapters = able();
-    let found = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    let adapters = suitable_adapters();
+    let available = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let chosen = adapters.into_iter().find(|adapter| {
         let info = adapter.get_info();
         match choice {
@@ -59,7 +59,7 @@ pub(super) fn choose(choice: &Choice) -> Result<wgpu::Adapter, Error> {
             Choice::Named(part) => info.name.to_lowercase().contains(&part.to_lowercase()),
         }
     });
-    chosen.ok_or_else(|| Error::NoAdapter { wanted: choice.to_string(), found })
+    chosen.ok_or_else(|| Error::NoAdapter { requested: choice.to_string(), available })
 }
 
 fn rank(kind: wgpu::DeviceType) -> u32 {
@@ -72,8 +72,9 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-/// OpenGL is asked only where there is nothing better: its adapters are the same devices by a narrower door.
-fn able() -> Vec<wgpu::Adapter> {
+/// Returns the adapters that can run fragment buffers, best first. OpenGL adapters are listed only if there are no others,
+/// because they are the same devices with fewer features.
+fn suitable_adapters() -> Vec<wgpu::Adapter> {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
     let allowed = descriptor().backends;
     let mut adapters = Vec::new();
@@ -81,20 +82,20 @@ fn able() -> Vec<wgpu::Adapter> {
         if adapters.is_empty() && !backends.is_empty() {
             let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor() });
             adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
-            adapters.retain(is_able);
+            adapters.retain(is_suitable);
         }
     }
-    // The order of the drivers stays where the kind is the same.
+    // The sort is stable: adapters of one kind keep the drivers' order.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     adapters
 }
 
-fn is_able(adapter: &wgpu::Adapter) -> bool {
+fn is_suitable(adapter: &wgpu::Adapter) -> bool {
     let flags = adapter.get_downlevel_capabilities().flags;
     flags.contains(wgpu::DownlevelFlags::FRAGMENT_WRITABLE_STORAGE | wgpu::DownlevelFlags::COMPUTE_SHADERS)
 }
 
-/// The value of a future that native back ends answer at once.
+/// Returns the value of a future that native back ends complete at once.
 pub(super) fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(value) => Some(value),

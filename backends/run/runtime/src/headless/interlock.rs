@@ -1,12 +1,12 @@
-//! Devices with fragment shader interlock, which wgpu has no feature for.
+//! Devices with fragment shader interlock, for which wgpu has no feature.
 //!
-//! In: an adapter and what is asked of its device. Out: the device, and whether `VK_EXT_fragment_shader_interlock` was
+//! Input: an adapter and the descriptor of its device. Output: the device, and whether `VK_EXT_fragment_shader_interlock` is
 //! enabled on it. An adapter without the extension gives the same device as `request_device`; that is not an error here.
 
 use super::adapter::ready;
 use crate::{Error, Interlock};
 
-/// Opens `adapter`, with interlock where there is any. Blocks.
+/// Opens `adapter`, with interlock if the driver has it. Blocks.
 pub fn open_device(
     adapter: &wgpu::Adapter,
     descriptor: &wgpu::DeviceDescriptor<'_>,
@@ -19,30 +19,30 @@ pub fn open_device(
         return Ok((device, queue, Interlock::Enabled));
     }
     let (device, queue) = ready(adapter.request_device(descriptor))
-        .ok_or_else(|| failed(&"it takes for ever"))?
+        .ok_or_else(|| failed(&"the request did not complete"))?
         .map_err(|error| failed(&error))?;
     Ok((device, queue, Interlock::Absent))
 }
 
 #[cfg(not(any(target_vendor = "apple", target_family = "wasm")))]
-#[allow(unsafe_code, reason = "wgpu lets a device have more extensions than it knows only by its own lower layer")]
+#[allow(unsafe_code, reason = "only wgpu's lower layer can enable extensions that wgpu does not support")]
 mod vulkan {
     use ash::{ext::fragment_shader_interlock::NAME, vk};
     use wgpu::hal::api::Vulkan;
     use wgpu::hal::vulkan::CreateDeviceCallback;
 
-    type Opened = Result<(wgpu::Device, wgpu::Queue), String>;
+    type OpenResult = Result<(wgpu::Device, wgpu::Queue), String>;
 
-    /// `None` where the adapter is not Vulkan's, or has no interlock.
-    pub(super) fn open(adapter: &wgpu::Adapter, descriptor: &wgpu::DeviceDescriptor<'_>) -> Option<Opened> {
-        // SAFETY: the adapter is only asked, and outlives the guard.
+    /// Opens the device; `None` if the adapter is not a Vulkan adapter or has no interlock.
+    pub(super) fn open(adapter: &wgpu::Adapter, descriptor: &wgpu::DeviceDescriptor<'_>) -> Option<OpenResult> {
+        // SAFETY: the adapter is only queried, and outlives the guard.
         let hal = unsafe { adapter.as_hal::<Vulkan>() }?;
         if !hal.physical_device_capabilities().supports_extension(NAME) {
             return None;
         }
         let mut has = vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default();
         let mut query = vk::PhysicalDeviceFeatures2::default().push_next(&mut has);
-        // SAFETY: the physical device is that of this instance; the driver has the extension, so it fills the chained structure.
+        // SAFETY: the physical device belongs to this instance, and a driver with the extension fills the chained structure.
         unsafe {
             let instance = hal.shared_instance().raw_instance();
             instance.get_physical_device_features2(hal.raw_physical_device(), &mut query);
@@ -50,18 +50,18 @@ mod vulkan {
         if has.fragment_shader_pixel_interlock == vk::FALSE {
             return None;
         }
-        let mut wanted =
+        let mut enabled =
             vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default().fragment_shader_pixel_interlock(true);
-        let chained = &mut wanted;
+        let chained = &mut enabled;
         let add: Box<CreateDeviceCallback<'_>> = Box::new(move |arguments| {
             arguments.extensions.push(NAME);
             *arguments.create_info = std::mem::take(arguments.create_info).push_next(chained);
         });
         let (features, limits) = (descriptor.required_features, &descriptor.required_limits);
-        // SAFETY: the driver was asked for the extension and for its feature above; nothing is taken away.
+        // SAFETY: the driver supports the extension and its feature, as checked above, and nothing is removed.
         let opened = unsafe { hal.open_with_callback(features, limits, &descriptor.memory_hints, Some(add)) };
         Some(opened.map_err(|error| error.to_string()).and_then(|device| {
-            // SAFETY: the device was made of this adapter just now, with the features and limits of the descriptor.
+            // SAFETY: the device was created just now from this adapter, with the features and limits of the descriptor.
             unsafe { adapter.create_device_from_hal::<Vulkan>(device, descriptor) }.map_err(|error| error.to_string())
         }))
     }

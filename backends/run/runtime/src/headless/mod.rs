@@ -1,4 +1,4 @@
-//! A device and a target without a window: for tests, the command line, and pictures on a server.
+//! A device and a target without a window, for tests, the command line and servers.
 
 mod adapter;
 mod interlock;
@@ -13,22 +13,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::{Error, Interlock};
 
-/// A device of our own.
+/// A device that this crate opens.
 pub struct Headless {
     /// The device.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// What it is.
+    /// The adapter.
     pub info: wgpu::AdapterInfo,
     /// Whether it has fragment shader interlock.
     pub interlock: Interlock,
     lost: Arc<AtomicBool>,
 }
 
-/// Features that are requested wherever there are: timing, coherent buffers, 64-bit atomics, forced early depth tests, and
-/// code that is passed through.
-const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
+/// Features that are requested if the adapter has them: timestamps, coherent buffers, 64-bit atomics, forced early depth tests,
+/// and passthrough shaders.
+const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::MEMORY_DECORATION_COHERENT)
     .union(wgpu::Features::SHADER_INT64)
     .union(wgpu::Features::SHADER_EARLY_DEPTH_TEST)
@@ -36,8 +36,8 @@ const WELCOME: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::PASSTHROUGH_SHADERS);
 
 impl Headless {
-    /// Opens the chosen adapter with all its limits, the features of `required`, and those of timing, coherent buffers,
-    /// passed-through code and interlock where there are any. Blocks.
+    /// Opens the chosen adapter with all its limits and the features of `required`, and with timestamps, coherent buffers, 64-bit
+    /// atomics, early depth tests, passthrough shaders and interlock if available. Blocks.
     pub fn open(choice: &Choice, required: wgpu::Features) -> Result<Self, Error> {
         let adapter = adapter::choose(choice)?;
         let missing = required - adapter.features();
@@ -46,7 +46,7 @@ impl Headless {
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("fragbuf headless"),
-            required_features: required | (adapter.features() & WELCOME),
+            required_features: required | (adapter.features() & OPTIONAL_FEATURES),
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
         };
@@ -59,7 +59,7 @@ impl Headless {
 
     /// Whether the device has been lost.
     pub fn is_lost(&self) -> bool {
-        // The loss is told to whoever asks the device next; that it is lost is then no news.
+        // wgpu reports a loss at the next call, here a poll, whose own error adds nothing.
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Relaxed)
     }

@@ -1,31 +1,31 @@
 //! A target that can be read back.
 //!
-//! Blend in [`BLENDED`] where colours matter to 1/255: a driver may blend 8-bit targets in 8-bit arithmetic, which rounds
-//! colour, alpha and product apart (lavapipe does, and is off by up to 1.1/255).
+//! Use the format [`BLENDED`] if colours must be exact to 1/255. A driver may blend 8-bit targets in 8-bit arithmetic, which
+//! rounds colour, alpha and product separately (lavapipe does, with an error of up to 1.1/255).
 
-use crate::scope::scoped;
+use crate::error_scope::in_error_scope;
 use crate::words::from_bytes;
 use crate::{Error, Pending, block_on};
 
-/// The format to blend in: every WebGPU device can, and its steps are an eighth of an 8-bit target's or finer.
+/// A format for exact blending. Every WebGPU device can blend it, and its steps are at most an eighth of an 8-bit target's.
 pub const BLENDED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A picture of one format and size on the device.
+/// An image of one format and size on the device.
 pub struct Offscreen {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    /// Where rows are copied to, each at a multiple of 256 bytes.
+    /// The buffer for copied rows, each at a multiple of 256 bytes.
     rows: wgpu::Buffer,
     texel: u32,
     padded: u32,
 }
 
 impl Offscreen {
-    /// A target of `width` × `height` pixels of an uncompressed colour format. Blocks.
+    /// Creates a target of `width` × `height` pixels of an uncompressed colour format. Blocks.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, width: u32, height: u32) -> Result<Self, Error> {
         let texel = format.block_copy_size(None).ok_or_else(|| Error::BadValue {
             name: "the target's format".to_owned(),
-            wanted: "an uncompressed colour format".to_owned(),
+            expected: "an uncompressed colour format".to_owned(),
         })?;
         let padded = (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded) * u64::from(height);
@@ -49,16 +49,16 @@ impl Offscreen {
             });
             (texture, view, rows)
         };
-        let (texture, view, rows) = block_on(device, scoped(device, "the offscreen target", bytes, make))??;
+        let (texture, view, rows) = block_on(device, in_error_scope(device, "the offscreen target", bytes, make))??;
         Ok(Offscreen { texture, view, rows, texel, padded })
     }
 
-    /// What to render into.
+    /// Returns the view to render into.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
-    /// The bytes of the picture, row after row from the top, without padding. Submits and blocks.
+    /// Reads the bytes of the image, row by row from the top, without padding. Submits and blocks.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<u8>, Error> {
         let copy = || {
             let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf offscreen") };
@@ -74,13 +74,14 @@ impl Offscreen {
             queue.submit([encoder.finish()]);
             pending
         };
-        let pending = block_on(device, scoped(device, "the copy of the offscreen target", self.rows.size(), copy))??;
+        let pending =
+            block_on(device, in_error_scope(device, "the copy of the offscreen target", self.rows.size(), copy))??;
         let bytes: Vec<u8> = pending.wait(device)?.into_iter().flat_map(u32::to_le_bytes).collect();
         let row = (self.texture.width() * self.texel) as usize;
         Ok(bytes.chunks(self.padded as usize).flat_map(|padded| padded.iter().copied().take(row)).collect())
     }
 
-    /// Red, green, blue and alpha of every pixel, row after row from the top, for the formats `Rgba8Unorm`, `Rgba16Float`
+    /// Reads red, green, blue and alpha of every pixel, row by row from the top, for the formats `Rgba8Unorm`, `Rgba16Float`
     /// and `Rgba32Float`. Submits and blocks.
     pub fn colors(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<[f32; 4]>, Error> {
         let channels: Vec<f32> = match self.texture.format() {
@@ -97,7 +98,7 @@ impl Offscreen {
             other => {
                 return Err(Error::BadValue {
                     name: format!("the target's format, {other:?},"),
-                    wanted: "Rgba8Unorm, Rgba16Float or Rgba32Float".to_owned(),
+                    expected: "Rgba8Unorm, Rgba16Float or Rgba32Float".to_owned(),
                 });
             }
         };
@@ -105,7 +106,7 @@ impl Offscreen {
     }
 }
 
-/// IEEE 754 binary16 to binary32, exactly.
+/// Converts IEEE 754 binary16 to binary32, exactly.
 fn half_to_float(half: u16) -> f32 {
     let sign = u32::from(half >> 15) << 31;
     let (exponent, fraction) = (u32::from(half >> 10 & 31), u32::from(half & 1023));
@@ -122,7 +123,7 @@ mod tests {
     use super::half_to_float;
 
     #[test]
-    fn halves_are_exact() {
+    fn half_floats_convert_exactly() {
         let halves = [0x3c00, 0xc000, 0x3555, 0x0001, 0x7bff, 0x0000];
         let floats = [1.0, -2.0, 0.333_251_95, 5.960_464_5e-8, 65504.0, 0.0];
         assert_eq!(halves.map(half_to_float), floats);

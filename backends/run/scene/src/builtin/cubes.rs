@@ -1,13 +1,14 @@
-//! Three translucent cubes, each partly in the next.
+//! Three translucent cubes, each intersecting the next.
 
 use glam::{Quat, Vec3};
 
-use super::{Object, Row};
+use super::row::Row;
+use crate::Object;
 
 pub(super) const ROW: Row =
-    Row { name: "cubes", summary: "three translucent cubes, each partly in the next", parameters: &[], make };
+    Row { name: "cubes", summary: "three translucent cubes, each intersecting the next", parameters: &[], generate };
 
-fn make(_: &[u32]) -> Vec<Object> {
+fn generate(_: &[u32]) -> Vec<Object> {
     let cubes = [
         ("red", Vec3::new(-0.7, -0.1, 0.3), 0.3, [0.85, 0.12, 0.1, 0.45]),
         ("green", Vec3::new(0.0, 0.15, -0.2), -0.2, [0.15, 0.7, 0.2, 0.45]),
@@ -15,16 +16,16 @@ fn make(_: &[u32]) -> Vec<Object> {
     ];
     cubes
         .into_iter()
-        .map(|(name, middle, turn, color)| cube(name, middle, Quat::from_rotation_y(turn), color))
+        .map(|(name, centre, turn, color)| cube(name, centre, Quat::from_rotation_y(turn), color))
         .collect()
 }
 
-fn cube(name: &str, middle: Vec3, turn: Quat, color: [f32; 4]) -> Object {
+fn cube(name: &str, centre: Vec3, turn: Quat, color: [f32; 4]) -> Object {
     let mut object = Object { name: name.to_owned(), ..Object::default() };
     for normal in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
         let (u, v) = normal.any_orthonormal_pair();
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b): (f32, f32)| {
-            let position = middle + turn * (0.5 * (normal + a * u + b * v));
+            let position = centre + turn * (0.5 * (normal + a * u + b * v));
             object.vertex(position.to_array(), (turn * normal).to_array(), color)
         });
         object.polygon(&corners);

@@ -1,40 +1,40 @@
-//! Thin tubes that wander through a ball, far more layers than any k: the hardest case of the field, after the hairball of
-//! Samuli Laine.
+//! Thin tubes that wander through a ball, with far more layers than any k, after the hairball of Samuli Laine.
 
 use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::random::Random;
-use super::{Object, Parameter, Row, SEED, hue, value};
+use super::random::Rng;
+use super::row::{Parameter, Row, SEED, hue, value};
+use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "hairball",
     summary: "thin tubes through a ball; over 2 M triangles and some 150 layers",
     parameters: &[Parameter { name: "strands", default: 3600, range: (1, 100_000) }, SEED],
-    make,
+    generate,
 };
 
-/// Pieces of a strand.
+/// The pieces of a strand.
 const PIECES: u32 = 100;
-/// Sides of a tube.
+/// The sides of a tube.
 const SIDES: u32 = 3;
-/// How far one piece goes.
+/// The length of a piece.
 const STEP: f32 = 0.04;
 const RADIUS: f32 = 0.008;
 
-fn make(values: &[u32]) -> Vec<Object> {
-    let mut random = Random::seeded(value(values, 1));
-    (0..value(values, 0)).map(|index| strand(index, &mut random)).collect()
+fn generate(values: &[u32]) -> Vec<Object> {
+    let mut rng = Rng::seeded(value(values, 1));
+    (0..value(values, 0)).map(|index| strand(index, &mut rng)).collect()
 }
 
-fn strand(index: u32, random: &mut Random) -> Object {
+fn strand(index: u32, rng: &mut Rng) -> Object {
     let mut object = Object { name: format!("strand {index}"), ..Object::default() };
-    let color = hue(random.between(0.02, 0.14), 0.2);
-    let mut at = random.in_ball();
-    let mut way = random.in_ball().normalize_or(Vec3::X);
+    let color = hue(rng.between(0.02, 0.14), 0.2);
+    let mut at = rng.in_ball();
+    let mut direction = rng.in_ball().normalize_or(Vec3::X);
     for piece in 0..=PIECES {
-        let (u, v) = way.any_orthonormal_pair();
+        let (u, v) = direction.any_orthonormal_pair();
         for side in 0..SIDES {
             let (sine, cosine) = (TAU * side as f32 / SIDES as f32).sin_cos();
             let normal = cosine * u + sine * v;
@@ -43,15 +43,15 @@ fn strand(index: u32, random: &mut Random) -> Object {
         if piece > 0 {
             tube(&mut object, SIDES * (piece - 1));
         }
-        at += STEP * way;
-        // Bent at random, and back towards the middle the farther out it is.
-        let back = (at.length() - 0.8).max(0.0) * 4.0;
-        way = (way + 0.35 * random.in_ball() - back * STEP * 4.0 * at).normalize_or(Vec3::X);
+        at += STEP * direction;
+        // Bends at random, and towards the centre in proportion to the distance outside.
+        let inward = (at.length() - 0.8).max(0.0) * 4.0;
+        direction = (direction + 0.35 * rng.in_ball() - inward * STEP * 4.0 * at).normalize_or(Vec3::X);
     }
     object
 }
 
-/// The piece whose first ring begins at vertex `first`.
+/// Adds the piece whose first ring begins at vertex `first`.
 fn tube(object: &mut Object, first: u32) {
     for side in 0..SIDES {
         let next = (side + 1) % SIDES;

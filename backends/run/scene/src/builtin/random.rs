@@ -1,10 +1,11 @@
-//! Seeded numbers: SplitMix64 (Steele, Lea & Flood 2014).
+//! Seeded random numbers: SplitMix64 (Steele, Lea & Flood 2014).
 
-pub(super) struct Random(u64);
+/// A seeded generator of random numbers.
+pub(super) struct Rng(u64);
 
-impl Random {
+impl Rng {
     pub(super) fn seeded(seed: u32) -> Self {
-        Random(u64::from(seed))
+        Rng(u64::from(seed))
     }
 
     fn next(&mut self) -> u64 {
@@ -15,17 +16,17 @@ impl Random {
         bits ^ bits >> 31
     }
 
-    /// From 0 up to, not including, 1.
+    /// Returns a number from 0 to 1, excluding 1.
     pub(super) fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / (1 << 24) as f32
     }
 
-    /// From `from` up to `to`.
+    /// Returns a number from `from` to `to`.
     pub(super) fn between(&mut self, from: f32, to: f32) -> f32 {
         from + (to - from) * self.unit()
     }
 
-    /// A point of the unit ball.
+    /// Returns a point in the unit ball.
     pub(super) fn in_ball(&mut self) -> glam::Vec3 {
         loop {
             let point = glam::Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0));

@@ -1,26 +1,27 @@
-//! Translucent quads that face the viewer, at random places and depths. They lie within clip space, so that both cameras
-//! show them.
+//! Translucent quads that face the viewer, at random positions and depths. They are within clip space, so both cameras show
+//! them.
 
-use super::random::Random;
-use super::{Object, Parameter, Row, SEED, hue, value};
+use super::random::Rng;
+use super::row::{Parameter, Row, SEED, hue, value};
+use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "slabs",
     summary: "translucent quads of random depth",
     parameters: &[Parameter { name: "n", default: 16, range: (1, 65_536) }, SEED],
-    make,
+    generate,
 };
 
-fn make(values: &[u32]) -> Vec<Object> {
-    let mut random = Random::seeded(value(values, 1));
-    (0..value(values, 0)).map(|index| slab(index, &mut random)).collect()
+fn generate(values: &[u32]) -> Vec<Object> {
+    let mut rng = Rng::seeded(value(values, 1));
+    (0..value(values, 0)).map(|index| slab(index, &mut rng)).collect()
 }
 
-fn slab(index: u32, random: &mut Random) -> Object {
+fn slab(index: u32, rng: &mut Rng) -> Object {
     let mut object = Object { name: format!("slab {index}"), ..Object::default() };
-    let (x, y, z) = (random.between(-0.55, 0.55), random.between(-0.55, 0.55), random.between(0.02, 0.98));
-    let (width, height) = (random.between(0.15, 0.4), random.between(0.15, 0.4));
-    let color = hue(random.unit(), random.between(0.3, 0.6));
+    let (x, y, z) = (rng.between(-0.55, 0.55), rng.between(-0.55, 0.55), rng.between(0.02, 0.98));
+    let (width, height) = (rng.between(0.15, 0.4), rng.between(0.15, 0.4));
+    let color = hue(rng.unit(), rng.between(0.3, 0.6));
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let corners =
         corners.map(|(a, b): (f32, f32)| object.vertex([x + a * width, y + b * height, z], [0.0, 0.0, -1.0], color));

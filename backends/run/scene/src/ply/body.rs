@@ -1,11 +1,11 @@
-//! The numbers of a PLY file's body, in their order, whatever they are written in. One line of an ascii body is one record.
+//! The numbers of the body of a PLY file, in order, in each of the encodings. One line of an ASCII body is one record.
 
 use std::borrow::Cow;
 
 use super::header::{Encoding, Header, Kind};
-use crate::error::{Fault, Place};
+use crate::error::{FileError, FilePosition};
 
-/// The body, read up to some place.
+/// A reader of the body.
 pub(super) struct Body<'a> {
     encoding: Encoding,
     bytes: &'a [u8],
@@ -13,7 +13,7 @@ pub(super) struct Body<'a> {
     at: usize,
     /// The line being read, from 1.
     line: usize,
-    /// The words of that line that have not been read, last first.
+    /// The unread words of the line, last first.
     words: Vec<Cow<'a, str>>,
 }
 
@@ -22,61 +22,61 @@ impl<'a> Body<'a> {
         Body { encoding: header.encoding, bytes, at: header.length, line: header.lines, words: Vec::new() }
     }
 
-    /// A mistake where the body is being read.
-    pub(super) fn fault(&self, message: impl Into<String>) -> Fault {
+    /// Returns an error at the current position.
+    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
         match self.encoding {
-            Encoding::Ascii => Fault::line(self.line, message),
-            Encoding::Little | Encoding::Big => Fault(Place::Byte(self.at), message.into()),
+            Encoding::Ascii => FileError::line(self.line, message),
+            Encoding::Little | Encoding::Big => FileError(FilePosition::Byte(self.at), message.into()),
         }
     }
 
     /// Starts the next record.
-    pub(super) fn record(&mut self) -> Result<(), Fault> {
+    pub(super) fn record(&mut self) -> Result<(), FileError> {
         while self.encoding == Encoding::Ascii && self.words.is_empty() {
             let Some(line) = self.next_line() else {
-                return Err(self.fault("the file ends before its last element"));
+                return Err(self.error("the file ends before its last element"));
             };
             self.words = line;
         }
         Ok(())
     }
 
-    /// Nothing is left of the record.
-    pub(super) fn end_record(&mut self) -> Result<(), Fault> {
+    /// Checks that the record has no more numbers.
+    pub(super) fn end_record(&mut self) -> Result<(), FileError> {
         match self.words.last() {
-            Some(word) => Err(self.fault(format!("`{word}` is more than the element has"))),
+            Some(word) => Err(self.error(format!("`{word}` follows the last number of the element"))),
             None => Ok(()),
         }
     }
 
-    /// Nothing is left of the file. What follows a binary body is let be.
-    pub(super) fn end(&mut self) -> Result<(), Fault> {
+    /// Checks that the file has no more records. Bytes after a binary body are ignored.
+    pub(super) fn end(&mut self) -> Result<(), FileError> {
         while self.encoding == Encoding::Ascii {
             match self.next_line() {
                 None => break,
                 Some(line) if line.is_empty() => {}
-                Some(_) => return Err(self.fault("a line after the last element")),
+                Some(_) => return Err(self.error("a line follows the last element")),
             }
         }
         Ok(())
     }
 
-    /// The length of a list.
-    pub(super) fn length(&mut self, kind: Kind) -> Result<usize, Fault> {
+    /// Reads the length of a list.
+    pub(super) fn length(&mut self, kind: Kind) -> Result<usize, FileError> {
         let value = self.scalar(kind)?;
-        // Nothing is set aside for it: a false length runs into the end of the file.
-        if value >= 0.0 { Ok(value as usize) } else { Err(self.fault(format!("a list of {value}"))) }
+        // No memory is reserved for it: a wrong length reaches the end of the file.
+        if value >= 0.0 { Ok(value as usize) } else { Err(self.error(format!("a list of length {value}"))) }
     }
 
-    /// The next number.
-    pub(super) fn scalar(&mut self, kind: Kind) -> Result<f64, Fault> {
+    /// Reads the next number.
+    pub(super) fn scalar(&mut self, kind: Kind) -> Result<f64, FileError> {
         if self.encoding == Encoding::Ascii {
             let Some(word) = self.words.pop() else {
-                return Err(self.fault("the line has fewer numbers than the element"));
+                return Err(self.error("the line has fewer numbers than the element"));
             };
-            let value: f64 = word.parse().map_err(|_| self.fault(format!("`{word}` is no number")))?;
-            let whole = matches!(kind, Kind::F32 | Kind::F64) || value.fract() == 0.0;
-            return if whole { Ok(value) } else { Err(self.fault(format!("`{word}` is no integer"))) };
+            let value: f64 = word.parse().map_err(|_| self.error(format!("`{word}` is not a number")))?;
+            let is_valid = matches!(kind, Kind::F32 | Kind::F64) || value.fract() == 0.0;
+            return if is_valid { Ok(value) } else { Err(self.error(format!("`{word}` is not an integer"))) };
         }
         Ok(match kind {
             Kind::I8 => i8::from_le_bytes(self.take()?).into(),
@@ -90,11 +90,11 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// The next bytes, the least significant first.
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+    /// Reads the next bytes, the least significant first.
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], FileError> {
         let found = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>());
         let Some(mut bytes) = found.copied() else {
-            return Err(self.fault("the file ends before its last element"));
+            return Err(self.error("the file ends before its last element"));
         };
         self.at += N;
         if self.encoding == Encoding::Big {

@@ -1,14 +1,14 @@
-//! The head of a PLY file: its encoding, and the elements with their properties in the order of the body.
+//! The header of a PLY file: its encoding, and the elements with their properties in the order of the body.
 
-use crate::error::Fault;
+use crate::error::FileError;
 
-/// What the head says.
+/// The header of a PLY file.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Bytes of the head.
+    /// Its length in bytes.
     pub(super) length: usize,
-    /// Lines of the head.
+    /// Its number of lines.
     pub(super) lines: usize,
 }
 
@@ -23,14 +23,14 @@ pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: usize,
     pub(super) properties: Vec<Property>,
-    /// Where it is declared.
+    /// The line of its declaration.
     pub(super) line: usize,
 }
 
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Kind,
-    /// The kind of the length in front of a list; `None`: a single value.
+    /// The type of the length of a list; `None`: a single value.
     pub(super) list: Option<Kind>,
 }
 
@@ -61,7 +61,7 @@ impl Kind {
         })
     }
 
-    /// What a colour's full intensity is stored as.
+    /// Returns the value of a colour at full intensity.
     pub(super) fn greatest(self) -> f64 {
         match self {
             Kind::I8 => i8::MAX.into(),
@@ -76,57 +76,63 @@ impl Kind {
 }
 
 impl Header {
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, Fault> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileError> {
         let (mut encoding, mut elements, mut length) = (None, Vec::<Element>::new(), 0);
         for (line, text) in (1..).zip(bytes.split_inclusive(|byte| *byte == b'\n')) {
             length += text.len();
-            let text = std::str::from_utf8(text).map_err(|_| Fault::line(line, "the head is no text"))?;
+            let text = std::str::from_utf8(text).map_err(|_| FileError::line(line, "the header is not UTF-8"))?;
             let words: Vec<&str> = text.split_whitespace().collect();
             match words.as_slice() {
                 ["ply"] if line == 1 => {}
-                _ if line == 1 => return Err(Fault::line(line, "a PLY file begins with `ply`")),
+                _ if line == 1 => return Err(FileError::line(line, "a PLY file begins with `ply`")),
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, "1.0"] => encoding = Some(encoding_of(name, line)?),
                 ["element", name, count] => {
-                    let count = count.parse().map_err(|_| Fault::line(line, format!("`{count}` is no count")))?;
+                    let count =
+                        count.parse().map_err(|_| FileError::line(line, format!("`{count}` is not a count")))?;
                     elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new(), line });
                 }
                 ["property", rest @ ..] => {
-                    let element = elements.last_mut().ok_or_else(|| Fault::line(line, "a property of no element"))?;
+                    let element = elements
+                        .last_mut()
+                        .ok_or_else(|| FileError::line(line, "a property before the first element"))?;
                     element.properties.push(property(rest, line)?);
                 }
                 ["end_header"] => {
-                    let encoding = encoding.ok_or_else(|| Fault::line(line, "the head has no `format`"))?;
+                    let encoding = encoding.ok_or_else(|| FileError::line(line, "the header has no `format`"))?;
                     return Ok(Header { encoding, elements, length, lines: line });
                 }
-                _ => return Err(Fault::line(line, format!("`{}` is no line of a head", text.trim()))),
+                _ => return Err(FileError::line(line, format!("unknown header line `{}`", text.trim()))),
             }
         }
         let lines = bytes.split(|byte| *byte == b'\n').count();
-        Err(Fault::line(lines, "the head does not end: `end_header` is missing"))
+        Err(FileError::line(lines, "`end_header` is missing"))
     }
 }
 
-fn encoding_of(name: &str, line: usize) -> Result<Encoding, Fault> {
+fn encoding_of(name: &str, line: usize) -> Result<Encoding, FileError> {
     match name {
         "ascii" => Ok(Encoding::Ascii),
         "binary_little_endian" => Ok(Encoding::Little),
         "binary_big_endian" => Ok(Encoding::Big),
-        _ => Err(Fault::line(line, format!("no format `{name}`: ascii, binary_little_endian or binary_big_endian"))),
+        _ => Err(FileError::line(
+            line,
+            format!("unknown format `{name}`: use ascii, binary_little_endian or binary_big_endian"),
+        )),
     }
 }
 
-fn property(words: &[&str], line: usize) -> Result<Property, Fault> {
-    let kind = |name: &str| Kind::named(name).ok_or_else(|| Fault::line(line, format!("no type `{name}`")));
+fn property(words: &[&str], line: usize) -> Result<Property, FileError> {
+    let kind = |name: &str| Kind::named(name).ok_or_else(|| FileError::line(line, format!("unknown type `{name}`")));
     match words {
         ["list", length, item, name] => {
             let length = kind(length)?;
             if matches!(length, Kind::F32 | Kind::F64) {
-                return Err(Fault::line(line, "the length of a list is an integer"));
+                return Err(FileError::line(line, "the length of a list must be an integer"));
             }
             Ok(Property { name: (*name).to_owned(), kind: kind(item)?, list: Some(length) })
         }
         [single, name] => Ok(Property { name: (*name).to_owned(), kind: kind(single)?, list: None }),
-        _ => Err(Fault::line(line, "write `property TYPE NAME` or `property list TYPE TYPE NAME`")),
+        _ => Err(FileError::line(line, "expected `property TYPE NAME` or `property list TYPE TYPE NAME`")),
     }
 }

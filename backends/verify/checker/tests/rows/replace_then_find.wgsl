@@ -1,8 +1,8 @@
-// Wrong on purpose: the new fragment goes to slot 0 first, and the new worst is found afterwards. Meanwhile slot 0 is too low.
+// Wrong on purpose: the new fragment replaces slot 0 first, and the new worst is found afterwards. Meanwhile slot 0 is too low.
 
 fn storage_reset(pixel: u32) {
     keys_store(0u, pixel, EMPTY);
-    filled_store(pixel, 0u);
+    kept_counts_store(pixel, 0u);
 }
 
 fn storage_bound(pixel: u32) -> u32 {
@@ -10,14 +10,14 @@ fn storage_bound(pixel: u32) -> u32 {
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
-    let filled_before = filled_load(pixel);
-    if filled_before + 1u < frame.k {
-        max_array_write(pixel, frame.k - 1u - filled_before, entry);
-        filled_store(pixel, filled_before + 1u);
+    let kept_before = kept_counts_load(pixel);
+    if kept_before + 1u < frame.k {
+        max_array_write(pixel, frame.k - 1u - kept_before, entry);
+        kept_counts_store(pixel, kept_before + 1u);
         return;
     }
-    if filled_before < frame.k {
-        filled_store(pixel, frame.k);
+    if kept_before < frame.k {
+        kept_counts_store(pixel, frame.k);
     } else {
         let worst = max_array_read(pixel, 0u);
         if !better(entry, worst) {
@@ -30,7 +30,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    return max_array_cursor(frame.k - filled_load(pixel));
+    return max_array_cursor(frame.k - kept_counts_load(pixel));
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
@@ -41,7 +41,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return max_array_read(pixel, cursor);
 }
 
-/// Puts `entry` among slots 1 ... k-1 and the worst of all into slot 0, whose fragment is given up.
+/// Writes `entry` to slots 1 ... k-1, and the worst of all entries to slot 0, whose fragment is displaced.
 fn max_array_replace_worst(pixel: u32, entry: Packed) {
     max_array_write(pixel, 0u, entry);
     var worst = entry;

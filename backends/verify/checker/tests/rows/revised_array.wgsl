@@ -1,10 +1,10 @@
-// K15 Alg. 2 as printed, the part inside the lock: the first k - 1 slots are given out by the counter, outside it.
+// K15 Alg. 2 as printed, the part inside the lock. Outside it, the counter assigns the first k - 1 slots.
 
 fn storage_reset(pixel: u32) {
     for (var slot = 0u; slot < frame.k; slot++) {
         keys_store(slot, pixel, EMPTY);
     }
-    filled_store(pixel, 0u);
+    kept_counts_store(pixel, 0u);
 }
 
 fn storage_bound(pixel: u32) -> u32 {
@@ -35,7 +35,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return max_array_read(pixel, cursor);
 }
 
-/// Puts `entry` among slots 1 ... k-1 and the worst of all into slot 0, whose fragment is given up.
+/// Writes `entry` to slots 1 ... k-1, and the worst of all entries to slot 0, whose fragment is displaced.
 fn max_array_replace_worst(pixel: u32, entry: Packed) {
     var worst = entry;
     var worst_slot = 0u;
@@ -61,7 +61,7 @@ fn max_array_write(pixel: u32, slot: u32, entry: Packed) {
     keys_store(slot, pixel, entry.key);
 }
 
-/// The first slot from `slot` on that holds a fragment: one that was given up leaves its slot empty.
+/// Returns the first slot from `slot` on that holds a fragment. A fragment that timed out leaves its slot empty.
 fn revised_seek(pixel: u32, slot: u32) -> u32 {
     for (var cursor = slot; cursor < frame.k; cursor++) {
         if keys_load(cursor, pixel) != EMPTY {

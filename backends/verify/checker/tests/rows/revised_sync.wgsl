@@ -1,4 +1,4 @@
-// K15 Alg. 2 as printed: a slot is reserved by the counter and written later, while the holder of the lock may read it.
+// K15 Alg. 2 as printed: the counter reserves a slot, which is written later, while the lock holder may read it.
 
 const FREE = 0u;
 const TAKEN = 1u;
@@ -7,7 +7,7 @@ fn sync_store(pixel: u32, entry: Packed) {
     if is_helper_lane() {
         return;
     }
-    let reserved = filled_atomic_add(pixel, 1u);
+    let reserved = kept_counts_atomic_add(pixel, 1u);
     if reserved + 1u < frame.k {
         max_array_write(pixel, frame.k - 1u - reserved, entry);
         return;
@@ -21,5 +21,5 @@ fn sync_store(pixel: u32, entry: Packed) {
             return;
         }
     }
-    on_lost(pixel, entry, SPIN_EXHAUSTED);
+    on_lost(pixel, entry, TIMED_OUT);
 }

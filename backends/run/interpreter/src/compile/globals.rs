@@ -1,0 +1,89 @@
+//! Global variables: private variables become words, the others buffers and textures.
+
+use naga::valid::FunctionInfo;
+use naga::{AddressSpace, ArraySize, GlobalVariable, MemoryDecorations, TypeInner};
+
+use super::compiler::{Compiler, Result, Value};
+use super::pointer::Pointer;
+use crate::bytecode::{Buffer, Space, Unsupported};
+use crate::operation::Word;
+
+/// The initial word of a private variable that the program writes before it reads: no index, no depth and not EMPTY.
+const UNWRITTEN: Word = 0xdead_beef;
+
+impl Compiler<'_> {
+    /// Declares every global variable that the program may access.
+    pub(super) fn declare_globals(&mut self, info: &FunctionInfo) {
+        for (handle, variable) in self.module.global_variables.iter() {
+            if info[handle].is_empty() {
+                continue;
+            }
+            let span = self.module.global_variables.get_span(handle);
+            match self.global(variable) {
+                Ok(value) => {
+                    self.globals.insert(handle, value);
+                }
+                Err(what) => self.unsupported.push(Unsupported { what, span }),
+            }
+        }
+        self.top = self.privates.len() as Word;
+        self.peak = self.top;
+    }
+
+    fn global(&mut self, variable: &GlobalVariable) -> Result<Value> {
+        let inner = self.layouts.inner(variable.ty);
+        let space = match variable.space {
+            AddressSpace::Private => {
+                let words = match variable.init {
+                    Some(init) => self.constant_value(init)?,
+                    None => vec![self.initial_word(variable); self.layouts.dense(inner)? as usize],
+                };
+                let first = self.privates.len() as Word;
+                let length = words.len() as u32;
+                self.privates.extend(words);
+                return Ok(Value::Pointer(Pointer::to_variable(first, length)));
+            }
+            AddressSpace::Uniform => Space::Uniform,
+            AddressSpace::Storage { .. } => Space::Storage,
+            AddressSpace::WorkGroup => Space::Workgroup,
+            AddressSpace::Handle => return self.texture(variable),
+            _ => return Err("a variable of this address space".to_owned()),
+        };
+        let number = u16::try_from(self.buffers.len()).map_err(|_| "more than 65536 buffers".to_owned())?;
+        self.buffers.push(Buffer {
+            name: variable.name.clone().unwrap_or_default(),
+            binding: variable.binding.map(|binding| (binding.group, binding.binding)),
+            space,
+            words: self.least_words(inner)?,
+            is_written: false,
+            commutes: false,
+            is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
+            is_wide: false,
+        });
+        Ok(Value::Pointer(Pointer::to_buffer(number)))
+    }
+
+    /// Returns the initial word of a private variable without an initialiser.
+    fn initial_word(&self, variable: &GlobalVariable) -> Word {
+        let is_written_first = |name: &String| self.options.written_first.contains(name);
+        if variable.name.as_ref().is_some_and(is_written_first) { UNWRITTEN } else { 0 }
+    }
+
+    /// Returns the words of a buffer without a runtime-sized array at its end.
+    fn least_words(&self, inner: &TypeInner) -> Result<u32> {
+        match inner {
+            TypeInner::Array { size: ArraySize::Dynamic, .. } => Ok(0),
+            TypeInner::Array { size: ArraySize::Constant(length), stride, .. } => Ok(length.get() * stride / 4),
+            TypeInner::Struct { members, span } => {
+                let last = members.last().map(|member| self.layouts.inner(member.ty));
+                let is_open = matches!(last, Some(TypeInner::Array { size: ArraySize::Dynamic, .. }));
+                Ok(if is_open { members.last().map_or(0, |member| member.offset / 4) } else { span / 4 })
+            }
+            other => {
+                let mut scalars = Vec::new();
+                self.layouts.scalars(other, 0, &mut scalars)?;
+                Ok(scalars.iter().map(|(at, words)| at + words).max().unwrap_or(0))
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Runs one case: sets memory to the initial state, starts the fragments and checks every final state.
+//!
+//! Input: a subject and a case. Output: the result of the search. Where a loop returns the frame to the pass under test,
+//! every final state of one iteration is the first state of a search of the next.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::case_setup::{CaseSetup, SearchOptions};
+use crate::context::SearchContext;
+use crate::explore::explore;
+use crate::final_state::FinalStateProperty;
+use crate::fragments::at_pixel;
+use crate::frame::Frame;
+use crate::memory::Memory;
+use crate::random_walk::walk;
+use crate::search::{Failure, FailureKind, SearchResult, Step};
+use crate::sequential::machine_with;
+use crate::state::{State, StepError};
+
+/// A case, and the iterations of its pass.
+pub(crate) struct CaseRun<'s> {
+    pub(crate) setup: CaseSetup<'s>,
+    pub(crate) iterations: Vec<Iteration<'s>>,
+}
+
+/// One iteration of the pass under test.
+pub(crate) struct Iteration<'s> {
+    pub(crate) context: SearchContext<'s>,
+    pub(crate) first: Result<State, StepError>,
+    /// The iteration before, and its steps.
+    pub(crate) before: Option<(usize, Vec<Step>)>,
+    /// The frame before the pass.
+    frame: Frame<'s>,
+}
+
+/// The result of all searches of a case.
+pub(crate) struct CaseResult {
+    pub(crate) states: usize,
+    pub(crate) is_exhaustive: bool,
+    /// The first failure and its iteration.
+    pub(crate) failure: Option<(usize, Failure)>,
+    /// The first wrong final state that the declared hazards permit.
+    pub(crate) hazard: Option<(usize, Failure)>,
+}
+
+impl<'s> CaseRun<'s> {
+    /// Runs everything that comes before the fragments under test.
+    pub(crate) fn new(setup: CaseSetup<'s>, options: &SearchOptions) -> Result<Self, String> {
+        let frame = setup.frame()?;
+        let mut run = CaseRun { setup, iterations: Vec::new() };
+        run.begin(frame, None, options)?;
+        Ok(run)
+    }
+
+    /// Starts the fragments of the pass under test, which is the next of the frame.
+    fn begin(
+        &mut self,
+        mut frame: Frame<'s>,
+        before: Option<(usize, Vec<Step>)>,
+        options: &SearchOptions,
+    ) -> Result<(), String> {
+        let CaseSetup { subject, case, .. } = &self.setup;
+        let runnable = self.setup.runnable();
+        for inputs in self.setup.inputs(runnable, &[]) {
+            frame.insert(runnable, &inputs)?;
+        }
+        let (mut context, words) = SearchContext::new(&runnable.program, &frame.memory, options.model);
+        context.has_fences &= subject.has_fences;
+        context.by_submission = subject.has_ordered_interlock;
+        context.one_by_one = options.one_by_one;
+        context.counts_samples = runnable.is_awaited;
+        context.helper = case.has_helper.then(|| case.new.len() - 1);
+        let new = case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, case.pixel));
+        let machines = new.map(|fragment| machine_with(&runnable.program, &fragment.inputs)).collect();
+        let first = context.start(words, machines);
+        self.iterations.push(Iteration { context, first, before, frame });
+        Ok(())
+    }
+
+    /// Searches every iteration.
+    pub(crate) fn run(&mut self, options: &SearchOptions) -> Result<CaseResult, String> {
+        let mut result = CaseResult { states: 0, is_exhaustive: true, failure: None, hazard: None };
+        let mut known: HashSet<Memory> = HashSet::new();
+        let mut at = 0;
+        while at < self.iterations.len() && result.failure.is_none() {
+            let (found, frames) = self.search(at, options);
+            result.states += found.states;
+            result.is_exhaustive &= found.is_exhaustive;
+            result.failure = found.failure.map(|failure| (at, failure));
+            result.hazard = result.hazard.or(found.hazard.map(|failure| (at, failure)));
+            for (words, steps) in found.next_iterations {
+                let Some(frame) = frames.get(&words).filter(|frame| known.insert(frame.memory.clone())) else {
+                    continue;
+                };
+                self.begin(frame.clone(), Some((at, steps)), options)?;
+            }
+            at += 1;
+        }
+        Ok(result)
+    }
+
+    /// Searches one iteration. Also returns, by the words of each final state that is followed by another iteration, the
+    /// frame before that iteration.
+    fn search(&self, at: usize, options: &SearchOptions) -> (SearchResult, HashMap<Vec<u32>, Frame<'s>>) {
+        let iteration = &self.iterations[at];
+        let context = &iteration.context;
+        let first = match &iteration.first {
+            Err(error) => {
+                let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(0, *error) });
+                let result = SearchResult { states: 1, is_exhaustive: true, failure, ..SearchResult::default() };
+                return (result, HashMap::new());
+            }
+            Ok(first) => first,
+        };
+        let mut property = FinalStateProperty::new(&self.setup, context, iteration.frame.clone());
+        let result = match options.random_schedules {
+            Some(count) => walk(context, first, &mut property, count),
+            None => explore(context, first.clone(), &mut property, options.limit),
+        };
+        (result, property.next_iterations)
+    }
+}

@@ -1,0 +1,153 @@
+//! Checks the final states of a case against its specification.
+//!
+//! Input: the words of a state. Output: a verdict. The remaining steps of the frame run first. Then the pixel is read out
+//! through the storage's own functions.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use fragbuf_codegen::FIRST_BINDING;
+use fragbuf_frame::COUNTERS_RESOURCE;
+use fragbuf_interpreter::Exit;
+use fragbuf_templates::COUNTERS;
+
+use crate::case_setup::CaseSetup;
+use crate::context::SearchContext;
+use crate::frame::Frame;
+use crate::memory::WIDTH;
+use crate::search::{Property, StateVerdict};
+use crate::sequential::{machine_with, run_alone};
+use crate::specification::Specification;
+use crate::stream::{Emitted, Stream};
+
+/// The property that final states meet the specification, and that the bound of an early cull is never too low.
+pub(crate) struct FinalStateProperty<'c, 's> {
+    setup: &'c CaseSetup<'s>,
+    frame: Frame<'s>,
+    /// Index in memory, first word in a state and number of words of every buffer that states hold.
+    buffers: Vec<(usize, usize, usize)>,
+    is_racy: bool,
+    known: HashMap<Vec<u32>, StateVerdict>,
+    /// What the pixel may have emitted, by the number of fragments that timed out.
+    emitted: HashMap<usize, Vec<Emitted>>,
+    /// The frame before the next iteration of the pass, by the words of the final state.
+    pub(crate) next_iterations: HashMap<Vec<u32>, Frame<'s>>,
+}
+
+impl<'c, 's> FinalStateProperty<'c, 's> {
+    /// Returns the property for one iteration of a case. `frame`: the frame before the pass under test.
+    pub(crate) fn new(setup: &'c CaseSetup<'s>, context: &SearchContext<'_>, frame: Frame<'s>) -> Self {
+        FinalStateProperty {
+            setup,
+            frame,
+            buffers: context.state_buffers().collect(),
+            is_racy: setup.subject.is_racy(),
+            known: HashMap::new(),
+            emitted: HashMap::new(),
+            next_iterations: HashMap::new(),
+        }
+    }
+
+    /// Runs the remaining steps of the frame from these words, reads both pixels and returns the verdict.
+    fn verdict(&mut self, words: &[u32]) -> Result<StateVerdict, String> {
+        let setup = self.setup;
+        let mut frame = self.frame.clone();
+        for (index, first, count) in &self.buffers {
+            frame.memory[*index].copy_from_slice(&words[*first..first + count]);
+        }
+        // Where a loop waits for samples, the number of samples that passed follows the words in memory.
+        let in_memory: usize = self.buffers.iter().map(|(_, _, count)| count).sum();
+        frame.skip_pass(words.get(in_memory).copied().unwrap_or(0))?;
+        if frame.advance(setup.runnable(), &|runnable| setup.inputs(runnable, setup.real_fragments()))? {
+            self.next_iterations.insert(words.to_vec(), frame);
+            return Ok(StateVerdict::NextIteration);
+        }
+        let specification = setup.specification_in(&frame);
+        if let (Some(requested), Some(stored)) = (frame.requested, setup.stored_in(&frame))
+            && requested != stored
+        {
+            let text = format!("the host step allocates {requested} fragments, but {stored} are stored");
+            return Ok(StateVerdict::Wrong(text));
+        }
+        let kept = frame.read_out(setup.case.pixel)?;
+        let neighbours = frame.read_out(WIDTH - 1 - setup.case.pixel)?;
+        let is_lost = setup.specification.neighbours_lost > 0;
+        if neighbours != if is_lost { Vec::new() } else { vec![setup.neighbour.words.clone()] } {
+            return Ok(StateVerdict::Wrong("the neighbouring pixel changed".to_owned()));
+        }
+        let plan = &frame.subject.plan;
+        let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);
+        let counters = counters.map_or(&[][..], |at| &frame.memory[FIRST_BINDING as usize + at]);
+        match specification.verdict(&kept, counters) {
+            StateVerdict::Correct => {
+                let wrong = self.emission_violation(&frame, &specification, counters)?;
+                Ok(wrong.map_or(StateVerdict::Correct, StateVerdict::Wrong))
+            }
+            verdict => Ok(verdict),
+        }
+    }
+
+    /// Describes what is wrong with the fragments that a pixel has emitted, where the storage emits a stream.
+    fn emission_violation(
+        &mut self,
+        frame: &Frame<'s>,
+        specification: &Specification,
+        counters: &[u32],
+    ) -> Result<Option<String>, String> {
+        let setup = self.setup;
+        let kept_set = &specification.kept_set;
+        let (Some(programs), Some(most)) = (&setup.subject.stream, kept_set.stream_length()) else {
+            return Ok(None);
+        };
+        let count = |name: &str| {
+            let mut known = COUNTERS.iter().zip(counters);
+            known.find(|((known, ..), _)| *known == name).map_or(0, |(_, count)| *count)
+        };
+        let mut memory = frame.memory.clone();
+        let dropped = count("timed_out") as usize;
+        if let Entry::Vacant(entry) = self.emitted.entry(dropped) {
+            let stream = Stream { programs, kept_set, most };
+            let fragments = specification.fragments.split_at(setup.case.prior.len());
+            entry.insert(stream.emitted(fragments, dropped, &mut memory)?);
+        }
+        let mut machine = machine_with(&programs.streamed, &[vec![setup.case.pixel]]);
+        if run_alone(&mut machine, &mut memory)? != Exit::Ended {
+            return Err("the emitted colour cannot be read".to_owned());
+        }
+        let (out_of_order, color) = (count("out_of_order"), machine.result());
+        let matches = |emitted: &Emitted| {
+            emitted.out_of_order == out_of_order && emitted.color.as_ref().is_none_or(|known| known == color)
+        };
+        let is_possible = self.emitted.get(&dropped).is_some_and(|known| known.iter().any(matches));
+        Ok((!is_possible).then(|| {
+            format!("no arrival order gives {out_of_order} fragments out of order and the emitted colour {color:08x?}")
+        }))
+    }
+}
+
+impl Property for FinalStateProperty<'_, '_> {
+    fn instant(&mut self, words: &[u32]) -> Option<String> {
+        let bound = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy)?;
+        for (index, first, count) in &self.buffers {
+            self.frame.memory[*index].copy_from_slice(&words[*first..first + count]);
+        }
+        let mut machine = machine_with(bound, &[vec![self.setup.case.pixel]]);
+        match run_alone(&mut machine, &mut self.frame.memory) {
+            Ok(Exit::Ended) => {}
+            _ => return Some("the bound cannot be read".to_owned()),
+        }
+        let (found, least) = (machine.result()[0], self.setup.specification_in(&self.frame).least_bound());
+        (found < least).then(|| {
+            format!("storage_bound is {found:08x}, but a fragment that must be kept has the greater key {least:08x}")
+        })
+    }
+
+    fn final_state(&mut self, words: &[u32]) -> StateVerdict {
+        if let Some(known) = self.known.get(words) {
+            return known.clone();
+        }
+        let verdict = self.verdict(words).unwrap_or_else(StateVerdict::Wrong);
+        self.known.insert(words.to_vec(), verdict.clone());
+        verdict
+    }
+}

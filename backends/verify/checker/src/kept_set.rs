@@ -1,0 +1,168 @@
+//! The set of fragments that a variant keeps, computed from its rows' reference model.
+//!
+//! Input: a subject. Output: which of any fragments are kept, and in which order they are read. Nothing is taken from the
+//! templates: the row's declaration is evaluated here.
+
+use fragbuf_templates::vocabulary::{Capability, Expression, Formula, KeptFragments, Side, TieBreak};
+
+use crate::merging::Merging;
+use crate::subject::Subject;
+
+/// Which fragments of a pixel are kept.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptSet {
+    rule: Option<KeepRule>,
+    /// Words of an entry that decide which is better, from the first on.
+    pub(crate) deciding: usize,
+    is_sorted: bool,
+    /// Whether the earlier of two fragments with equal keys is better.
+    is_by_arrival: bool,
+    /// How an overflow row merges fragments, so that a colour may belong to several.
+    pub(crate) merging: Option<Merging>,
+}
+
+/// The declaration of a row, with the numbers of a subject.
+#[derive(Clone, Debug)]
+struct KeepRule {
+    side: Side,
+    /// How many of a group are kept; `None`: all.
+    most: Option<usize>,
+    /// The number of a group, over a fragment's key, k and constants of rows.
+    group: Option<Expression>,
+    k: Option<u32>,
+    constants: Vec<(String, u32)>,
+}
+
+impl KeptSet {
+    /// Returns the kept set of a subject with `k` entries.
+    pub(crate) fn new(subject: &Subject, k: Option<u32>) -> Self {
+        let merging = Merging::new(subject);
+        KeptSet {
+            rule: subject.plan.selection.kept().and_then(|kept| KeepRule::new(&kept, k, subject)),
+            // A merged colour belongs to no single fragment, so entries are ordered by their keys only.
+            deciding: if merging.is_some() { 1 } else { deciding_words(subject) },
+            merging,
+            is_sorted: is_sorted(subject),
+            is_by_arrival: tie_break(subject) == Some(TieBreak::Submission),
+        }
+    }
+
+    /// Returns whether the rows do not declare which fragments are kept.
+    pub(crate) fn is_unknown(&self) -> bool {
+        self.rule.is_none()
+    }
+
+    /// Returns the most entries that a pixel holds, where there is a limit.
+    pub(crate) fn most(&self) -> Option<usize> {
+        let rule = self.rule.as_ref()?;
+        match rule.group {
+            Some(_) => rule.k.map(|k| k as usize),
+            None => rule.most,
+        }
+    }
+
+    /// Returns whether the kept fragments and their order are unique: arrival decides between equal keys.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.is_by_arrival && self.is_sorted
+    }
+
+    /// Returns how many fragments a stream keeps: the worst are kept, and the better ones are emitted.
+    pub(crate) fn stream_length(&self) -> Option<usize> {
+        self.rule.as_ref().filter(|rule| rule.side == Side::Worst)?.most
+    }
+
+    /// Returns which of these fragments, given in order of arrival, are kept; best first.
+    pub(crate) fn kept_of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+        match self.is_by_arrival {
+            true => fragments.sort_by_key(|fragment| fragment[0]),
+            false => fragments.sort(),
+        }
+        match &self.rule {
+            Some(rule) => rule.kept_of(fragments),
+            None => fragments,
+        }
+    }
+
+    /// Returns which fragments are kept if only one is kept of those whose first words are equal.
+    pub(crate) fn kept_of_distinct(&self, mut fragments: Vec<Vec<u32>>, words: usize) -> Vec<Vec<u32>> {
+        fragments.sort();
+        fragments.dedup_by(|one, other| one.iter().zip(other.iter()).take(words).all(|(one, other)| one == other));
+        self.kept_of(fragments)
+    }
+
+    /// Returns whether entries are read in the order of their deciding words, if the rows declare an order.
+    pub(crate) fn is_in_order(&self, entries: &[Vec<u32>]) -> bool {
+        // Where arrival decides, `is_exact` compares the sequences.
+        let deciding = if self.is_by_arrival { 1 } else { self.deciding };
+        let decides = |entry: &Vec<u32>| entry[..deciding.min(entry.len())].to_vec();
+        !self.is_sorted || entries.is_sorted_by_key(decides)
+    }
+}
+
+impl KeepRule {
+    /// Evaluates a row's declaration. `None`: a formula of the row has no value here.
+    fn new(kept: &KeptFragments, k: Option<u32>, subject: &Subject) -> Option<Self> {
+        let group = kept.group.as_ref().map(Formula::read).transpose().ok()?;
+        let constants = subject.plan.constants.clone();
+        let mut rule = KeepRule { side: kept.side, most: None, group, k: Some(k.unwrap_or(1)), constants };
+        rule.most = match &kept.most {
+            Some(most) => Some(most.evaluate(&|symbol| rule.value(symbol, 0)).ok()? as usize),
+            None => None,
+        };
+        rule.group_of(0)?;
+        Some(KeepRule { k, ..rule })
+    }
+
+    /// Returns which of the fragments, given best first, are kept.
+    fn kept_of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+        let Some(most) = self.most else { return fragments };
+        let groups: Vec<Option<u64>> = fragments.iter().map(|fragment| self.group_of(fragment[0])).collect();
+        let is_kept = |at: usize| {
+            let ahead = match self.side {
+                Side::Best => &groups[..at],
+                Side::Worst => &groups[at + 1..],
+            };
+            ahead.iter().filter(|group| **group == groups[at]).count() < most
+        };
+        let mut at = 0..;
+        fragments.retain(|_| at.next().is_some_and(is_kept));
+        fragments
+    }
+
+    fn group_of(&self, key: u32) -> Option<u64> {
+        let Some(group) = &self.group else { return Some(0) };
+        group.evaluate(&|symbol| self.value(symbol, key)).ok()
+    }
+
+    fn value(&self, symbol: &str, key: u32) -> Option<u64> {
+        match symbol {
+            "k" => self.k.map(u64::from),
+            "key" => Some(u64::from(key)),
+            // Depths are rounded down to whole millionths.
+            "depth_millionths" => Some((f32::from_bits(key) * 1.0e6) as u64),
+            _ => self.constants.iter().find(|(name, _)| name == symbol).map(|(_, value)| u64::from(*value)),
+        }
+    }
+}
+
+/// Returns how many words decide which fragment is better, from the first on.
+fn deciding_words(subject: &Subject) -> usize {
+    match tie_break(subject) {
+        Some(TieBreak::Unordered) => 1,
+        Some(TieBreak::Payload | TieBreak::Attribute | TieBreak::Submission) | None => {
+            subject.plan.layout.entry_words() as usize
+        }
+    }
+}
+
+fn tie_break(subject: &Subject) -> Option<TieBreak> {
+    subject.plan.selection.rows.iter().find_map(|selected| selected.row.order)
+}
+
+/// Returns whether the storage row, and not a later sort, provides the order of depth.
+fn is_sorted(subject: &Subject) -> bool {
+    let plan = &subject.plan;
+    let given = plan.variant.description_values(&plan.selection);
+    let mut storages = plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
+    storages.any(|selected| selected.row.provides_to(&given, Capability::Sorted))
+}

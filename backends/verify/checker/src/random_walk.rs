@@ -1,0 +1,118 @@
+//! Runs single random schedules, for more fragments than all interleavings can be explored of.
+//!
+//! Input: a first state, a property and a number of seeds. Output: the first failure. An even seed chooses any fragment at
+//! every step. An odd seed gives fragments priorities and lowers that of the running one at a few random steps
+//! (Burckhardt et al. 2010, PCT).
+
+use fragbuf_interpreter::Machine;
+
+use crate::context::SearchContext;
+use crate::search::{Failure, FailureKind, Property, SearchResult, StateVerdict, Step};
+use crate::state::{State, racing};
+
+/// The most steps of a schedule.
+const LONGEST: usize = 100_000;
+
+/// Runs one schedule per seed.
+pub(crate) fn walk(
+    context: &SearchContext<'_>,
+    first: &State,
+    property: &mut dyn Property,
+    seeds: u32,
+) -> SearchResult {
+    let mut result = SearchResult::default();
+    let mut machine = Machine::new(context.program);
+    for seed in 0..seeds {
+        let mut walk = RandomWalk { context, rng: Rng::new(seed), steps: Vec::new(), by_priority: seed % 2 == 1 };
+        let end = walk.run(&mut machine, first.clone(), property);
+        result.states += walk.steps.len();
+        result.failure = match end {
+            Err(kind) => Some(Failure { steps: walk.steps, kind }),
+            Ok(None) => None,
+            Ok(Some((verdict, words))) => result.record(verdict, &words, || walk.steps),
+        };
+        if result.failure.is_some() {
+            break;
+        }
+    }
+    result
+}
+
+struct RandomWalk<'a, 'p> {
+    context: &'a SearchContext<'p>,
+    rng: Rng,
+    steps: Vec<Step>,
+    by_priority: bool,
+}
+
+impl<'p> RandomWalk<'_, 'p> {
+    /// Runs the schedule; returns its final state with the verdict. `Ok(None)`: it is longer than [`LONGEST`].
+    fn run(
+        &mut self,
+        machine: &mut Machine<'p>,
+        mut state: State,
+        property: &mut dyn Property,
+    ) -> Result<Option<(StateVerdict, Vec<u32>)>, FailureKind> {
+        let mut priorities: Vec<u32> = state.fragments.iter().map(|_| self.rng.below(1 << 20)).collect();
+        while self.steps.len() < LONGEST {
+            if let Some((one, other)) = racing(self.context, &state) {
+                return Err(FailureKind::DataRace(one, other));
+            }
+            let running = self.context.running(&state);
+            if running.is_empty() {
+                let words = state.final_words(self.context);
+                return Ok(Some((property.final_state(&words), words)));
+            }
+            let able: Vec<usize> = running
+                .iter()
+                .copied()
+                .filter(|at| self.context.choices(&state, *at) > 0 && !self.context.waits(machine, &state, *at))
+                .collect();
+            if able.is_empty() {
+                return Err(FailureKind::Deadlock(running));
+            }
+            let fragment = self.pick(&able, &mut priorities);
+            let choice = self.rng.below(self.context.choices(&state, fragment));
+            self.steps.push((fragment, choice));
+            match self.context.step(machine, &state, fragment, choice) {
+                Err(error) => return Err(FailureKind::Step(fragment, error)),
+                Ok((next, _)) => {
+                    if next.words != state.words
+                        && let Some(text) = property.instant(&next.words)
+                    {
+                        return Err(FailureKind::Instant(text));
+                    }
+                    state = next;
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn pick(&mut self, able: &[usize], priorities: &mut [u32]) -> usize {
+        if !self.by_priority {
+            return able[self.rng.below(able.len() as u32) as usize];
+        }
+        let highest = able.iter().copied().max_by_key(|at| priorities[*at]).unwrap_or(able[0]);
+        if self.rng.below(16) == 0 {
+            priorities[highest] = self.rng.below(priorities[highest].max(1));
+        }
+        highest
+    }
+}
+
+/// A random number generator (xorshift): equal seeds give equal numbers.
+struct Rng(u64);
+
+impl Rng {
+    fn new(seed: u32) -> Self {
+        Rng((u64::from(seed) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    fn below(&mut self, bound: u32) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        ((self.0 >> 33) % u64::from(bound.max(1))) as u32
+    }
+}

@@ -1,0 +1,87 @@
+//! The parts that every search shares: the property that it checks, its steps, and what it finds.
+
+use crate::state::StepError;
+
+/// A property of states that a search checks.
+pub(crate) trait Property {
+    /// Returns what is wrong with memory at an instant.
+    fn instant(&mut self, words: &[u32]) -> Option<String>;
+    /// Returns the verdict on memory in a final state.
+    fn final_state(&mut self, words: &[u32]) -> StateVerdict;
+}
+
+/// The verdict on a final state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum StateVerdict {
+    Correct,
+    /// Wrong, with a description, but permitted by the declared hazards.
+    Hazard(String),
+    Wrong(String),
+    /// The frame is not over: a loop draws the pass again.
+    NextIteration,
+}
+
+/// One step: the fragment, and the number of the way in which its event is performed.
+pub(crate) type Step = (usize, u32);
+
+/// What a search found.
+#[derive(Debug, Default)]
+pub(crate) struct SearchResult {
+    pub(crate) states: usize,
+    /// Whether every state was followed; false if some were beyond the limit.
+    pub(crate) is_exhaustive: bool,
+    pub(crate) failure: Option<Failure>,
+    /// The first wrong final state that the declared hazards permit.
+    pub(crate) hazard: Option<Failure>,
+    /// Memory in final states from which the pass is drawn again, and the steps that reached each first.
+    pub(crate) next_iterations: Vec<(Vec<u32>, Vec<Step>)>,
+}
+
+impl SearchResult {
+    /// Records the verdict on a final state that the steps lead to; returns the failure, if it is one.
+    pub(crate) fn record(
+        &mut self,
+        verdict: StateVerdict,
+        words: &[u32],
+        steps: impl FnOnce() -> Vec<Step>,
+    ) -> Option<Failure> {
+        match verdict {
+            StateVerdict::Correct => None,
+            StateVerdict::Wrong(text) => Some(Failure { steps: steps(), kind: FailureKind::FinalState(text) }),
+            StateVerdict::Hazard(text) => {
+                self.hazard.get_or_insert_with(|| Failure { steps: steps(), kind: FailureKind::FinalState(text) });
+                None
+            }
+            StateVerdict::NextIteration => {
+                if !self.next_iterations.iter().any(|(known, _)| known == words) {
+                    self.next_iterations.push((words.to_vec(), steps()));
+                }
+                None
+            }
+        }
+    }
+}
+
+/// A failure, and the steps that lead to it.
+#[derive(Clone, Debug)]
+pub(crate) struct Failure {
+    pub(crate) steps: Vec<Step>,
+    pub(crate) kind: FailureKind,
+}
+
+/// What went wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum FailureKind {
+    /// The final state is wrong, as the property describes.
+    FinalState(String),
+    /// Memory is wrong at an instant, as the property describes.
+    Instant(String),
+    /// The next accesses of two fragments are a data race.
+    DataRace(usize, usize),
+    /// No fragment can run, and these wait.
+    Deadlock(Vec<usize>),
+    /// No steps lead from here to a final state of these.
+    Livelock(Vec<usize>),
+    /// A step of this fragment fails.
+    Step(usize, StepError),
+}

@@ -1,0 +1,63 @@
+//! Reads pixels out through users' storages that are wrong: reading ends with an error.
+
+use fragbuf_checker::{FrameMemory, ReadOut, ReadOutError};
+use fragbuf_codegen::{Profile, plan};
+use fragbuf_model::Selection;
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Template;
+
+use crate::subjects::variant;
+
+/// Words of each resource. None of them marks an empty slot.
+const WORDS: usize = 64;
+
+/// Reads a pixel of `kb` out, whose storage has these replacements in its source.
+fn read(replacements: &[(&str, &str)]) -> Result<Vec<Vec<u32>>, ReadOutError> {
+    let registry = Registry::builtin();
+    let mut row = registry.row("storage", "sorted_array").unwrap().clone();
+    let template = row.template.unwrap();
+    let mut source = template.source.into_owned();
+    for (before, after) in replacements {
+        assert_eq!(source.matches(before).count(), 1, "{before}");
+        source = source.replace(before, after);
+    }
+    row.template = Some(Template::new("user/sorted_array.wgsl", source));
+    let registry = registry.with(row);
+    let variant = variant("kb", &[], &registry).unwrap();
+    let plan = plan(&variant, &Selection::first(&variant), &registry).unwrap();
+    let read_out = ReadOut::new(&plan, Profile::Native, &registry).unwrap();
+    let symbol = |name: &str| [("width", 1), ("height", 1), ("k", 2)].iter().find(|one| one.0 == name).map(|one| one.1);
+    let mut frame = FrameMemory::new(&plan, [1, 1], symbol, |_| Some(vec![7; WORDS]));
+    read_out.pixel(&mut frame, [0, 0])
+}
+
+const NEXT: &str = "return sorted_array_seek(pixel, cursor + 1u);";
+const READ: &str = "return sorted_array_read(pixel, cursor);";
+
+#[test]
+fn a_storage_without_errors_is_read_to_its_end() {
+    assert_eq!(read(&[]).map(|entries| entries.len()), Ok(2));
+}
+
+#[test]
+fn a_list_that_returns_to_an_earlier_fragment_is_endless() {
+    assert_eq!(read(&[(NEXT, "return cursor;")]), Err(ReadOutError::Endless));
+    assert_eq!(read(&[(NEXT, "return cursor ^ 1u;")]), Err(ReadOutError::Endless));
+}
+
+#[test]
+fn a_list_with_more_fragments_than_words_is_endless() {
+    let first = (READ, "return sorted_array_read(pixel, 0u);");
+    assert_eq!(read(&[(NEXT, "return cursor + 1u;"), first]), Err(ReadOutError::Endless));
+}
+
+#[test]
+fn a_call_of_storage_next_that_does_not_end_is_endless() {
+    let next = "var next = cursor; while next != END { next ^= 1u; } return next;";
+    assert_eq!(read(&[(NEXT, next)]), Err(ReadOutError::Endless));
+}
+
+#[test]
+fn a_cursor_beyond_the_buffers_is_out_of_bounds() {
+    assert_eq!(read(&[(NEXT, "return cursor + 1000u;")]), Err(ReadOutError::OutOfBounds));
+}

@@ -1,0 +1,207 @@
+//! Checks that rows are compatible: `requires ⊆ provides`, and the conditions on the description hold, for every
+//! combination of one alternative per axis. The help is computed: the single changes that make the description legal.
+
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Capability, Condition, DescriptionValues, Row};
+
+use crate::user_row::value_source;
+use crate::variant::{AxisChoice, with_extra_words};
+use crate::{Diagnostic, Diagnostics, Draft, SourceSpan, codes};
+
+/// Checks every combination; `given` does not include the extra words of rows.
+pub(super) fn check(
+    draft: &Draft,
+    choices: &[AxisChoice],
+    given: DescriptionValues,
+    registry: &Registry,
+    diagnostics: &mut Diagnostics,
+) {
+    let context = Context { draft, choices, given, registry };
+    for combination in combinations(choices) {
+        let rules = Rules::new(&combination, given);
+        for (index, row) in combination.iter().enumerate() {
+            if !rules.matches_keep(row) {
+                diagnostics.push(context.keep_mismatch(index, &combination));
+            }
+            for capability in rules.missing(row) {
+                diagnostics.push(context.missing(index, capability, &combination));
+            }
+            for condition in rules.unmet(row) {
+                diagnostics.push(context.unmet(index, condition, &combination));
+            }
+        }
+    }
+}
+
+/// One row per axis, in the order of the choices.
+type Combination<'a> = Vec<&'a Row>;
+
+/// Returns every combination of one alternative per axis.
+fn combinations(choices: &[AxisChoice]) -> Vec<Combination<'_>> {
+    let mut combinations: Vec<Combination<'_>> = vec![Vec::new()];
+    for chosen in choices {
+        combinations = combinations
+            .iter()
+            .flat_map(|combination| {
+                chosen.alternatives.iter().map(|selected| [combination.as_slice(), &[&*selected.row]].concat())
+            })
+            .collect();
+    }
+    combinations
+}
+
+/// The rules, applied to one combination.
+struct Rules<'p> {
+    combination: &'p [&'p Row],
+    given: DescriptionValues,
+}
+
+impl<'p> Rules<'p> {
+    fn new(combination: &'p [&'p Row], given: DescriptionValues) -> Self {
+        Rules { combination, given: with_extra_words(given, combination.iter().copied()) }
+    }
+
+    /// Returns the capabilities that `row` requires and no row of the combination provides.
+    fn missing(&self, row: &Row) -> impl Iterator<Item = Capability> {
+        let is_provided =
+            |capability: &Capability| self.combination.iter().any(|other| other.provides_to(&self.given, *capability));
+        row.requires.iter().copied().filter(move |capability| !is_provided(capability))
+    }
+
+    /// Returns the conditions of `row` that the description does not meet.
+    fn unmet<'r>(&self, row: &'r Row) -> impl Iterator<Item = &'r Condition> {
+        row.conditions.iter().filter(|condition| !self.given.meets(&condition.formula))
+    }
+
+    /// Whether `row` can keep the fragments that the description keeps. A storage that keeps the k best requires k. A
+    /// storage that keeps all fragments requires `keep all`, unless another row selects the k best afterwards. A row with
+    /// a buffer whose size depends on k requires k, too.
+    fn matches_keep(&self, row: &Row) -> bool {
+        let is_limited = self.given.keep.is_some();
+        let keeps = |capability: Capability| row.provides.contains(&capability);
+        match (keeps(Capability::KeepsBest), keeps(Capability::KeepsAll)) {
+            (true, false) => is_limited,
+            (false, true) => {
+                !is_limited || self.combination.iter().any(|other| other.provides.contains(&Capability::SelectsBest))
+            }
+            _ => is_limited || !has_size_in_k(row),
+        }
+    }
+
+    fn is_satisfied(&self, row: &Row) -> bool {
+        self.missing(row).next().is_none() && self.unmet(row).next().is_none()
+    }
+
+    fn is_legal(&self) -> bool {
+        self.combination.iter().all(|row| self.matches_keep(row) && self.is_satisfied(row))
+    }
+}
+
+fn has_size_in_k(row: &Row) -> bool {
+    row.resources.iter().any(|resource| resource.mentions("k"))
+}
+
+/// Values of k that a help text suggests, the most useful first.
+const SUGGESTED_K: [u32; 4] = [8, 4, 2, 1];
+
+/// The context of the diagnostics.
+struct Context<'a> {
+    draft: &'a Draft,
+    choices: &'a [AxisChoice],
+    given: DescriptionValues,
+    registry: &'a Registry,
+}
+
+impl Context<'_> {
+    fn keep_mismatch(&self, index: usize, combination: &Combination<'_>) -> Diagnostic {
+        let chosen = &self.choices[index];
+        let keep = self.keep_line().unwrap_or(&chosen.span);
+        let with = |keep| Rules::new(combination, DescriptionValues { keep, ..self.given });
+        let is_legal = |k: &u32| combination.iter().all(|row| with(Some(*k)).is_satisfied(row));
+        let (kept, fix, other) = match self.given.keep {
+            Some(_) => ("the k best fragments", "keep all".to_owned(), None),
+            None => {
+                let k = SUGGESTED_K.into_iter().find(is_legal).unwrap_or(SUGGESTED_K[0]);
+                ("every fragment", format!("keep {k}"), Some(k))
+            }
+        };
+        // If the other `keep` line causes the next error, the help includes the change that avoids it.
+        let rules = with(other);
+        let unsatisfied = combination.iter().find(|row| !rules.is_satisfied(row));
+        let also = unsatisfied.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
+        let storage = name(combination[index]);
+        let others = self.fixes(combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
+        Diagnostic::new(
+            codes::KEEP_MISMATCH,
+            keep,
+            format!("the description keeps {kept}, but {storage} does not"),
+            format!("write `{fix};`{also}{others}"),
+        )
+        .label(&chosen.span, format!("{storage} is chosen here"))
+    }
+
+    fn keep_line(&self) -> Option<&SourceSpan> {
+        self.draft.keep.as_ref().map(|keep| &keep.count.span)
+    }
+
+    /// Reports a capability that `combination[index]` requires and no row provides.
+    fn missing(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> Diagnostic {
+        let chosen = &self.choices[index];
+        let help = match self.fixes(combination) {
+            Some(fixes) => format!("choose {fixes}"),
+            None => {
+                let providers: Vec<String> = self.registry.providers_of(capability).map(name).collect();
+                format!(
+                    "more than one change is needed; {} is provided by {}",
+                    capability.meaning(),
+                    joined(&providers)
+                )
+            }
+        };
+        let message =
+            format!("{} requires {}, but no choice provides it", name(combination[index]), capability.meaning());
+        let mut diagnostic = Diagnostic::new(codes::MISSING_CAPABILITY, &chosen.span, message, help);
+        for (other, row) in self.choices.iter().zip(combination) {
+            let could = self.registry.rows_of(&other.axis).any(|row| row.provides.contains(&capability));
+            if could && other.span != chosen.span {
+                diagnostic = diagnostic.label(&other.span, format!("{} does not provide it", name(row)));
+            }
+        }
+        diagnostic
+    }
+
+    /// Reports a condition of `combination[index]` that the description does not meet.
+    fn unmet(&self, index: usize, condition: &Condition, combination: &Combination<'_>) -> Diagnostic {
+        let row = name(combination[index]);
+        let or_else = self.fixes(combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
+        Diagnostic::new(
+            codes::MISSING_CAPABILITY,
+            &self.choices[index].span,
+            format!("{row} requires {}, but the description does not have it", condition.meaning),
+            format!("{}{or_else}", condition.help),
+        )
+    }
+
+    /// Returns the rows that make the combination legal if one of them replaces the row of its axis.
+    fn fixes(&self, combination: &Combination<'_>) -> Option<String> {
+        let mut fixes = Vec::new();
+        for (index, chosen) in self.choices.iter().enumerate() {
+            for row in self.registry.rows_of(&chosen.axis).filter(|row| row.key != Registry::CLOSURE) {
+                let mut other = combination.clone();
+                other[index] = row;
+                if Rules::new(&other, self.given).is_legal() {
+                    fixes.push(name(row));
+                }
+            }
+        }
+        (!fixes.is_empty()).then(|| joined(&fixes))
+    }
+}
+
+fn name(row: &Row) -> String {
+    format!("`{}: {}`", row.axis, value_source(&row.key))
+}
+
+fn joined(names: &[String]) -> String {
+    names.join(" or ")
+}

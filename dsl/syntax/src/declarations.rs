@@ -1,0 +1,64 @@
+//! The declarations of attributes and uniforms.
+//!
+//! Input: names and type names as written. Output: attributes and uniforms with unique names. Formats and types are those
+//! of `fragbuf_model`.
+
+use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType, codes};
+
+use crate::names;
+use crate::report::{FIRST, Report};
+use crate::unknown_name;
+
+/// `name: type`, both as written.
+pub(crate) struct Declaration {
+    pub name: Spanned<String>,
+    pub type_name: Spanned<String>,
+}
+
+/// Returns the attributes, and the names of those with an unknown format.
+pub(crate) fn attributes(declarations: Vec<Declaration>, report: &mut Report) -> (Vec<Attribute>, Vec<String>) {
+    let formats = Format::ALL.map(|format| (format.keyword(), format));
+    let (known, invalid) = resolve_types(declarations, "attribute", &formats, report);
+    (known.into_iter().map(|(name, format)| Attribute { name, format }).collect(), invalid)
+}
+
+/// Returns the uniforms, and the names of those with an unknown type.
+pub(crate) fn uniforms(declarations: Vec<Declaration>, report: &mut Report) -> (Vec<Uniform>, Vec<String>) {
+    let types = UniformType::ALL.map(|ty| (ty.keyword(), ty));
+    let (known, invalid) = resolve_types(declarations, "uniform", &types, report);
+    (known.into_iter().map(|(name, kind)| Uniform { name, kind }).collect(), invalid)
+}
+
+type NamedTypes<T> = Vec<(Spanned<String>, Spanned<T>)>;
+
+/// Returns each name with its type, without duplicates, and separately the names with an unknown type.
+fn resolve_types<T: Copy>(
+    declarations: Vec<Declaration>,
+    what: &str,
+    types: &[(&str, T)],
+    report: &mut Report,
+) -> (NamedTypes<T>, Vec<String>) {
+    let mut seen: Vec<Spanned<String>> = Vec::new();
+    let (mut known, mut invalid) = (Vec::new(), Vec::new());
+    for Declaration { name, type_name } in declarations {
+        let name = names::declared(&name, what, report);
+        if let Some(first) = seen.iter().find(|other| other.value == name.value) {
+            let message = format!("duplicate {what} `{}`", name.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.span, message, "rename one of them");
+            report.push(diagnostic.label(&first.span, FIRST));
+            continue;
+        }
+        seen.push(name.clone());
+        match types.iter().find(|(keyword, _)| *keyword == type_name.value) {
+            Some((_, ty)) => known.push((name, Spanned::new(*ty, type_name.span))),
+            None => {
+                let message = format!("unknown {what} type `{}`", type_name.value);
+                let keywords: Vec<&str> = types.iter().map(|(keyword, _)| *keyword).collect();
+                let help = unknown_name::help(&type_name.value, &keywords);
+                report.error(codes::UNKNOWN_FORMAT, &type_name.span, message, help);
+                invalid.push(name.value);
+            }
+        }
+    }
+    (known, invalid)
+}

@@ -1,0 +1,113 @@
+//! Builds a draft from the items of a buffer.
+//!
+//! Input: a description as written. Output: a [`Draft`] in which every function is type-checked and lowered, and lists
+//! what it reads, including through helpers. A function with an error is reported and omitted.
+
+use fragbuf_model::{Draft, Format, Keep, UserFunction, codes};
+
+use crate::check;
+use crate::environment::{Environment, Signature};
+use crate::items::{Items, RawDescription};
+use crate::lower;
+use crate::raw_function::{RawFunction, Role};
+use crate::reads;
+use crate::report::Report;
+use crate::tree::Function;
+use crate::types::Type;
+
+/// Returns the draft of a description: checks and lowers all functions.
+pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
+    let RawDescription { name, preset, items } = description;
+    let environment = environment(&items, report);
+    let Items { attributes, uniforms, keep, choices, functions, .. } = items;
+    let checked: Vec<(Role, Option<Function>)> =
+        functions.into_iter().map(|raw| (raw.role.clone(), check::function(raw, &environment, report))).collect();
+    let helpers: Vec<Option<&Function>> = helper_functions(&checked, &environment);
+    reads::reject_recursion(&helpers, report);
+    let keep = keep.map(|(count, _)| Keep { count, criterion: None });
+    let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
+    for (role, function) in &checked {
+        let Some(function) = function else { continue };
+        let lowered = lower::function(function, &environment.helpers);
+        let user = UserFunction {
+            name: function.name.clone(),
+            span: function.span.clone(),
+            rust: function.rust.clone(),
+            wgsl: lowered.source,
+            lines: lowered.lines,
+            reads: reads::of(function, &helpers),
+        };
+        add_function(&mut draft, role, user);
+    }
+    draft
+}
+
+fn add_function(draft: &mut Draft, role: &Role, function: UserFunction) {
+    match role {
+        Role::Criterion => {
+            if let Some(keep) = &mut draft.keep {
+                keep.criterion = Some(function);
+            }
+        }
+        Role::Constraint(_) => draft.constraints.push(function),
+        Role::Resolve => draft.resolve = Some(function),
+        Role::Helper(_) => draft.helpers.push(function),
+    }
+}
+
+/// Returns the names that closures can use. Names with an invalid type are included, so that their uses are not reported.
+fn environment(items: &Items, report: &mut Report) -> Environment {
+    let invalid = |names: &[String]| names.iter().map(|name| (name.clone(), Type::Error)).collect::<Vec<_>>();
+    let mut attributes = invalid(&items.invalid_attributes);
+    for attribute in &items.attributes {
+        attributes.push((attribute.name.value.clone(), Type::of_attribute(attribute.format.value)));
+    }
+    if attributes.is_empty() {
+        let payload = [("color", Format::Rgba8), ("depth", Format::F32)];
+        attributes = payload.map(|(name, format)| (name.to_string(), Type::of_attribute(format))).to_vec();
+    }
+    let mut uniforms = invalid(&items.invalid_uniforms);
+    for uniform in &items.uniforms {
+        uniforms.push((uniform.name.value.clone(), Type::of_uniform(uniform.kind.value)));
+    }
+    let mut helpers = Vec::new();
+    for raw in &items.functions {
+        if let Role::Helper(name) = &raw.role {
+            helpers.push(signature(name, raw, report));
+        }
+    }
+    Environment { attributes, uniforms, helpers }
+}
+
+fn signature(name: &str, raw: &RawFunction, report: &mut Report) -> Signature {
+    let parameters = raw
+        .parameters
+        .iter()
+        .map(|parameter| parameter.ty.as_ref().map_or(Type::Error, |ty| check::written_type(ty, report)))
+        .collect();
+    let result = match &raw.output {
+        Some(ty) => check::written_type(ty, report),
+        None => {
+            let message = format!("the function `{name}` has no return type");
+            report.error(codes::MISSING_VALUE, &raw.name_span, message, "add one: `fn … -> f32 { … }`");
+            Type::Error
+        }
+    };
+    if matches!(result, Type::Uniforms | Type::Unit) {
+        let message = format!("a function cannot return `{}`", result.rust());
+        let help = "return a number, a vector, a `bool` or a `Fragment`";
+        report.error(codes::TYPE_MISMATCH, &raw.name_span, message, help);
+    }
+    Signature { name: name.to_string(), span: raw.name_span.clone(), parameters, result }
+}
+
+fn helper_functions<'a>(
+    checked: &'a [(Role, Option<Function>)],
+    environment: &Environment,
+) -> Vec<Option<&'a Function>> {
+    let find = |signature: &Signature| {
+        let role = Role::Helper(signature.name.clone());
+        checked.iter().find(|(other, _)| *other == role).and_then(|(_, function)| function.as_ref())
+    };
+    environment.helpers.iter().map(find).collect()
+}

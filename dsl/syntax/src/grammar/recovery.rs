@@ -1,0 +1,53 @@
+//! The boundaries of items, and where parsing continues after an error.
+//!
+//! Input: a cursor inside the buffer's braces. Output: the cursor after an item, or at the next one.
+
+use proc_macro2::{Delimiter, Spacing, TokenTree};
+
+use super::cursor::{Cursor, is_punct};
+use crate::report::{Report, Stop};
+
+/// Takes the `;` after an item. If it is missing and the next item starts here, parsing continues there.
+pub(super) fn end_of_item(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<(), Stop> {
+    if cursor.take_punct(';') {
+        return Ok(());
+    }
+    cursor.expected("`;`", format!("end the item with `;`: `{shape}`"), report);
+    if starts_item(cursor) { Ok(()) } else { Err(Stop) }
+}
+
+/// Returns whether the next tokens can only start a new item.
+pub(super) fn starts_item(cursor: &Cursor) -> bool {
+    match (cursor.peek(), cursor.peek_second()) {
+        (Some(TokenTree::Ident(keyword)), second) => match keyword.to_string().as_str() {
+            "where" | "fn" => true,
+            "keep" => match second {
+                Some(TokenTree::Ident(all)) => all == "all",
+                other => matches!(other, Some(TokenTree::Literal(_))),
+            },
+            "fragment" | "uniform" => matches!(second, Some(TokenTree::Group(_))),
+            "resolve" => is_punct(second, '|') || is_single_colon(second),
+            _ => is_single_colon(second),
+        },
+        _ => false,
+    }
+}
+
+fn is_single_colon(token: Option<&TokenTree>) -> bool {
+    matches!(token, Some(TokenTree::Punct(punct))
+        if punct.as_char() == ':' && punct.spacing() == Spacing::Alone)
+}
+
+/// Moves after the next `;` or `{ … }`, or to the next item, and always beyond position `before`.
+pub(super) fn recover(cursor: &mut Cursor, before: usize) {
+    while cursor.position() == before || !starts_item(cursor) {
+        let Some(token) = cursor.take() else { return };
+        if is_punct(Some(&token), ';') {
+            return;
+        }
+        if matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace) {
+            cursor.take_punct(';');
+            return;
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The items of a buffer.
+//!
+//! Input: items from the grammar or the builder, one at a time. Output: [`Items`] without duplicates; function bodies are
+//! not type-checked.
+
+use fragbuf_model::{Attribute, Choice, Diagnostic, KeepCount, SourceSpan, Spanned, Uniform, codes};
+
+use crate::declarations::{self, Declaration};
+use crate::raw_function::{FunctionTokens, RawFunction, Role};
+use crate::report::{FIRST, Report};
+
+/// A description as written: `buffer Name from preset { items }`.
+pub(crate) struct RawDescription {
+    pub name: Spanned<String>,
+    pub preset: Option<Spanned<String>>,
+    pub items: Items,
+}
+
+/// The items of a buffer.
+#[derive(Default)]
+pub(crate) struct Items {
+    pub attributes: Vec<Attribute>,
+    pub uniforms: Vec<Uniform>,
+    /// The names of attributes with an unknown format.
+    pub invalid_attributes: Vec<String>,
+    /// The names of uniforms with an unknown type.
+    pub invalid_uniforms: Vec<String>,
+    /// The count of `keep`, and the span of the item.
+    pub keep: Option<(Spanned<KeepCount>, SourceSpan)>,
+    pub choices: Vec<Choice>,
+    /// Criterion, constraints, resolve and helpers, in the user's order.
+    pub functions: Vec<RawFunction>,
+    /// The tokens of the same functions, including those that do not parse.
+    pub function_tokens: Vec<FunctionTokens>,
+    fragment_block: Option<SourceSpan>,
+    uniform_block: Option<SourceSpan>,
+    constraints: usize,
+}
+
+impl Items {
+    /// Adds the block `fragment`; a second block is an error.
+    pub(crate) fn add_attributes(&mut self, rows: Vec<Declaration>, span: &SourceSpan, report: &mut Report) {
+        let (attributes, invalid) = declarations::attributes(rows, report);
+        if is_first(&mut self.fragment_block, span, "fragment", report) {
+            (self.attributes, self.invalid_attributes) = (attributes, invalid);
+        }
+    }
+
+    /// Adds the block `uniform`; a second block is an error.
+    pub(crate) fn add_uniforms(&mut self, rows: Vec<Declaration>, span: &SourceSpan, report: &mut Report) {
+        let (uniforms, invalid) = declarations::uniforms(rows, report);
+        if is_first(&mut self.uniform_block, span, "uniform", report) {
+            (self.uniforms, self.invalid_uniforms) = (uniforms, invalid);
+        }
+    }
+
+    /// Adds `keep`; a second one is an error.
+    pub(crate) fn add_keep(
+        &mut self,
+        count: Spanned<KeepCount>,
+        criterion: Option<RawFunction>,
+        span: SourceSpan,
+        report: &mut Report,
+    ) {
+        if let Some((_, first)) = &self.keep {
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &span, "duplicate `keep`", "remove one of them");
+            report.push(diagnostic.label(first, FIRST));
+            return;
+        }
+        self.keep = Some((count, span));
+        self.functions.extend(criterion);
+    }
+
+    /// Returns the role of the next constraint.
+    pub(crate) fn next_constraint(&mut self) -> Role {
+        self.constraints += 1;
+        Role::Constraint(self.constraints - 1)
+    }
+
+    /// Adds the closure of `resolve`; a second effect is an error.
+    pub(crate) fn add_resolve(&mut self, function: RawFunction, span: &SourceSpan, report: &mut Report) {
+        match self.resolve_span().or_else(|| self.choice_span("resolve")) {
+            Some(first) => report.push(duplicate("resolve", span, first)),
+            None => self.functions.push(function),
+        }
+    }
+
+    /// Adds a helper function; a second one of the same name is an error.
+    pub(crate) fn add_helper(&mut self, function: RawFunction, report: &mut Report) {
+        if let Some(first) = self.functions.iter().find(|other| other.role == function.role) {
+            let message = format!("duplicate function `{}`", function.role.rust_name());
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &function.name_span, message, "rename one of them");
+            report.push(diagnostic.label(&first.name_span, FIRST));
+            return;
+        }
+        self.functions.push(function);
+    }
+
+    /// Adds a choice; a second one for the same axis is an error.
+    pub(crate) fn add_choice(&mut self, choice: Choice, report: &mut Report) {
+        let axis = choice.axis.value.as_str();
+        let closure = if axis == "resolve" { self.resolve_span() } else { None };
+        match self.choice_span(axis).or(closure) {
+            Some(first) => report.push(duplicate(axis, &choice.axis.span, first)),
+            None => self.choices.push(choice),
+        }
+    }
+
+    fn resolve_span(&self) -> Option<&SourceSpan> {
+        self.functions.iter().find(|function| function.role == Role::Resolve).map(|function| &function.span)
+    }
+
+    fn choice_span(&self, axis: &str) -> Option<&SourceSpan> {
+        self.choices.iter().find(|choice| choice.axis.value == axis).map(|choice| &choice.axis.span)
+    }
+}
+
+fn duplicate(axis: &str, span: &SourceSpan, first: &SourceSpan) -> Diagnostic {
+    let message = format!("duplicate `{axis}`");
+    let help = "remove one; write alternatives on one line: `first else second`";
+    Diagnostic::new(codes::DUPLICATE, span, message, help).label(first, FIRST)
+}
+
+fn is_first(slot: &mut Option<SourceSpan>, span: &SourceSpan, block: &str, report: &mut Report) -> bool {
+    if let Some(first) = slot {
+        let message = format!("duplicate block `{block} {{ }}`");
+        let diagnostic = Diagnostic::new(codes::DUPLICATE, span, message, "merge them into one block");
+        report.push(diagnostic.label(first, FIRST));
+        return false;
+    }
+    *slot = Some(span.clone());
+    true
+}

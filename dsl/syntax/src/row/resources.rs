@@ -1,0 +1,151 @@
+//! Lines that declare a buffer, a parameter or a definition.
+//!
+//! Input: a line after its keyword. Output: a resource, parameter or definition of the row.
+
+use fragbuf_model::{Diagnostic, Spanned, codes};
+use fragbuf_templates::vocabulary::{
+    BindingTime, Definition, Element, Init, Lifetime, Parameter, ParameterType, Resource, RowItem, SYMBOLS,
+    is_reserved_in_formulas,
+};
+
+use super::line::Line;
+use super::reader::Read;
+use super::statements::{Statements, summary};
+use crate::report::{FIRST, Stop};
+use crate::unknown_name;
+
+/// The kinds of elements.
+const ELEMENTS: [(&str, Element); 3] = [("word", Element::Word), ("entry", Element::Entry), ("value", Element::Value)];
+
+/// The names that generated accessors use for other purposes than an index.
+const ACCESSOR_NAMES: [&str; 5] = ["at", "key", "value", "entry", "expected"];
+
+impl Statements {
+    /// Parses `buffer name[index < length]…: element, clear 0, host, persistent -- summary`.
+    pub(super) fn buffer(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`buffer heads[pixel < pixels]: word`";
+        let name = self.reader.wgsl_name(line, "a buffer's name", SHAPE)?;
+        self.declared.push(name.value.clone());
+        let mut resource = Resource::new(&name.value, Element::Word, summary(line));
+        while line.punct('[') {
+            resource = self.extent(line, resource)?;
+        }
+        self.reader.punct(line, ':', SHAPE)?;
+        let element = self.reader.name(line, "an element", "`word`, `entry` or `value`")?;
+        resource.element = self.reader.one_of(&element, &ELEMENTS, "an element")?;
+        while line.punct(',') {
+            let attribute = self.reader.name(line, "an attribute", "`clear 0`, `host` or `persistent`")?;
+            match attribute.value.as_str() {
+                "clear" => resource.init = Init::Clear(self.reader.number(line)?.value),
+                "host" => resource.init = Init::External,
+                "persistent" => resource.lifetime = Lifetime::Persistent,
+                other => {
+                    let help = unknown_name::help(other, &["clear", "host", "persistent"]);
+                    let message = format!("expected an attribute of a buffer, found `{other}`");
+                    return self.reader.stop(codes::INVALID_ROW, &attribute.span, message, help);
+                }
+            }
+        }
+        let known = self.user_row.row.resources.iter().position(|other| other.name == name.value);
+        if let Some(first) = known {
+            let message = format!("duplicate buffer `{}`", name.value);
+            let diagnostic = Diagnostic::new(codes::DUPLICATE, &name.span, message, "remove one of them");
+            self.reader.diagnostics.push(diagnostic.label(&self.user_row.spans.resources[first], FIRST));
+            return Err(Stop);
+        }
+        self.reader.record_span(RowItem::Resource, &name);
+        self.user_row.row.resources.push(resource);
+        self.user_row.spans.resources.push(name.span);
+        Ok(())
+    }
+
+    /// Parses `index < length]`.
+    fn extent(&mut self, line: &mut Line<'_>, resource: Resource) -> Read<Resource> {
+        const SHAPE: &str = "`[pixel < pixels]`";
+        let index = self.reader.wgsl_name(line, "an index", SHAPE)?;
+        let is_taken = resource.extents.iter().any(|extent| extent.name == index.value);
+        if is_taken || ACCESSOR_NAMES.contains(&index.value.as_str()) {
+            let message = format!("the buffer's accessors already use the name `{}`", index.value);
+            let help = "choose another name, such as `slot` or `pixel`";
+            return self.reader.stop(codes::INVALID_ROW, &index.span, message, help);
+        }
+        self.reader.punct(line, '<', SHAPE)?;
+        let length = line.until(&[']']);
+        self.reader.punct(line, ']', SHAPE)?;
+        let symbols = self.symbols();
+        self.reader.formula(&length, &symbols)?;
+        self.reader.record_span(RowItem::Length, &length);
+        Ok(resource.by(&index.value, length.value))
+    }
+
+    /// Returns the symbols that formulas of the row may use: those that have a value before a pass runs and do not change
+    /// between slices or iterations, and the row's constants so far.
+    pub(super) fn symbols(&self) -> Vec<String> {
+        let known =
+            SYMBOLS.iter().filter(|symbol| symbol.when != BindingTime::Iteration).map(|symbol| symbol.name.to_owned());
+        known.chain(self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string())).collect()
+    }
+
+    /// Parses `parameter name CONSTANT = formula, from least to greatest -- summary`.
+    pub(super) fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
+        let name = self.reader.name(line, "the option's name", SHAPE)?;
+        self.once(&format!("parameter {}", name.value), &name.span, "rename one of the options")?;
+        let constant = self.constant(line, SHAPE)?;
+        self.reader.punct(line, '=', SHAPE)?;
+        let default = line.until(&[',']);
+        let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= BindingTime::Generation);
+        let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
+        self.reader.formula(&default, &generation)?;
+        self.reader.record_span(RowItem::Default, &default);
+        if !line.punct(',') || !line.keyword("from") {
+            return self.reader.unexpected(line, "`, from`", SHAPE);
+        }
+        let least = self.reader.number(line)?;
+        if !line.keyword("to") {
+            return self.reader.unexpected(line, "`to`", SHAPE);
+        }
+        let greatest = self.reader.number(line)?;
+        if greatest.value < least.value {
+            let message = format!("empty range from {} to {}", least.value, greatest.value);
+            let help = format!("write `from {} to {}`", greatest.value, least.value);
+            return self.reader.stop(codes::INVALID_ROW, &greatest.span, message, help);
+        }
+        self.user_row.row.parameters.push(Parameter {
+            name: name.value.into(),
+            constant: constant.value.into(),
+            kind: ParameterType::Number,
+            default: default.value.into(),
+            range: (least.value, greatest.value),
+            summary: summary(line).into(),
+        });
+        self.user_row.spans.parameters.push(constant.span);
+        Ok(())
+    }
+
+    /// Parses the constant of a parameter. Formulas use it in addition to the symbols that every row has.
+    fn constant(&mut self, line: &mut Line<'_>, shape: &str) -> Read<Spanned<String>> {
+        let constant = self.reader.wgsl_name(line, "a generated constant", shape)?;
+        if !is_reserved_in_formulas(&constant.value) {
+            self.reader.record_span(RowItem::Constant, &constant);
+            return Ok(constant);
+        }
+        let message = format!("the name `{}` is reserved in formulas", constant.value);
+        let help = format!("choose another name, such as `OWN_{}`", constant.value.to_ascii_uppercase());
+        self.reader.stop(codes::INVALID_ROW, &constant.span, message, help)
+    }
+
+    /// Parses `defines pixels = ceil_div(width, 4) * 4 * height`.
+    pub(super) fn defines(&mut self, line: &mut Line<'_>) -> Read<()> {
+        const SHAPE: &str = "`defines pixels = ceil_div(width, 4) * 4 * height`";
+        let name = self.reader.name(line, "a symbol", SHAPE)?;
+        let symbol = self.reader.one_of(&name, &[("pixels", "pixels")], "a symbol that a row can define")?;
+        self.once(&format!("defines {symbol}"), &name.span, "remove one of them")?;
+        self.reader.punct(line, '=', SHAPE)?;
+        let value = line.until(&[]);
+        self.reader.formula(&value, &["width", "height"])?;
+        self.reader.record_span(RowItem::Definition, &value);
+        self.user_row.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
+        Ok(())
+    }
+}

@@ -1,0 +1,9 @@
+//! Parses `name=value` arguments of `--set` and `--uniform`.
+
+/// Parses `axis=value`, `axis.option=value` or `k=8`.
+pub(crate) fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("write name=value: an axis (sort=none), an option (sync.limit=9), or k=8".to_owned()),
+    }
+}

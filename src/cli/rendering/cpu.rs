@@ -1,0 +1,121 @@
+//! Renders a task on the CPU device, which needs no driver.
+//!
+//! Input: a task and the order of fragments. Output: the result, redrawn with a larger pool until no fragment is lost to
+//! overflow.
+
+use std::sync::Arc;
+
+use fragbuf::{Diagnostics, Registry};
+use fragbuf_cpu::{Code, Device, Error, FragmentOrder, Mesh, Settings};
+use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
+
+use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::request::{RedrawState, RenderTask};
+use super::result::{FrameStats, RenderResult};
+use crate::cli::attributes::geometry;
+use crate::cli::device::CPU;
+use crate::cli::input::Input;
+use crate::cli::output::{Failure, warn};
+use crate::cli::uniforms;
+
+/// Renders the task.
+pub(super) fn render(
+    task: &RenderTask<'_>,
+    order: FragmentOrder,
+    (input, registry): (&Input, &Registry),
+    redraw: &mut RedrawState,
+) -> Result<RenderResult, Failure> {
+    let RenderTask { request, view, scene, progress, variant, opaque } = task;
+    progress.set_message(format!("{}: compiling", request.description));
+    let code = Code::of(variant, registry).map_err(|error| failure(error, |errors| input.failure(errors)))?;
+    let code = Arc::new(code);
+    let external = external_textures(&code.plan, *opaque)?;
+    let opaque = opaque.map(|opaque| render_opaque(task, opaque, order, registry)).transpose()?;
+    let geometry = geometry(&scene.scene, &code.plan)?;
+    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
+    let uniforms = uniforms::values(request.uniforms, variant)?;
+    let (width, height) = view.size;
+    loop {
+        let sizing = redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
+        let settings = Settings { width, height, sizing, order };
+        let mut device = Device::new(code.clone(), settings)?;
+        for (name, value) in &uniforms {
+            device.set_uniform(name, *value)?;
+        }
+        for (name, opaque) in external.iter().zip(opaque.iter().cycle()) {
+            device.set_texture(name, &opaque.depths)?;
+        }
+        device.set_objects(&geometry.objects);
+        device.set_camera(&scene.camera.view_projection);
+        redraw.frames += 1;
+        let frame = redraw.frames;
+        let picture = device.render(&mesh, &|now| {
+            progress.set_fraction(|| format!("{}: frame {frame}, pass {}", request.description, now.pass), now.share);
+        })?;
+        let overflow = picture.counters.as_ref().map_or(0, |counters| counters.get(POOL_EXHAUSTED));
+        if overflow > 0 {
+            // Every fragment that did not fit was counted, so the count gives the size of the next pool.
+            let needed = device.pool_size_after(overflow);
+            let fragments = u32::try_from(needed);
+            redraw.pool_size =
+                Some(fragments.map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?);
+            continue;
+        }
+        for pass in &picture.out_of_bounds {
+            warn(&format!("{}: pass `{pass}` goes out of the bounds of a buffer or an array", request.description));
+        }
+        let stats = FrameStats {
+            pixels: picture.pixels,
+            counters: picture.counters,
+            times: view.json.then_some(picture.times),
+            bytes: device.allocated_bytes(),
+            slices: 1,
+            loops: picture.loops,
+        };
+        return Ok(RenderResult {
+            stats,
+            opaque: opaque.map(|opaque| opaque.pixels),
+            device: CPU.to_owned(),
+            backend: "interpreter".to_owned(),
+            target: "wgsl-native",
+            plan: code.plan.clone(),
+            frames: redraw.frames,
+        });
+    }
+}
+
+/// The image of the opaque scene and its depth buffer.
+struct OpaqueImage {
+    pixels: Vec<[f32; 4]>,
+    /// Row after row.
+    depths: Vec<f32>,
+}
+
+/// Renders the opaque scene.
+fn render_opaque(
+    task: &RenderTask<'_>,
+    opaque: &OpaqueScene<'_>,
+    order: FragmentOrder,
+    registry: &Registry,
+) -> Result<OpaqueImage, Failure> {
+    task.progress.set_message("rendering the opaque scene".to_owned());
+    let code =
+        Code::of(&opaque.variant, registry).map_err(|error| failure(error, |errors| opaque.input.failure(errors)))?;
+    let code = Arc::new(code);
+    let geometry = geometry(&opaque.scene.scene, &code.plan)?;
+    let (width, height) = task.view.size;
+    let mut device = Device::new(code.clone(), Settings { width, height, sizing: Sizing::Auto, order })?;
+    device.set_camera(&opaque.scene.camera.view_projection);
+    let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
+    let pixels = device.render(&mesh, &|_| {})?.pixels;
+    let words = device.words(&depth_texture(&code.plan)?).unwrap_or_default();
+    Ok(OpaqueImage { pixels, depths: words.into_iter().map(f32::from_bits).collect() })
+}
+
+/// Converts an error; diagnostics get their sources from `with_sources`.
+fn failure(error: Error, with_sources: impl FnOnce(Diagnostics) -> Failure) -> Failure {
+    match error {
+        Error::Diagnostics(diagnostics) => with_sources(diagnostics),
+        other => other.into(),
+    }
+}

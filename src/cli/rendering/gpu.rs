@@ -1,0 +1,268 @@
+//! Renders a task on an adapter of wgpu's: a GPU or a software driver.
+//!
+//! Input: a task and the chosen adapter. Output: the result, redrawn with a larger pool until no fragment is lost to
+//! overflow, in slices as high as the device's memory allows.
+
+use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, tier};
+use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
+use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
+use fragbuf_runtime::wgpu;
+use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, block_on};
+
+use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::request::{RedrawState, RenderTask};
+use super::result::{FrameStats, RenderResult};
+use crate::cli::attributes::{Geometry, geometry};
+use crate::cli::input::Input;
+use crate::cli::output::Failure;
+use crate::cli::uniforms;
+use crate::cli::view::SceneView;
+
+/// Renders the task.
+pub(super) fn render(
+    task: &RenderTask<'_>,
+    choice: &Choice,
+    (input, registry): (&Input, &Registry),
+    redraw: &mut RedrawState,
+) -> Result<RenderResult, Failure> {
+    let renderer = GpuRenderer::new(task, choice, input, registry)?;
+    let opaque = task.opaque.map(|opaque| renderer.render_opaque(task, opaque, registry)).transpose()?;
+    renderer.render(task, opaque, redraw)
+}
+
+/// A device, and the shaders for it.
+struct GpuRenderer {
+    headless: Headless,
+    shaders: Shaders,
+    target: &'static Target,
+}
+
+impl GpuRenderer {
+    /// Opens a device with the shaders of the target that has the best soundness tier among those that run on it.
+    fn new(task: &RenderTask<'_>, choice: &Choice, input: &Input, registry: &Registry) -> Result<Self, Failure> {
+        let targets: Vec<&'static Target> = TARGETS.iter().collect();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let generation = generate(task.variant, &request, registry).map_err(|errors| input.failure(errors))?;
+        let mut candidates: Vec<(&str, &'static Target, Shaders)> = Vec::new();
+        for planned in &generation.plans {
+            for target in &planned.targets {
+                if let Ok(shaders) = Shaders::from_generation(&generation, target.name, 0) {
+                    candidates.push((tier(planned.plan.soundness, target), target, shaders));
+                }
+            }
+        }
+        candidates.sort_by_key(|(tier, _, _)| *tier);
+        let mut failure = Failure::Input("no target that runs on a device supports the description".to_owned());
+        for (_, target, shaders) in candidates {
+            if let Err(error) = shaders.check() {
+                failure = error.into();
+                continue;
+            }
+            match Headless::open(choice, shaders.features()) {
+                Ok(headless) => match shaders.check_interlock(headless.interlock) {
+                    Ok(()) => return Ok(GpuRenderer { headless, shaders, target }),
+                    Err(error) => failure = error.into(),
+                },
+                Err(error @ Error::MissingFeatures(_)) => failure = error.into(),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(failure)
+    }
+
+    /// Draws frames until no fragment is lost to overflow, in slices as high as the device's memory allows.
+    fn render(
+        self,
+        task: &RenderTask<'_>,
+        opaque: Option<OpaqueImage>,
+        redraw: &mut RedrawState,
+    ) -> Result<RenderResult, Failure> {
+        let RenderTask { request, view, scene, progress, variant, opaque: opaque_scene } = task;
+        let external = external_textures(&self.shaders.plan, *opaque_scene)?;
+        let (width, height) = view.size;
+        let Headless { device, queue, .. } = &self.headless;
+        progress.set_message(format!("{}: creating pipelines", request.description));
+        let mesh = Mesh::upload(device, queue, &geometry(&scene.scene, &self.shaders.plan)?)?;
+        let settings = Settings {
+            timestamps: view.json,
+            interlock: self.headless.interlock,
+            ..Settings::new(BLENDED, width, height)
+        };
+        let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
+        let uniforms = uniforms::values(request.uniforms, variant)?;
+        let (mut slice, mut rows) = (None, height);
+        let stats = loop {
+            let sizing =
+                redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
+            let settings = Settings { sizing, slice, ..settings.clone() };
+            let mut renderer = match block_on(device, Renderer::with(device, queue, &pipelines, &settings))? {
+                // A pool for all fragments of so many rows is too large: halve the slices.
+                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if redraw.pool_size.is_some() && rows > 1 => {
+                    rows = rows.div_ceil(2);
+                    (slice, redraw.pool_size) = (Some(rows), None);
+                    continue;
+                }
+                created => created?,
+            };
+            for (name, value) in &uniforms {
+                renderer.set_uniform(name, *value)?;
+            }
+            for (name, opaque) in external.iter().zip(opaque.iter().cycle()) {
+                block_on(device, renderer.set_texture(name, &opaque.depths))??;
+            }
+            redraw.frames += 1;
+            let (frame, slices) = (redraw.frames, renderer.slices());
+            progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
+            rows = height.div_ceil(slices);
+            match self.frame(&mut renderer, scene, &mesh, view.size) {
+                Ok(FrameOutcome::PoolExhausted { needed }) => redraw.pool_size = Some(needed),
+                Ok(FrameOutcome::Complete(stats)) => break stats,
+                // There are more fragments than a buffer may hold. Half as many rows have fewer.
+                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if rows > 1 => {
+                    rows = rows.div_ceil(2);
+                    (slice, redraw.pool_size) = (Some(rows), None);
+                }
+                Err(error) => return Err(error.into()),
+            }
+        };
+        Ok(RenderResult {
+            stats,
+            opaque: opaque.map(|opaque| opaque.pixels),
+            device: self.headless.info.name.clone(),
+            backend: self.headless.info.backend.to_string(),
+            target: self.target.name,
+            plan: self.shaders.plan,
+            frames: redraw.frames,
+        })
+    }
+
+    /// Renders the opaque scene on the same device.
+    fn render_opaque(
+        &self,
+        task: &RenderTask<'_>,
+        opaque: &OpaqueScene<'_>,
+        registry: &Registry,
+    ) -> Result<OpaqueImage, Failure> {
+        task.progress.set_message("rendering the opaque scene".to_owned());
+        let Headless { device, queue, .. } = &self.headless;
+        let (width, height) = task.view.size;
+        let request = Request { targets: &[&TARGETS[0]], form: Form::Program, prefix: "", group: 0 };
+        let generation =
+            generate(&opaque.variant, &request, registry).map_err(|errors| opaque.input.failure(errors))?;
+        let shaders = Shaders::from_generation(&generation, TARGETS[0].name, 0)?;
+        let mesh = Mesh::upload(device, queue, &geometry(&opaque.scene.scene, &shaders.plan)?)?;
+        let settings = Settings::new(BLENDED, width, height);
+        let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
+        match self.frame(&mut renderer, opaque.scene, &mesh, task.view.size)? {
+            FrameOutcome::Complete(FrameStats { pixels, .. }) => {
+                let depths = renderer.texture(&depth_texture(&shaders.plan)?).cloned();
+                let depths =
+                    depths.ok_or_else(|| Failure::Device("the opaque scene has no depth buffer".to_owned()))?;
+                Ok(OpaqueImage { pixels, depths })
+            }
+            FrameOutcome::PoolExhausted { .. } => {
+                Err(Failure::Device("the opaque scene overflows its fragment pool".to_owned()))
+            }
+        }
+    }
+
+    /// Draws one frame and reads it back.
+    fn frame(
+        &self,
+        renderer: &mut Renderer,
+        scene: &SceneView,
+        mesh: &Mesh,
+        (width, height): (u32, u32),
+    ) -> Result<FrameOutcome, Error> {
+        let Headless { device, queue, .. } = &self.headless;
+        renderer.set_camera(&scene.camera.view_projection);
+        let offscreen = Offscreen::new(device, BLENDED, width, height)?;
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        let loops = renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let (counters, by_slice) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
+        let times = renderer.pass_times(&mut encoder);
+        queue.submit([encoder.finish()]);
+        let counters = counters.map(|pending| pending.wait(device)).transpose()?;
+        let by_slice = by_slice.map(|pending| pending.wait(device)).transpose()?;
+        let times = times.map(|pending| pending.wait(device)).transpose()?;
+        let overflow = by_slice.iter().flatten().map(|slice| slice.get(POOL_EXHAUSTED)).max().unwrap_or(0);
+        if overflow > 0 {
+            // Every fragment that did not fit was counted, so the count gives the size of the next pool.
+            let needed = renderer.pool_size_after(overflow);
+            let needed = u32::try_from(needed).map_err(|_| Error::TooLarge {
+                what: "the pool for the image's fragments".to_owned(),
+                needed,
+                limit: u32::MAX.into(),
+                limit_name: "fragments",
+                help: "draw lower slices",
+            })?;
+            return Ok(FrameOutcome::PoolExhausted { needed });
+        }
+        let pixels = offscreen.colors(device, queue)?;
+        Ok(FrameOutcome::Complete(FrameStats {
+            pixels,
+            counters,
+            times,
+            bytes: renderer.allocated_bytes(),
+            slices: renderer.slices(),
+            loops,
+        }))
+    }
+}
+
+/// The image of the opaque scene and its depth buffer.
+struct OpaqueImage {
+    pixels: Vec<[f32; 4]>,
+    depths: wgpu::Texture,
+}
+
+/// The outcome of one frame.
+enum FrameOutcome {
+    /// The pool must hold `needed` fragments.
+    PoolExhausted {
+        needed: u32,
+    },
+    Complete(FrameStats),
+}
+
+/// The scene's vertices and indices on the device.
+struct Mesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+impl Mesh {
+    fn upload(device: &wgpu::Device, queue: &wgpu::Queue, geometry: &Geometry) -> Result<Self, Failure> {
+        let buffer = |label: &str, words: &[u32], usage: wgpu::BufferUsages| {
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+            let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
+            if size > limit {
+                return Err(Failure::Device(format!(
+                    "the scene's {label} need {size} bytes, and the device allows {limit}"
+                )));
+            }
+            let usage = usage | wgpu::BufferUsages::COPY_DST;
+            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            });
+            queue.write_buffer(&buffer, 0, &bytes);
+            Ok(buffer)
+        };
+        Ok(Mesh {
+            vertices: buffer("vertices", &geometry.vertices, wgpu::BufferUsages::VERTEX)?,
+            indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
+            count: geometry.indices.len() as u32,
+        })
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
+    }
+}

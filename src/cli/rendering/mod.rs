@@ -1,0 +1,78 @@
+//! Renders one scene through one description, and redraws it with a larger capacity until no fragment is lost to overflow.
+//!
+//! Input: a description and a scene view. Output: premultiplied linear colours and the statistics of the frame. Remaining
+//! losses (a lock that was not free in time, more layers than any resolve pass holds) are reported on stderr.
+
+mod cpu;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod opaque;
+mod precision;
+mod request;
+mod result;
+
+pub(crate) use request::RenderRequest;
+pub(crate) use result::RenderResult;
+
+use fragbuf::Registry;
+use fragbuf::vocabulary::Capability;
+
+use self::opaque::{OpaqueScene, blend_over, occlusion_choice};
+use self::precision::{UNROUNDED, needs_unrounded_colors};
+use self::request::{RedrawState, RenderTask};
+use self::result::sets_layers;
+use super::device::SelectedDevice;
+use super::input::Input;
+use super::output::Failure;
+use super::progress::Progress;
+use super::view::{SceneView, View};
+
+/// Renders the scene.
+pub(crate) fn render(
+    request: &RenderRequest<'_>,
+    view: &View,
+    scene: &SceneView,
+    progress: &Progress,
+) -> Result<RenderResult, Failure> {
+    let registry = Registry::builtin();
+    let selected = view.select_device()?;
+    let mut input = Input::read(request.description, &registry)?;
+    let opaque = request.opaque.map(|scene| OpaqueScene::new(scene, &registry)).transpose()?;
+    let unrounded = needs_unrounded_colors(scene);
+    let mut defaults: Vec<(&str, &str)> = Vec::new();
+    defaults.extend(count_all_choice(&registry).filter(|_| request.count_all));
+    defaults.extend(unrounded.then_some(UNROUNDED));
+    defaults.extend(opaque.as_ref().and_then(|_| occlusion_choice(&registry)));
+    // Some storages have slots that hold no more than the papers' payload. They round as the papers do.
+    if unrounded && input.variant_with_defaults(request.set, &defaults, &registry).is_err() {
+        defaults.retain(|set| *set != UNROUNDED);
+    }
+    let (mut set, mut redraw) = (request.set.to_vec(), RedrawState::default());
+    let mut has_fixed_layers = None;
+    loop {
+        let variant = input.variant_with_defaults(&set, &defaults, &registry)?;
+        // Later iterations set the layers themselves.
+        let has_fixed_layers = *has_fixed_layers.get_or_insert_with(|| sets_layers(&variant));
+        let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: opaque.as_ref() };
+        let mut result = match &selected {
+            SelectedDevice::Cpu(order) => cpu::render(&task, *order, (&input, &registry), &mut redraw)?,
+            #[cfg(feature = "gpu")]
+            SelectedDevice::Gpu(choice) => gpu::render(&task, choice, (&input, &registry), &mut redraw)?,
+        };
+        match result.more_layers().filter(|_| !has_fixed_layers) {
+            Some((option, layers)) => set.push((option, layers.to_string())),
+            None => {
+                result.warn(request.description);
+                if let Some(background) = result.opaque.take() {
+                    blend_over(&mut result.stats.pixels, &background);
+                }
+                return Ok(result);
+            }
+        }
+    }
+}
+
+/// Returns the choice that counts every event.
+fn count_all_choice(registry: &Registry) -> Option<(&str, &str)> {
+    registry.providers_of(Capability::CountsEvents).next().map(|row| (row.axis.as_str(), row.key.as_str()))
+}

@@ -1,0 +1,37 @@
+//! The types that every renderer takes: what the command line asks for, and the task for one device.
+
+use fragbuf::Variant;
+
+use super::opaque::OpaqueScene;
+use crate::cli::progress::Progress;
+use crate::cli::view::{SceneView, View};
+
+/// A description with its changes, as given on the command line.
+pub(crate) struct RenderRequest<'a> {
+    pub(crate) description: &'a str,
+    pub(crate) set: &'a [(String, String)],
+    pub(crate) uniforms: &'a [(String, String)],
+    /// Whether every event is counted if the description does not choose on `counters`.
+    pub(crate) count_all: bool,
+    /// The opaque scene, which is rendered first.
+    pub(crate) opaque: Option<&'a SceneView>,
+}
+
+/// One checked description to render on one device.
+pub(super) struct RenderTask<'a> {
+    pub(super) request: &'a RenderRequest<'a>,
+    pub(super) view: &'a View,
+    pub(super) scene: &'a SceneView,
+    pub(super) progress: &'a Progress,
+    pub(super) variant: &'a Variant,
+    pub(super) opaque: Option<&'a OpaqueScene<'a>>,
+}
+
+/// The state that redraws of one request share.
+#[derive(Default)]
+pub(super) struct RedrawState {
+    /// Frames drawn so far.
+    pub(super) frames: u32,
+    /// Fragments to reserve in the pool; `None` before a frame has shown how many are needed.
+    pub(super) pool_size: Option<u32>,
+}

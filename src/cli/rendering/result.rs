@@ -1,0 +1,122 @@
+//! The result of a rendering: the image, the statistics of its frame, and warnings about what the image lacks.
+
+use fragbuf::Plan;
+use fragbuf::vocabulary::Capability;
+use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime};
+
+use crate::cli::output::warn;
+
+/// The counter of fragments that a better fragment evicted.
+const DISPLACED: &str = "displaced";
+
+/// The option of an axis that sets how many layers a resolve pass holds. Layers beyond it are counted as `layers_exceeded`.
+const LAYERS: &str = "layers";
+
+/// An image, its statistics, and the device and plan that produced it.
+pub(crate) struct RenderResult {
+    pub(crate) stats: FrameStats,
+    /// The image of the opaque scene, if there is one.
+    pub(super) opaque: Option<Vec<[f32; 4]>>,
+    pub(crate) device: String,
+    pub(crate) backend: String,
+    /// The target whose shaders the device ran.
+    pub(crate) target: &'static str,
+    pub(crate) plan: Plan,
+    /// Frames drawn until every fragment fitted.
+    pub(crate) frames: u32,
+}
+
+/// The pixels and statistics of one frame.
+pub(crate) struct FrameStats {
+    /// Premultiplied linear colours.
+    pub(crate) pixels: Vec<[f32; 4]>,
+    pub(crate) counters: Option<Counters>,
+    pub(crate) times: Option<Vec<PassTime>>,
+    /// Bytes allocated at one time.
+    pub(crate) bytes: u64,
+    pub(crate) slices: u32,
+    /// Loops that end when a condition is met.
+    pub(crate) loops: Vec<LoopReport>,
+}
+
+impl FrameStats {
+    /// Returns one message per loop that reached its limit.
+    fn unfinished_loops(&self) -> impl Iterator<Item = String> {
+        let unfinished = self.loops.iter().filter(|report| report.end == LoopEnd::LimitReached);
+        unfinished.map(|LoopReport { until, iterations, .. }| {
+            format!("the loop until {until} stopped at its limit of {iterations} iterations: the image is incomplete")
+        })
+    }
+}
+
+impl RenderResult {
+    /// Returns the option that makes the resolve pass hold more layers, with twice the present value. `None` if all layers
+    /// fitted or the option is at its maximum.
+    pub(super) fn more_layers(&self) -> Option<(String, u32)> {
+        self.stats.counters.as_ref().filter(|counters| counters.get("layers_exceeded") > 0)?;
+        self.plan.selection.rows.iter().find_map(|selected| {
+            let parameter = selected.row.parameters.iter().find(|parameter| parameter.name == LAYERS)?;
+            let (_, now) = self.plan.constants.iter().find(|(name, _)| *name == parameter.constant)?;
+            let more = (2 * now).min(parameter.range.1);
+            (more > *now).then(|| (format!("{}.{LAYERS}", selected.row.axis), more))
+        })
+    }
+
+    /// Returns whether every event was counted, and not losses alone.
+    pub(crate) fn counts_everything(&self) -> bool {
+        self.plan.selection.provides().contains(&Capability::CountsEvents)
+    }
+
+    /// Prints a warning for everything that the image lacks.
+    pub(super) fn warn(&self, description: &str) {
+        let warn = |text: &str| warn(&format!("{description}: {text}"));
+        if self.stats.pixels.iter().all(|[_, _, _, alpha]| *alpha == 0.0) {
+            warn("the image is empty: check the camera, the `where` constraints and the uniforms (default 0)");
+        }
+        if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_external()) {
+            warn("it does not read the opaque depth buffer, so fragments behind opaque surfaces are visible");
+        }
+        self.stats.unfinished_loops().for_each(|text| warn(&text));
+        for counter in self.stats.counters.iter().flat_map(|counters| &counters.0).filter(|counter| counter.count > 0) {
+            // The description asks for the k best, so fragments evicted by better ones are expected.
+            if counter.is_loss && counter.name != DISPLACED {
+                warn(&format!("{} fragments lost: {}", counter.count, counter.name));
+            }
+            if counter.name == OUT_OF_ORDER {
+                warn(&format!(
+                    "{} fragments arrived after farther ones had been composited; draw from front to back, or keep more",
+                    counter.count
+                ));
+            }
+            if counter.name == PARTIAL_COVERAGE {
+                warn(&format!(
+                    "{} fragments cover their pixel in part: at edges of triangles, pixels may show other fragments than the first",
+                    counter.count
+                ));
+            }
+        }
+    }
+}
+
+/// Returns whether the description, or `--set`, chooses how many layers a resolve pass holds.
+pub(super) fn sets_layers(variant: &fragbuf::Variant) -> bool {
+    let mut selected = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
+    selected.any(|selected| selected.options.iter().any(|(name, _)| name == LAYERS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warns_when_a_loop_reaches_its_limit() {
+        let report = |end| LoopReport { until: "`left` is zero".to_owned(), iterations: 7, end };
+        let loops = vec![report(LoopEnd::ConditionMet), report(LoopEnd::LimitReached)];
+        let stats = FrameStats { pixels: Vec::new(), counters: None, times: None, bytes: 0, slices: 1, loops };
+        let messages: Vec<String> = stats.unfinished_loops().collect();
+        assert!(
+            messages.len() == 1 && messages[0].contains("until `left` is zero stopped at its limit of 7"),
+            "{messages:?}"
+        );
+    }
+}

@@ -1,0 +1,621 @@
+//! User files in place of registry rows. An accepted file passes every target and validator; an error is reported at the user's
+//! line and column.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use fragbuf::load::{Description, load};
+use fragbuf::report::render;
+use fragbuf::vocabulary::Symbol;
+use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate, target};
+use fragbuf_codegen::{PlanValue, SymbolId};
+use fragbuf_model::codes;
+
+use crate::validators::validate;
+
+fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/user_storage").join(name);
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own").join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Returns all diagnostics of generating every target, with the sources that were read.
+fn diagnostics(folder: &Path) -> Result<(), (Diagnostics, Vec<(String, String)>)> {
+    let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let loaded = load(&description, &[], &[], &registry);
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    match loaded.variant.and_then(|variant| generate(&variant, &request, &registry)) {
+        Ok(generation) => {
+            assert!(generation.unsupported.is_empty());
+            validate(generation.files.iter());
+            Ok(())
+        }
+        Err(diagnostics) => Err((diagnostics, loaded.sources)),
+    }
+}
+
+fn with(name: &str, description: &str, file: &str) -> PathBuf {
+    let folder = folder(name);
+    std::fs::write(folder.join("own.fragbuf"), description).unwrap();
+    std::fs::write(folder.join("mine.wgsl"), file).unwrap();
+    folder
+}
+
+const DESCRIPTION: &str = "buffer Own {\n    storage: wgsl(\"mine.wgsl\");\n    keep 8;\n}\n";
+
+/// An error: a change of the example, the expected code, the text at the expected span, and a part of the expected help.
+struct Bad {
+    from: &'static str,
+    to: &'static str,
+    code: &'static str,
+    at: &'static str,
+    help: &'static str,
+}
+
+const fn bad(from: &'static str, to: &'static str, code: &'static str, at: &'static str, help: &'static str) -> Bad {
+    Bad { from, to, code, at, help }
+}
+
+const BAD: &[Bad] = &[
+    bad("//: storage --", "// storage --", "invalid-row", "buffer taken", "//: storage -- "),
+    bad("//: storage -- the first", "//: storage the first", "invalid-row", "storage the first", "//: storage -- "),
+    bad("//: provides", "//: providse", "invalid-row", "providse", "did you mean `provides`?"),
+    bad("lock-free,", "lock-fre,", "unknown-capability", "lock-fre,", "did you mean `lock-free`?"),
+    bad("[slot < k]", "[slot k]", "invalid-row", "k]", "[pixel < pixels]"),
+    bad("[slot < k]", "[slot < k *]", "invalid-row", "k *]", "ceil_div"),
+    bad("[slot < k]", "[slot < kk]", "invalid-row", "kk]", "pixels, k"),
+    bad("]: entry", "]: entries", "invalid-row", "entries --", "`entry`"),
+    bad("clear 0", "clear zero", "invalid-row", "zero --", "digits"),
+    bad("clear 0", "cleared 0", "invalid-row", "cleared", "`clear`"),
+    bad("slots plain", "slots plainly", "invalid-row", "plainly", "`plain`"),
+    bad("slots plain", "slots plain read", "invalid-row", "read\n", "on a separate line"),
+    bad("taken read", "takn read", "unknown-resource", "takn read", "did you mean `taken`?"),
+    bad("//: buffer slots", "//: buffer slots: word\n//: buffer slots", "duplicate", "slots[slot", "remove one"),
+    bad("//: pass resolve:", "//: pass reslove:", "unknown-value", "reslove", "resolve"),
+    bad("//: pass store", "// pass store", "invalid-row", "//: storage", "//: pass store"),
+    bad("sync slot_counter", "sink slot_counter", "unknown-axis", "slot_counter\n", "sync"),
+    bad("sync slot_counter", "sync slot_count", "unknown-value", "slot_count\n", "slot_counter"),
+    bad(
+        "fn storage_read(",
+        "fn other_read(",
+        "contract-mismatch",
+        "resolve:",
+        "fn storage_read(pixel: u32, cursor: u32) -> Packed",
+    ),
+    bad(
+        "fn storage_insert(",
+        "fn other_insert(",
+        "contract-mismatch",
+        "//: storage",
+        "fn storage_insert(pixel: u32, entry: Packed)",
+    ),
+    // A storage that declares `can-replace` must have the functions that rows of other axes call.
+    bad(
+        "lock-free, indexed\n//: requires fragment-atomics\n//: suits sync slot_counter\n\n",
+        "lock-free, reports-whole-fragments, displaces-under-lock, can-replace\n//: requires fragment-atomics\n\
+         //: suits sync slot_counter\n\nfn storage_worst(pixel: u32) -> u32 {\n    return 0u;\n}\n\n",
+        "contract-mismatch",
+        "//: storage",
+        "fn storage_replace(pixel: u32, cursor: u32, entry: Packed)",
+    ),
+    bad(
+        "storage_first(pixel: u32) -> u32",
+        "storage_first(pixel: u32) -> i32",
+        "contract-mismatch",
+        "storage_first(pixel: u32) -> i32",
+        "write `fn storage_first(pixel: u32) -> u32`",
+    ),
+    bad(
+        "storage_insert(pixel: u32, ",
+        "storage_insert(",
+        "contract-mismatch",
+        "storage_insert(entry",
+        "pixel: u32, entry: Packed",
+    ),
+    bad("fn first_k_cursor(", "fn sync_store(", "contract-mismatch", "sync_store(pixel: u32, slot", "another name"),
+    bad(
+        "fn first_k_cursor",
+        "@compute @workgroup_size(1)\nfn main() {}\n\nfn first_k_cursor",
+        "contract-mismatch",
+        "fn main",
+        "function",
+    ),
+    bad(
+        "fn first_k_cursor",
+        "@group(1) @binding(0)\nvar<storage> x: array<u32>;\n\nfn first_k_cursor",
+        "contract-mismatch",
+        "var<storage> x",
+        "//: buffer",
+    ),
+    bad(
+        "//: buffer taken",
+        "//: buffer counters: word\n//: buffer taken",
+        "contract-mismatch",
+        "counters: word",
+        "own_counters",
+    ),
+    bad("//: buffer slots", "//: buffer my-slots: word\n//: buffer slots", "invalid-row", "my-slots", "letters"),
+    bad("[slot < k]", "[value < k]", "invalid-row", "value <", "slot"),
+    bad("[slot < k]", "[pixel < k]", "invalid-row", "pixel < pixels]: entry", "slot"),
+    bad("[slot < k]", "[fn < k]", "invalid-row", "fn <", "letters"),
+    bad("//: pass resolve", "//: pass store: slots plain\n//: pass resolve", "duplicate", "store: slots", "as"),
+    bad(
+        "//: provides",
+        "//: parameter limit CAPACITY = 3, from 1 to 9\n//: provides",
+        "invalid-row",
+        "CAPACITY",
+        "letters",
+    ),
+    bad(
+        "//: provides",
+        "//: parameter limit LAYERS = 3, from 1 to 9\n//: provides",
+        "contract-mismatch",
+        "LAYERS",
+        "OWN_LAYERS",
+    ),
+    bad(
+        "//: pass resolve",
+        "//: host allocate: reads taken[0]\n//: pass resolve",
+        "invalid-row",
+        "allocate: reads",
+        "sets fragments",
+    ),
+    bad(
+        "//: provides",
+        "//: when 1 < keep < 9 -- write `keep 4;`\n//: provides",
+        "invalid-row",
+        "1 < keep",
+        "combine two comparisons with `&&`",
+    ),
+    bad(
+        "//: provides",
+        "//: parameter limit LIMIT = 3, from 9 to 1\n//: provides",
+        "invalid-row",
+        "1\n//: provides",
+        "9",
+    ),
+    bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "invalid-row", "//: paper", "the file header"),
+    bad("fn first_k_cursor", "}\nfn first_k_cursor", "invalid-wgsl", "}\nfn first", "every brace closed"),
+    bad("atomic_add(pixel, 1u)", "atomic_add(pixel, 1.5)", "invalid-wgsl", "1.5)", "accessors"),
+    bad("    return slots_load(", "    return slots_lode(", "invalid-wgsl", "slots_lode(", "`x_load`"),
+    bad("taken_load(pixel), frame.k", "taken_load(pixel), frame.cut", "invalid-wgsl", "cut)", "accessors"),
+    bad("fn first_k_cursor", "const EMPTY = 1u;\n\nfn first_k_cursor", "invalid-wgsl", "const EMPTY", "private names"),
+];
+
+/// Returns line and column of `part` in `text`, from 1.
+fn position(text: &str, part: &str) -> (u32, u32) {
+    let at = text.find(part).unwrap_or_else(|| panic!("no `{part}` in {text}"));
+    let line = text[..at].matches('\n').count() as u32 + 1;
+    (line, (at - text[..at].rfind('\n').map_or(0, |newline| newline + 1)) as u32 + 1)
+}
+
+#[test]
+fn every_error_in_a_file_is_reported_at_its_line_and_column() {
+    let good = example("first_k.wgsl");
+    let mut wrong = Vec::new();
+    for (index, case) in BAD.iter().enumerate() {
+        assert_eq!(good.matches(case.from).count().min(1), 1, "{}", case.from);
+        assert!(!case.help.is_empty(), "no help for {}", case.to);
+        let text = good.replacen(case.from, case.to, 1);
+        let folder = with(&format!("bad-{index}"), DESCRIPTION, &text);
+        let (diagnostics, sources) = diagnostics(&folder).err().unwrap_or_else(|| panic!("accepted: {}", case.to));
+        let file = folder.join("mine.wgsl").display().to_string();
+        let (line, column) = position(&text, case.at);
+        let found = diagnostics.iter().any(|diagnostic| {
+            let at = (diagnostic.code.name, &*diagnostic.span.file, diagnostic.span.line, diagnostic.span.column);
+            at == (case.code, &file, line, column) && diagnostic.help.contains(case.help)
+        });
+        if !found || diagnostics.iter().count() > 1 {
+            wrong.push(format!("{} should be {} {line}:{column} alone:\n{diagnostics}", case.to, case.code));
+        }
+        let drawn = render(&diagnostics, &sources);
+        assert!(drawn.contains(&format!("mine.wgsl:{line}:{column}")) || !found, "{drawn}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn every_code_of_user_files_is_covered() {
+    let covered: BTreeSet<&str> = BAD.iter().map(|case| case.code).collect();
+    let index = |code| codes::ALL.iter().position(|other| *other == code).unwrap();
+    for code in &codes::ALL[index(codes::MISSING_FILE)..index(codes::UNKNOWN_TECHNIQUE)] {
+        assert!(covered.contains(code.name) || *code == codes::MISSING_FILE, "no case for {}", code.name);
+    }
+}
+
+#[test]
+fn a_missing_file_is_reported_where_it_is_named() {
+    let folder = with("missing", &DESCRIPTION.replace("mine", "yours"), "");
+    let (diagnostics, _) = diagnostics(&folder).unwrap_err();
+    let found: Vec<_> = diagnostics
+        .iter()
+        .map(|diagnostic| (diagnostic.code.name, diagnostic.span.line, diagnostic.span.column))
+        .collect();
+    assert_eq!(found, [("missing-file", 2, 19)], "{diagnostics}");
+    assert!(diagnostics.to_string().contains("yours.wgsl"), "{diagnostics}");
+}
+
+#[test]
+fn a_file_without_a_row_and_one_of_another_axis_are_rejected() {
+    let none = with("rowless", DESCRIPTION, "fn storage_insert(pixel: u32, entry: Packed) {}\n");
+    let (none, _) = diagnostics(&none).unwrap_err();
+    assert!(
+        none.iter()
+            .all(|diagnostic| diagnostic.code == codes::INVALID_ROW && diagnostic.help.contains("//: storage -- ")),
+        "{none}"
+    );
+    let other = DESCRIPTION.replace("storage:", "storage: linked_list; sort:").replace("keep 8", "keep all");
+    let (other, _) = diagnostics(&with("axis", &other, &example("first_k.wgsl"))).unwrap_err();
+    let found: Vec<_> = other.iter().map(|diagnostic| (diagnostic.code.name, diagnostic.span.line)).collect();
+    assert_eq!(found, [("unknown-value", 2)], "{other}");
+}
+
+#[test]
+fn errors_of_the_description_and_of_the_file_are_reported_together() {
+    let description = DESCRIPTION.replace("keep 8", "where |f| f.deph > 0.0; keep 8");
+    let file = example("first_k.wgsl").replace("lock-free", "atomics-of-mine");
+    let (diagnostics, _) = diagnostics(&with("both", &description, &file)).unwrap_err();
+    let found: BTreeSet<&str> = diagnostics.iter().map(|diagnostic| diagnostic.code.name).collect();
+    assert_eq!(found, BTreeSet::from(["unknown-capability", "unknown-field"]), "{diagnostics}");
+}
+
+/// Paths of user files are relative to the description, and generated sources do not contain them.
+#[test]
+fn a_good_file_goes_through_every_target_and_validator() {
+    // Comments and summaries of user files may have any letters.
+    let file = example("first_k.wgsl").replace("//: pass store", "//: paper Große 2026 §3\n//: pass store");
+    let folder = with("good", DESCRIPTION, &file.replace("fragments that asked", "fragments, déjà là, that asked"));
+    assert_eq!(diagnostics(&folder).map_err(|(diagnostics, _)| diagnostics.to_string()), Ok(()));
+    let texts = ["good", "good/elsewhere"].map(|name| {
+        let folder = with(name, DESCRIPTION, &example("first_k.wgsl"));
+        let loaded = load(&Description::read(&folder.join("own.fragbuf")).unwrap(), &[], &[], &Registry::builtin());
+        let targets: Vec<&'static Target> = TARGETS.iter().collect();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "own", group: 3 };
+        generate(&loaded.variant.unwrap(), &request, &Registry::builtin()).unwrap().files
+    });
+    assert!(texts[0] == texts[1]);
+    assert!(texts[0].iter().any(|file| String::from_utf8_lossy(&file.bytes).contains("// ---- mine.wgsl\n")));
+}
+
+/// A buffer with k elements requires a k.
+#[test]
+fn a_storage_of_k_slots_does_not_keep_all() {
+    let folder = with("keep-all", &DESCRIPTION.replace("keep 8", "keep all"), &example("first_k.wgsl"));
+    let (diagnostics, _) = diagnostics(&folder).unwrap_err();
+    let found: Vec<_> = diagnostics
+        .iter()
+        .map(|diagnostic| (diagnostic.code.name, diagnostic.span.line, diagnostic.span.column))
+        .collect();
+    assert_eq!(found, [("keep-mismatch", 3, 10)], "{diagnostics}");
+    assert!(diagnostics.to_string().contains("write `keep 8;`"), "{diagnostics}");
+}
+
+/// The statements of user files are untested, so naga writes bounds checks.
+#[test]
+fn programs_with_a_file_are_guarded_at_run_time() {
+    let of = |description: &Description| {
+        let loaded = load(description, &[], &[], &Registry::builtin());
+        let request = Request { targets: &[target("msl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let files = generate(&loaded.variant.unwrap(), &request, &Registry::builtin()).unwrap().files;
+        files.iter().map(|file| String::from_utf8_lossy(&file.bytes).into_owned()).collect::<String>()
+    };
+    let folder = with("guarded", DESCRIPTION, &example("first_k.wgsl"));
+    let guarded = of(&Description::read(&folder.join("own.fragbuf")).unwrap());
+    let trusted = of(&Description::Technique("ab_ll".to_owned()));
+    // Indices are clamped to the buffer's size, loops to 2^32 iterations.
+    for word in ["metal::min(unsigned(", "loop_bound"] {
+        assert!(guarded.contains(word) && !trusted.contains(word), "{word}");
+    }
+}
+
+/// Every axis accepts a file. A sort has no buffers or passes, and its capabilities count like those of any other row.
+#[test]
+fn a_sort_in_a_user_file() {
+    let sort = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("templates/sort/insertion.wgsl"));
+    let head = "//: sort -- each into its place\n//: provides sorted\n\
+                //: parameter layers LAYERS = capacity, from 1 to 4096 -- fragments that a resolve pass holds\n\n";
+    let file = format!("{head}{}", sort.unwrap());
+    let description = "buffer Own from ab_ll {\n    sort: wgsl(\"mine.wgsl\") { layers: 9 };\n}\n";
+    assert_eq!(
+        diagnostics(&with("sort", description, &file)).map_err(|(diagnostics, _)| diagnostics.to_string()),
+        Ok(())
+    );
+    let unsorted = file.replace("//: provides sorted\n", "");
+    let (diagnostics, _) = diagnostics(&with("unsorted", description, &unsorted)).unwrap_err();
+    assert!(
+        diagnostics.iter().all(|diagnostic| diagnostic.code == codes::MISSING_CAPABILITY && diagnostic.help.contains("`sort: shell`")),
+        "{diagnostics}"
+    );
+}
+
+/// A row declares conditions on the description with a suggested fix.
+#[test]
+fn a_condition_of_the_users_own() {
+    let file = example("first_k.wgsl");
+    let with_condition = |line: &str| file.replace("//: suits", &format!("{line}\n//: suits"));
+    let four = with_condition("//: when keep == 4 && payload_words <= 2 -- write `keep 4;`, and leave the payload out");
+    let (unmet, _) = diagnostics(&with("condition", DESCRIPTION, &four)).unwrap_err();
+    let said = unmet.to_string();
+    assert!(
+        unmet.iter().all(|diagnostic| diagnostic.code == codes::MISSING_CAPABILITY)
+            && said.contains("requires `keep == 4"),
+        "{said}"
+    );
+    assert!(said.contains("= help: write `keep 4;`, and leave the payload out"), "{said}");
+    let met = DESCRIPTION.replace("keep 8", "keep 4");
+    assert_eq!(
+        diagnostics(&with("condition_met", &met, &four)).map_err(|(diagnostics, _)| diagnostics.to_string()),
+        Ok(())
+    );
+    for (line, code, help) in [
+        ("//: when k == 4 -- write `keep 4;`", codes::INVALID_ROW, "the formula may use keep, limited"),
+        ("//: requires keep-best", codes::UNKNOWN_CAPABILITY, "`keeps-best`"),
+        ("//: provides fragment-atomics", codes::UNKNOWN_CAPABILITY, "`//: requires fragment-atomics`"),
+        ("//: implies sorted when depth-key", codes::INVALID_ROW, "depth_key"),
+    ] {
+        let (diagnostics, _) = diagnostics(&with("condition_unread", DESCRIPTION, &with_condition(line))).unwrap_err();
+        let is_it = |diagnostic: &&fragbuf::Diagnostic| diagnostic.code == code && diagnostic.help.contains(help);
+        assert!(diagnostics.iter().find(is_it).is_some(), "{line}: {diagnostics}");
+    }
+}
+
+/// Returns code, line, column and help of each diagnostic, all in the user's file.
+fn placed(name: &str, description: &str, file: &str) -> Vec<(&'static str, u32, u32, String)> {
+    let folder = with(name, description, file);
+    let Err((diagnostics, _)) = diagnostics(&folder) else { return Vec::new() };
+    let own = folder.join("mine.wgsl").display().to_string();
+    assert!(diagnostics.iter().all(|diagnostic| *diagnostic.span.file == *own), "{diagnostics}");
+    diagnostics
+        .iter()
+        .map(|diagnostic| (diagnostic.code.name, diagnostic.span.line, diagnostic.span.column, diagnostic.help.clone()))
+        .collect()
+}
+
+/// The default of a parameter depends on the description and must be in range.
+#[test]
+fn a_default_outside_of_its_range_is_said_where_it_stands() {
+    let file = example("first_k.wgsl");
+    for (index, (default, is_right)) in [
+        ("capacity - 3", true),
+        ("capacity * 2", false),
+        ("capacity - 9", false),
+        ("pow2(32) + 4", false),
+        ("pow2(capacity * 8)", false),
+        ("7 / (capacity - 8)", false),
+        ("keep + limited", true),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let line = format!("//: parameter limit LIMIT = {default}, from 2 to 9");
+        let file = file.replace("//: provides", &format!("{line}\n//: provides"));
+        let found = placed(&format!("default-{index}"), DESCRIPTION, &file);
+        let (line, column) = position(&file, &format!("{default}, from"));
+        assert_eq!(found.is_empty(), is_right, "{default}: {found:?}");
+        let is_it = |(code, at, from, help): &(&str, u32, u32, String)| {
+            (*code, *at, *from) == ("invalid-row", line, column) && !help.is_empty()
+        };
+        assert!(found.len() <= 1 && found.iter().all(is_it), "{default} at {line}:{column}: {found:?}");
+    }
+}
+
+/// Returns lengths with every operator, also deep and long ones, and whether shaders and devices can compute them for `keep 8`.
+fn lengths() -> Vec<(String, bool)> {
+    let right = [
+        "log2_ceil(k) + log2_ceil(capacity + 1)",
+        "1 + (k < n) + (k <= n) + (k > n) + (k >= n) + (k == n) + (k != n)",
+        "k < 3 && n < 4",
+        "k < 3 && n || fragments == 1 && (keep > 7)",
+        "(k && n) * (k || 0)",
+        "pow2(k + log2_ceil(n)) / ceil_div(k, n) - ceil_div(max(k, 2), min(n, capacity))",
+        "pixels * (pow2(32) / pow2(32))",
+        "n / LIMIT",
+        "pow2(40) / pow2(20)",
+        "4294967295",
+    ];
+    let wrong = [
+        "4294967296",
+        "k + 18446744073709551615",
+        "99999999999999999999",
+        "pow2(32)",
+        "k * pow2(capacity * 4)",
+        "k / 0",
+        "n / (capacity - 8)",
+        "ceil_div(n, limited - 1)",
+        "k + 1 / 0",
+        "3 - capacity",
+        "k / (LIMIT - 3)",
+        "pow2(64)",
+        "1 < k < 9",
+        "4294967295 * 4294967295 * k * 4294967295",
+    ];
+    let chain = |sign: &str| format!("k{}", format!(" {sign} n").repeat(98));
+    let nested = |open: &str, close: &str| format!("{}k{}", open.repeat(39), close.repeat(39));
+    let deep = ["+", "*", "&&", "||"].map(chain).into_iter().chain([
+        nested("pow2(", ")"),
+        nested("log2_ceil(", ")"),
+        nested("min(n, ", ")"),
+        nested("max(", ", n)"),
+        nested("ceil_div(", ", n)"),
+        nested("(n == ", ")"),
+        nested("(n || ", ")"),
+        nested("(1 + n * ", ")"),
+    ]);
+    let right = right.map(str::to_owned).into_iter().chain(deep);
+    right.map(|text| (text, true)).chain(wrong.map(|text| (text.to_owned(), false))).collect()
+}
+
+/// A length is valid in every shader language and in Rust, or is reported at its span.
+#[test]
+fn every_length_is_valid_or_a_mistake() {
+    let (good, all) = (example("first_k.wgsl"), folder("lengths"));
+    let mut rust = String::new();
+    for (index, (length, is_right)) in lengths().into_iter().enumerate() {
+        let file = good
+            .replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"))
+            .replace("//: buffer taken", "//: parameter limit LIMIT = 3, from 1 to 9\n//: buffer taken");
+        let name = format!("length-{index}");
+        if !is_right {
+            let found = placed(&name, DESCRIPTION, &file);
+            let (line, column) = position(&file, &format!("{length}]: entry"));
+            let places: Vec<_> = found.iter().map(|(code, at, from, _)| (*code, *at, *from)).collect();
+            assert_eq!(places, [("invalid-row", line, column)], "{length}: {found:?}");
+            assert!(found.iter().all(|(.., help)| !help.is_empty()));
+            continue;
+        }
+        let description = Description::read(&with(&name, DESCRIPTION, &file).join("own.fragbuf")).unwrap();
+        let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap_or_else(|e| panic!("{e}"));
+        let targets: Vec<&'static Target> = ["wgsl", "glsl", "spirv", "msl"].map(|name| target(name).unwrap()).into();
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let made = generate(&variant, &request, &Registry::builtin()).unwrap_or_else(|e| panic!("{length}: {e}"));
+        validate(made.files.iter());
+        for file in made.files.iter() {
+            std::fs::create_dir_all(all.join(&name).join(&file.path).parent().unwrap()).unwrap();
+            std::fs::write(all.join(&name).join(&file.path), &file.bytes).unwrap();
+        }
+        let module = format!("length_{index}");
+        rust.push_str(&fragbuf::build::bindings(&module, &length, &made, 0, &name));
+        let _ = writeln!(rust, "pub use {module}::plan::buffers::slots::bytes as bytes_{index};");
+    }
+    std::fs::write(all.join("lib.rs"), rust).unwrap();
+    let rustc = std::process::Command::new("rustc")
+        .args(["--edition", "2024", "--crate-type", "lib", "--emit", "metadata", "-D", "warnings", "lib.rs"])
+        .current_dir(&all)
+        .output()
+        .unwrap();
+    assert!(rustc.status.success(), "{}", String::from_utf8_lossy(&rustc.stderr));
+}
+
+/// `keep` exceeds 32 bits for `keep all` only.
+#[test]
+fn a_length_depends_on_what_is_kept() {
+    let list = |length: &str| {
+        example("first_k.wgsl")
+            .replace("[slot < k]", "[slot < 9]")
+            .replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"))
+    };
+    let all = DESCRIPTION.replace("keep 8", "keep all");
+    let capabilities = |file: String| file.replace("//: provides lock-free,", "//: provides lock-free, keeps-all,");
+    for (index, (length, is_right)) in
+        [("keep", false), ("limited * keep + 3", true), ("min(keep, 9)", true)].into_iter().enumerate()
+    {
+        let file = capabilities(list(length)).replace("frame.k", "9u");
+        let found = placed(&format!("all-{index}"), &all, &file);
+        let (line, column) = position(&file, &format!("{length}]: entry"));
+        assert_eq!(found.is_empty(), is_right, "{length}: {found:?}");
+        assert!(
+            found.iter().all(|(code, at, from, _)| (*code, *at, *from) == ("invalid-row", line, column)),
+            "{found:?}"
+        );
+    }
+}
+
+/// The size of a buffer is the product of its lengths, for all operators.
+#[test]
+fn sizes_are_products_of_whole_lengths() {
+    for (index, (length, size)) in [
+        ("k+1", "k * (k+1) * entry_words"),
+        ("(n + 1) / 2", "k * ((n + 1) / 2) * entry_words"),
+        ("n / 2 * 2", "k * (n / 2 * 2) * entry_words"),
+        ("2 * (n + 1)", "k * 2 * (n + 1) * entry_words"),
+        ("k == n", "k * (k == n) * entry_words"),
+        ("ceil_div(n, 2) + 1", "k * (ceil_div(n, 2) + 1) * entry_words"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let file = example("first_k.wgsl").replace("[pixel < pixels]: entry", &format!("[pixel < {length}]: entry"));
+        let folder = with(&format!("size-{index}"), DESCRIPTION, &file);
+        let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+        let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap();
+        let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+        let made = generate(&variant, &request, &Registry::builtin()).unwrap();
+        let slots = made.plans[0].plan.resource("slots").unwrap();
+        assert_eq!(slots.words.to_string(), size);
+    }
+}
+
+/// The guide's table of symbols equals the vocabulary's.
+#[test]
+fn the_guide_names_every_symbol_of_conditions() {
+    let guide = include_str!("../src/guide/extend.md");
+    for Symbol { name: symbol, meaning, .. } in fragbuf::vocabulary::DescriptionValues::symbols() {
+        assert!(guide.contains(&format!("| `{symbol}` | {meaning} |")), "`{symbol}` | {meaning}");
+    }
+}
+
+/// A help text names the file as a description would.
+#[test]
+fn hints_name_the_file_as_a_description_does() {
+    let file =
+        example("first_k.wgsl").replace("suits sync slot_counter", "suits sync spin_lock").replace("lock-free, ", "");
+    let description = DESCRIPTION.replace("keep 8", "sync: slot_counter; keep 8");
+    let (diagnostics, _) = diagnostics(&with("help", &description, &file)).unwrap_err();
+    assert!(diagnostics.to_string().contains("`storage: wgsl(\"mine.wgsl\")` does not provide it"), "{diagnostics}");
+}
+
+/// A name that a template of the program also declares is reported.
+#[test]
+fn a_private_name_of_a_template_is_taken() {
+    let file = example("first_k.wgsl").replace("fn first_k_cursor", "const FREE = 1u;\n\nfn first_k_cursor");
+    let description = DESCRIPTION.replace("keep 8", "sync: spin_lock; keep 8");
+    let (diagnostics, _) = diagnostics(&with("private", &description, &file)).unwrap_err();
+    let found: Vec<_> =
+        diagnostics.iter().map(|diagnostic| (diagnostic.code.name, diagnostic.message.as_str())).collect();
+    assert_eq!(found, [("invalid-wgsl", "`FREE` is also declared in sync/spin_lock.wgsl")], "{diagnostics}");
+}
+
+const PADDED: &str = "// Rows of whole fours.
+
+//: addressing -- row after row, each padded to four pixels
+//: defines pixels = ceil_div(width, 4) * 4 * height
+
+fn pixel_index(position: vec2<f32>) -> u32 {
+    let at = vec2<u32>(position);
+    return (at.y - frame.first_row) * padded_width() + at.x;
+}
+
+fn pixel_count() -> u32 {
+    return padded_width() * frame.height;
+}
+
+fn padded_width() -> u32 {
+    return (frame.width + 3u) / 4u * 4u;
+}
+";
+
+/// An addressing defines the padding of the frame, and every size includes it.
+#[test]
+fn an_addressing_of_the_users_own() {
+    let description = "buffer Own from ab_sb {\n    addressing: wgsl(\"mine.wgsl\");\n}\n";
+    let folder = with("addressing", description, PADDED);
+    assert_eq!(diagnostics(&folder).map_err(|(diagnostics, _)| diagnostics.to_string()), Ok(()));
+    let read = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+    let variant = load(&read, &[], &[], &registry).variant.unwrap();
+    let generation = generate(&variant, &request, &registry).unwrap();
+    let symbols = &generation.plans[0].plan.symbols;
+    let PlanValue::Default(pixels) = &symbols.get(SymbolId::PIXELS).value else { panic!("pixels are defined") };
+    assert_eq!(pixels.to_string(), "ceil_div(width, 4) * 4 * height");
+    let manifest = fragbuf::manifest(&generation, 0);
+    let symbols = manifest["symbols"].as_array().unwrap();
+    let pixels = symbols.iter().find(|symbol| symbol["name"] == "pixels").unwrap();
+    assert_eq!(pixels["default"], "ceil_div(width, 4) * 4 * height");
+    for (from, to, at) in [("pixels =", "fragments =", "fragments"), ("* height", "* depth", "depth")] {
+        let (diagnostics, _) = diagnostics(&with("padded", description, &PADDED.replace(from, to))).unwrap_err();
+        assert!(
+            diagnostics.iter().any(|diagnostic| diagnostic.message.contains(at) || diagnostic.help.contains("pixels")),
+            "{diagnostics}"
+        );
+    }
+}
