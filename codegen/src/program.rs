@@ -97,12 +97,11 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     }
     let skeleton = instances::skeleton(&pass.skeleton, registry)?;
     let is_early = pass.state.depth.as_ref().is_some_and(|depth| depth.early);
+    let export = export(&pass.skeleton, &skeleton);
     templates.push(if is_early { skeleton.with_early_depth()? } else { skeleton });
     let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
     let mut sources = emit::sources(plan, pass, linking, &atomics);
     sources.extend(templates);
-    // All forms of a skeleton (`store_reserving`) export the same function.
-    let export = format!("{}_fragment", pass.skeleton.split('_').next().unwrap_or_default());
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };
     let generated = generated(plan, registry);
@@ -125,6 +124,19 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
         written_first: linked.private_arrays,
         notes,
     })
+}
+
+/// Returns the function that a module exports: `NAME_fragment`. A form of a skeleton (`store_reserving`) exports the function of the
+/// skeleton (`store_fragment`).
+fn export(name: &str, skeleton: &Source) -> String {
+    let mut base = name;
+    loop {
+        let export = format!("{base}_fragment");
+        match base.rsplit_once('_') {
+            Some((shorter, _)) if !skeleton.mentions(&format!("fn {export}(")) => base = shorter,
+            _ => return export,
+        }
+    }
 }
 
 /// Returns the choices that a file is generated from. Defaults of axes are omitted, so that a new axis changes no file.

@@ -152,7 +152,7 @@ fn checksummed_array_without_checksum(stored: Packed) -> Packed {
 }
 
 fn checksummed_array_checksum(entry: Packed) -> u32 {
-    return (entry.key * 0x9e3779b1u ^ packed_word(entry, 0u) * 0x85ebca6bu) >> CHECKSUM_SHIFT;
+    return ((entry.key * 0x9e3779b1u) ^ (packed_word(entry, 0u) * 0x85ebca6bu)) >> CHECKSUM_SHIFT;
 }
 
 fn checksummed_array_are_equal(a: Packed, b: Packed) -> bool {

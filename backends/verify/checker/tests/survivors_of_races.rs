@@ -162,14 +162,14 @@ pub(crate) const OF_RACES: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/checksummed_array",
-        "return (entry.key * 0x9e3779b1u ^ packed_word(entry, 0u) * 0x85ebca6bu) >> CHECKSUM_SHIFT;",
-        "return (entry.key * 0x9e3779b1u ^ packed_word(entry, 1u) * 0x85ebca6bu) >> CHECKSUM_SHIFT;",
+        "return ((entry.key * 0x9e3779b1u) ^ (packed_word(entry, 0u) * 0x85ebca6bu)) >> CHECKSUM_SHIFT;",
+        "return ((entry.key * 0x9e3779b1u) ^ (packed_word(entry, 1u) * 0x85ebca6bu)) >> CHECKSUM_SHIFT;",
         "a checksum of the key only: torn entries pass more often, which is a declared hazard",
     ),
     (
         "storage/checksummed_array",
-        "return (entry.key * 0x9e3779b1u ^ packed_word(entry, 0u) * 0x85ebca6bu) >> CHECKSUM_SHIFT;",
-        "return (entry.key * 0x9e3779b1u ^ packed_word(entry, 4294967295u) * 0x85ebca6bu) >> CHECKSUM_SHIFT;",
+        "return ((entry.key * 0x9e3779b1u) ^ (packed_word(entry, 0u) * 0x85ebca6bu)) >> CHECKSUM_SHIFT;",
+        "return ((entry.key * 0x9e3779b1u) ^ (packed_word(entry, 4294967295u) * 0x85ebca6bu)) >> CHECKSUM_SHIFT;",
         "a checksum of the key only: torn entries pass more often, which is a declared hazard",
     ),
     (

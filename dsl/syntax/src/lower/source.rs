@@ -46,6 +46,11 @@ impl ExprSource {
         self.parenthesised_unless(matches!(self.precedence, Precedence::Primary | Precedence::Unary))
     }
 
+    /// Returns whether `a < ` before this source starts a template list: `a < b >> c` parses as the template `a<b>` and `> c`.
+    fn closes_template(&self) -> bool {
+        self.precedence == Precedence::Shift && self.source.contains(" >> ")
+    }
+
     fn parenthesised_unless(&self, fits: bool) -> String {
         if fits { self.source.clone() } else { format!("({})", self.source) }
     }
@@ -63,7 +68,9 @@ impl ExprSource {
         let left = left.parenthesised_unless(fits_left(precedence, left.precedence));
         // `a - -1.0` is valid but hard to read.
         let double_sign = precedence == Precedence::Additive && right.source.starts_with('-');
-        let right = right.parenthesised_unless(fits_right(precedence, right.precedence) && !double_sign);
+        let closes_template = operator == Operator::Less && right.closes_template();
+        let right =
+            right.parenthesised_unless(fits_right(precedence, right.precedence) && !double_sign && !closes_template);
         ExprSource { source: format!("{left} {} {right}", operator.symbol()), precedence }
     }
 
