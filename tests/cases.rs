@@ -187,6 +187,12 @@ pub fn checked(description: &Description, set: &[(&str, &str)]) -> Result<Varian
     variant(description, &set, &Registry::builtin())
 }
 
+/// Tests whether a message or a help ends in a list without elements, as in "is provided by ".
+pub fn has_empty_list(diagnostic: &fragbuf::Diagnostic) -> bool {
+    let is_cut = |text: &str| text.ends_with([' ', ':', ',']) || text.contains("()") || text.contains(" , ");
+    is_cut(&diagnostic.message) || is_cut(&diagnostic.help)
+}
+
 /// Generates every target in program form.
 pub fn generated(variant: &Variant) -> Generation {
     let targets: Vec<&'static Target> = TARGETS.iter().collect();

@@ -55,6 +55,35 @@ fn generating_everything_twice_gives_the_same_bytes() {
     assert!(files.len() > 60);
 }
 
+/// A technique that needs a feature of another target is a warning: the others are written.
+#[test]
+fn generating_everything_writes_what_a_target_supports() {
+    for target in ["wgsl", "glsl-es", "msl"] {
+        let out = folder(&format!("all-{target}"));
+        let output = fragbuf(&["generate", "--all", "--target", target, "--out", out.to_str().unwrap()]);
+        let warnings = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{warnings}");
+        let techniques = fragbuf::Registry::builtin().techniques().to_vec();
+        let (written, missing): (Vec<_>, Vec<_>) =
+            techniques.iter().partition(|technique| out.join(&technique.key).exists());
+        assert!(written.len() > missing.len() && !missing.is_empty());
+        for technique in written {
+            assert!(out.join(&technique.key).join("manifest.json").exists());
+        }
+        assert_eq!(warnings.lines().count(), missing.len(), "{warnings}");
+        for technique in missing {
+            let folder = out.join(&technique.key).display().to_string();
+            assert!(warnings.lines().any(|line| line.contains(&format!("in {folder}: "))), "{warnings}");
+        }
+    }
+    let out = folder("all-modules");
+    let arguments = ["generate", "--all", "--target", "spirv", "--form", "module", "--out", out.to_str().unwrap()];
+    let output = fragbuf(&arguments);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--form program"));
+    assert!(!out.exists());
+}
+
 #[test]
 fn the_manifest_names_every_file_and_nothing_else() {
     let out = folder("manifest");

@@ -3,10 +3,12 @@
 
 use std::collections::BTreeSet;
 
+use fragbuf::Registry;
 use fragbuf::report::render;
+use fragbuf::vocabulary::{Capability, Row};
 use fragbuf_model::codes;
 
-use crate::cases::{checked, text};
+use crate::cases::{checked, has_empty_list, text};
 
 /// Code, line, column, and a part of the help.
 type Expected = (&'static str, u32, u32, &'static str);
@@ -153,6 +155,7 @@ fn every_error_has_its_code_span_and_help() {
         assert_eq!(found, wanted, "{source}\n{diagnostics}");
         for (diagnostic, (.., help)) in diagnostics.iter().zip(*expected) {
             assert!(!diagnostic.help.is_empty() && diagnostic.help.contains(help), "{source}\n{diagnostics}");
+            assert!(!has_empty_list(diagnostic), "{source}\n{diagnostics}");
         }
     }
 }
@@ -174,6 +177,26 @@ fn a_hint_is_a_change_that_works() {
     let diagnostics = checked(&text(source), &[]).unwrap_err();
     assert!(diagnostics.iter().all(|diagnostic| diagnostic.help.contains("`sync: spin_lock`")), "{diagnostics}");
     assert!(checked(&text(&source.replace("none", "spin_lock")), &[]).is_ok());
+}
+
+/// Some capabilities are provided under a condition, or by no row that a description can choose.
+#[test]
+fn a_missing_capability_has_help_whoever_provides_it() {
+    let builtin = Registry::builtin();
+    let over = builtin.row("resolve", "over").unwrap().clone();
+    let mut missing = 0;
+    for capability in Capability::ALL {
+        for preset in ["ab_ll", "kplus_array", "kb_sr"] {
+            let row = Row { key: "demanding".to_owned(), requires: vec![*capability], ..over.clone() };
+            let source = format!("buffer B from {preset} {{ resolve: demanding; }}");
+            let draft = fragbuf::parse(&source, "case.fragbuf").draft.unwrap();
+            let Err(diagnostics) = fragbuf::check(&draft, &builtin.clone().with(row)) else { continue };
+            missing += 1;
+            let helps = diagnostics.iter().all(|diagnostic| !diagnostic.help.is_empty() && !has_empty_list(diagnostic));
+            assert!(helps, "{diagnostics}");
+        }
+    }
+    assert!(missing > 20, "{missing}");
 }
 
 #[test]

@@ -58,14 +58,19 @@ impl Generate {
             let mut input = Input::read(&argument, &registry)?;
             let variant = input.variant(&self.set, &registry)?;
             let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
-            if generation.plans.is_empty() {
+            if generation.plans.is_empty() && !self.all {
                 return Err(unsupported(&argument, &generation));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));
         }
+        if folders.iter().all(|(_, generation)| generation.plans.is_empty()) {
+            return Err(Failure::Usage(NOTHING.to_owned()));
+        }
         for (folder, generation) in &folders {
-            write(folder, generation, self.group)?;
+            if !generation.plans.is_empty() {
+                write(folder, generation, self.group)?;
+            }
             for (target, missing) in &generation.unsupported {
                 output::warn(&format!("nothing written for {} in {}: {missing}", target.name, folder.display()));
             }
@@ -73,6 +78,10 @@ impl Generate {
         Ok(())
     }
 }
+
+/// The error if no technique can be written for any of the targets.
+const NOTHING: &str =
+    "none of the targets supports a technique in this form: choose other targets, or `--form program`";
 
 /// Returns the failure if none of the targets supports the description.
 fn unsupported(description: &str, generation: &Generation) -> Failure {

@@ -59,7 +59,10 @@ pub fn set_uniform(words: &mut [u32], uniforms: &[Uniform], name: &str, value: V
     let found = offsets.into_iter().zip(uniforms).find(|(_, uniform)| uniform.name.value == name);
     let Some((offset, uniform)) = found else {
         let names: Vec<&str> = uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-        let expected = format!("one of the description's uniforms ({})", names.join(", "));
+        let expected = match names.is_empty() {
+            true => "unset: the description has no uniforms".to_owned(),
+            false => format!("one of the description's uniforms ({})", names.join(", ")),
+        };
         return Err(Error::BadValue { name: format!("uniform `{name}`"), expected });
     };
     let kind = uniform.kind.value;
@@ -101,5 +104,7 @@ mod tests {
         let wrong = set_uniform(&mut words, &block, "a", Value::U32(1)).unwrap_err();
         assert_eq!(wrong.to_string(), "uniform `a` must be f32");
         assert!(set_uniform(&mut words, &block, "b", Value::U32(1)).unwrap_err().to_string().contains("(a)"));
+        let unset = set_uniform(&mut [], &[], "b", Value::U32(1)).unwrap_err();
+        assert_eq!(unset.to_string(), "uniform `b` must be unset: the description has no uniforms");
     }
 }

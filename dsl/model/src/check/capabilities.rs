@@ -149,14 +149,7 @@ impl Context<'_> {
         let chosen = &self.choices[index];
         let help = match self.fixes(combination) {
             Some(fixes) => format!("choose {fixes}"),
-            None => {
-                let providers: Vec<String> = self.registry.providers_of(capability).map(name).collect();
-                format!(
-                    "more than one change is needed; {} is provided by {}",
-                    capability.meaning(),
-                    joined(&providers)
-                )
-            }
+            None => self.more_changes(index, capability, combination),
         };
         let message =
             format!("{} requires {}, but no choice provides it", name(combination[index]), capability.meaning());
@@ -168,6 +161,21 @@ impl Context<'_> {
             }
         }
         diagnostic
+    }
+
+    /// Returns the help if no single change makes the combination legal: the rows that provide the capability.
+    fn more_changes(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> String {
+        let is_chosen = |row: &&Row| self.registry.axis(&row.axis).is_some_and(|axis| axis.chosen);
+        let rows = self.registry.rows().iter().filter(is_chosen).filter(|row| row.may_provide(capability));
+        let providers: Vec<String> = rows.map(|row| provider(row, capability)).collect();
+        let meaning = capability.meaning();
+        match providers.is_empty() {
+            true => format!(
+                "no choice of any axis provides {meaning}: choose another value than {}",
+                name(combination[index])
+            ),
+            false => format!("more than one change is needed; {meaning} is provided by {}", joined(&providers)),
+        }
     }
 
     /// Reports a condition of `combination[index]` that the description does not meet.
@@ -200,6 +208,15 @@ impl Context<'_> {
 
 fn name(row: &Row) -> String {
     format!("`{}: {}`", row.axis, value_source(&row.key))
+}
+
+/// Returns the name of a row that provides a capability, and the condition under which it does.
+fn provider(row: &Row, capability: Capability) -> String {
+    let condition = row.implies.iter().find(|(_, implied)| *implied == capability);
+    match condition {
+        Some((when, _)) if !row.provides.contains(&capability) => format!("{} if `{when}`", name(row)),
+        _ => name(row),
+    }
 }
 
 fn joined(names: &[String]) -> String {
