@@ -29,6 +29,7 @@ mod quads;
 mod render;
 mod snapshots;
 mod tidy;
+mod tint;
 mod user_files;
 mod validators;
 mod vocabulary;

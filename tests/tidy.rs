@@ -19,7 +19,7 @@ fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
             match path.is_dir() {
-                true if name != "target" && !name.starts_with('.') => waiting.push(path),
+                true if name != "target" && name != "node_modules" && !name.starts_with('.') => waiting.push(path),
                 false if path.extension().is_some_and(|found| found == extension) => found.push(path),
                 _ => {}
             }

@@ -1,4 +1,4 @@
-//! Runs glslang and spirv-val on generated files. Results are cached by content and validator.
+//! Runs glslang, spirv-val and Tint on generated files. Results are cached by content and validator.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -9,11 +9,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fragbuf::File;
 
+use crate::tint;
+
 /// Validates each distinct file for which there is an external validator. Returns their number. Panics with every error.
 pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
+    let files: Vec<&File> = files.collect();
     let mut seen = BTreeSet::new();
+    let distinct = files.iter().copied();
     let jobs: Vec<&File> =
-        files.filter(|file| tool(file).is_some() && seen.insert((suffix(file), file.target, &file.bytes))).collect();
+        distinct.filter(|file| tool(file).is_some() && seen.insert((suffix(file), file.target, &file.bytes))).collect();
     let queue = Mutex::new(jobs.iter());
     let diagnostics = Mutex::new(Vec::new());
     let work = || {
@@ -27,9 +31,11 @@ pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
         scope.spawn(work);
         scope.spawn(work);
     });
-    let diagnostics = diagnostics.into_inner().unwrap();
+    let mut diagnostics = diagnostics.into_inner().unwrap();
+    let (portable, refused) = tint::refused(&files);
+    diagnostics.extend(refused);
     assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n\n"));
-    jobs.len()
+    jobs.len() + portable
 }
 
 /// Returns the validator of a file and its arguments, without the file name.
