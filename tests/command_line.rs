@@ -85,6 +85,23 @@ fn generating_everything_writes_what_a_target_supports() {
 }
 
 #[test]
+fn portable_wgsl_has_four_bind_groups() {
+    let out = folder("groups");
+    let with = |group: &str, target: &str| {
+        fragbuf(&["generate", "ab_ll", "--target", target, "--group", group, "--out", out.to_str().unwrap()])
+    };
+    let refused = with("4", "wgsl");
+    let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(1) && text.contains("`group: 4` requires more than 4 bind groups"), "{text}");
+    assert!(text.contains("`--group` from 0 to 3") && !out.exists(), "{text}");
+    let others = with("31", "all");
+    let warnings = String::from_utf8_lossy(&others.stderr).into_owned();
+    assert!(others.status.success() && warnings.lines().count() == 1, "{warnings}");
+    assert!(warnings.contains("nothing written for wgsl in") && !out.join("wgsl").exists(), "{warnings}");
+    assert!(with("3", "wgsl").status.success());
+}
+
+#[test]
 fn the_manifest_names_every_file_and_nothing_else() {
     let out = folder("manifest");
     assert!(generate(&["ab_sb"], &out).status.success());

@@ -1,6 +1,7 @@
 //! Tests the memory of several samples per pixel, and the targets that support them.
 
-use fragbuf::{Registry, TARGETS};
+use fragbuf::vocabulary::Feature;
+use fragbuf::{Registry, TARGETS, Target};
 use fragbuf_codegen::plan;
 use fragbuf_model::{Selection, Variant};
 
@@ -44,4 +45,31 @@ fn targets_without_a_mask_refuse_with_the_reason() {
             }
         }
     }
+}
+
+/// A WebGPU device has 1 and 4 samples per pixel.
+#[test]
+fn portable_wgsl_has_four_samples() {
+    let descriptions = |count: u32| {
+        [
+            format!("buffer B from kplus_array {{ samples: coverage {{ count: {count} }}; }}"),
+            format!("buffer B from kb_sr {{ keep {count}; }}"),
+        ]
+    };
+    let missing = |variant: &Variant, target: &Target| {
+        variant.select(&[target.provides, &[Feature::OwnEntryPoints]].concat()).err().map(|missing| missing.feature)
+    };
+    for count in [2, 4, 8] {
+        for description in descriptions(count) {
+            let variant = checked(&text(&description), &[]).unwrap();
+            let plan = plan(&variant, &Selection::first(&variant), &Registry::builtin()).unwrap();
+            assert_eq!(plan.requires.contains(&Feature::SampleCounts), count != 4, "{description}");
+            for target in TARGETS {
+                let is_missing = missing(&variant, target) == Some(Feature::SampleCounts);
+                assert_eq!(is_missing, target.name == "wgsl" && count != 4, "{description} for {}", target.name);
+            }
+        }
+    }
+    let four = checked(&text("buffer B from kplus_array { samples: coverage; }"), &[]).unwrap();
+    assert!(TARGETS.iter().all(|target| missing(&four, target) != Some(Feature::SampleCounts)));
 }

@@ -34,7 +34,7 @@ const INFORMATIVE: [Capability; 2] = [Capability::CountsEvents, Capability::Leav
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {
     let capabilities = |row: &Row| {
         let conditions = row.conditions.iter().map(|condition| condition.formula.clone()).collect::<Vec<_>>();
-        let requires = (row.requires.clone(), row.needs.clone(), row.least.clone());
+        let requires = (row.requires.clone(), row.needs.clone(), row.needs_if.clone(), row.least.clone());
         let provides: Vec<Capability> =
             row.provides.iter().copied().filter(|capability| !INFORMATIVE.contains(capability)).collect();
         (provides, row.implies.clone(), requires, conditions, row.extra_words.len())

@@ -79,7 +79,8 @@ pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Re
     let built = build(selection, registry, (&symbols, &layout), &constants).map_err(error)?;
     bound_k(variant, &mut symbols).map_err(|problem| error(problem.to_string()))?;
     let provides = selection.provides();
-    let mut requires: Vec<Feature> = rows().flat_map(|row| row.needs.iter().copied()).collect();
+    let given = variant.description_values(selection);
+    let mut requires: Vec<Feature> = selection.rows.iter().flat_map(|selected| selected.needs(&given)).collect();
     requires.sort();
     requires.dedup();
     Ok(Plan {

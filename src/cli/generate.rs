@@ -80,8 +80,7 @@ impl Generate {
 }
 
 /// The error if no technique can be written for any of the targets.
-const NOTHING: &str =
-    "none of the targets supports a technique in this form: choose other targets, or `--form program`";
+const NOTHING: &str = "none of the targets supports a technique in this form: choose other targets, `--form program` or `--group` from 0 to 3";
 
 /// Returns the failure if none of the targets supports the description.
 fn unsupported(description: &str, generation: &Generation) -> Failure {
@@ -92,7 +91,7 @@ fn unsupported(description: &str, generation: &Generation) -> Failure {
         fragbuf_model::codes::UNSUPPORTED_TARGET,
         &span,
         format!("none of the targets supports the description: {}", reasons.join("; ")),
-        "choose other targets, `--form program`, or add `else` alternatives to the axis",
+        "choose other targets, `--form program`, `--group` from 0 to 3, or add `else` alternatives to the axis",
     );
     Failure::Description(diagnostic.into(), Vec::new())
 }

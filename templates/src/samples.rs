@@ -25,6 +25,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 summary: "samples per pixel; every device supports 4, some 2 and 8, the CPU device all".into(),
             }],
             needs: vec![Feature::Coverage],
+            needs_if: vec![("SAMPLES != 4".into(), Feature::SampleCounts)],
             edits: vec![Edit::Samples(Samples {
                 count: "SAMPLES".into(),
                 mask: "pow2(SAMPLES) - 1".into(),

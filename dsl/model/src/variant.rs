@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use fragbuf_templates::vocabulary::{Capability, DescriptionValues, Feature, KeptFragments, Merges, Row, Soundness};
+use fragbuf_templates::vocabulary::{
+    Capability, DescriptionValues, Feature, Formula, KeptFragments, Merges, Row, Soundness,
+};
 
 use crate::check::description_values;
 use crate::{Attribute, SourceSpan, Spanned, Uniform, UserFunction};
@@ -79,11 +81,12 @@ impl Variant {
     /// Returns the rows for a target with the features `target`: on each axis, the first alternative that it supports.
     /// `Err`: the last alternative of an axis, and the feature that it needs.
     pub fn select(&self, target: &[Feature]) -> Result<Selection, MissingFeature> {
+        let given = description_values(&self.attributes, self.criterion.as_ref(), self.keep);
         let mut rows = Vec::with_capacity(self.choices.len());
         for chosen in &self.choices {
             let mut unsupported = None;
             for selected in &chosen.alternatives {
-                match missing_on_target(&selected.row, target) {
+                match selected.needs(&given).find(|feature| !target.contains(feature)) {
                     None => {
                         rows.push(selected.clone());
                         unsupported = None;
@@ -134,8 +137,22 @@ pub(crate) fn with_extra_words<'a>(given: DescriptionValues, rows: impl Iterator
     DescriptionValues { payload_words: given.payload_words + extra as u32, ..given }
 }
 
-fn missing_on_target(row: &Row, target: &[Feature]) -> Option<Feature> {
-    row.needs.iter().copied().find(|feature| !target.contains(feature))
+impl SelectedRow {
+    /// Returns the features that the row requires of the target, with its options and for this description.
+    pub fn needs(&self, given: &DescriptionValues) -> impl Iterator<Item = Feature> {
+        let value = |symbol: &str| given.value(symbol).or_else(|| self.option(symbol));
+        // If a formula has no value, its feature is required.
+        let holds = move |formula: &Formula| formula.evaluate(&value).map_or(true, |value| value != 0);
+        let conditional = self.row.needs_if.iter().filter(move |(when, _)| holds(when)).map(|(_, feature)| *feature);
+        self.row.needs.iter().copied().chain(conditional)
+    }
+
+    /// Returns the value of the option with this constant. A default that depends on other symbols has none.
+    fn option(&self, constant: &str) -> Option<u64> {
+        let parameter = self.row.parameters.iter().find(|parameter| parameter.constant == *constant)?;
+        let set = self.options.iter().find(|(name, _)| *name == *parameter.name);
+        set.map_or_else(|| parameter.default.evaluate(&|_| None).ok(), |(_, value)| Some(u64::from(*value)))
+    }
 }
 
 impl Selection {

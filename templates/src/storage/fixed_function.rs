@@ -121,6 +121,7 @@ pub(super) fn stencil_routed() -> Row {
             word_per_target(),
         ],
         needs: vec![Feature::SampleMask, Feature::OwnEntryPoints],
+        needs_if: vec![("keep != 4".into(), Feature::SampleCounts)],
         defaults: vec![BY_TESTS, ARRIVAL],
         hazards: vec![
             Hazard::new(

@@ -19,5 +19,7 @@ names! {
         Linkable "functions that the caller's shader can call";
         OwnEntryPoints "generated entry points: `--form program`";
         PrimitiveIndex "the primitive index of a fragment";
+        SampleCounts "2 or 8 samples per pixel";
+        BindGroups "more than 4 bind groups";
     }
 }

@@ -50,6 +50,9 @@ pub struct Row {
     pub conditions: Vec<Condition>,
     /// Features that the row requires of the target and the device.
     pub needs: Vec<Feature>,
+    /// (condition, feature): features that the row requires only under a condition on the description and on its own options, by the
+    /// names of their constants.
+    pub needs_if: Vec<(Formula, Feature)>,
     /// Changes to the steps of other rows.
     pub edits: Vec<Edit>,
     /// Values on other axes that are used if the description gives none.
@@ -266,6 +269,7 @@ impl Row {
             requires: Vec::new(),
             conditions: Vec::new(),
             needs: Vec::new(),
+            needs_if: Vec::new(),
             edits: Vec::new(),
             defaults: Vec::new(),
             extra_words: Vec::new(),

@@ -9,6 +9,9 @@ use crate::emission::{Emission, File, Guards, InterlockOrder};
 use crate::target::Target;
 use crate::{Checked, check};
 
+/// The number of bind groups that every device has. WebGPU's limit `maxBindGroups` is 4 unless a program asks for more.
+const COMMON_BIND_GROUPS: u32 = 4;
+
 /// The parameters of a generation.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
@@ -79,6 +82,11 @@ fn plan_for(
         let missing =
             MissingFeature { axis: "form".to_owned(), value: "module".to_owned(), feature: Feature::Linkable };
         generation.unsupported.push((target, missing));
+        return Ok(None);
+    }
+    if request.group >= COMMON_BIND_GROUPS && !target.provides.contains(&Feature::BindGroups) {
+        let (axis, value) = ("group".to_owned(), request.group.to_string());
+        generation.unsupported.push((target, MissingFeature { axis, value, feature: Feature::BindGroups }));
         return Ok(None);
     }
     let mut provides = target.provides.to_vec();

@@ -32,6 +32,8 @@ const GLSL_FEATURES: &[Feature] = &[
     Feature::SampleMask,
     Feature::Coverage,
     Feature::Linkable,
+    Feature::SampleCounts,
+    Feature::BindGroups,
 ];
 
 /// Every target, in the order in which files and manifests list them.
@@ -55,6 +57,8 @@ pub const TARGETS: &[Target] = &[
             Feature::SampleMask,
             Feature::Coverage,
             Feature::Linkable,
+            Feature::SampleCounts,
+            Feature::BindGroups,
         ],
         emit: wgsl::emit,
     },
@@ -76,7 +80,13 @@ pub const TARGETS: &[Target] = &[
         name: "glsl-es",
         summary: "GLSL 3.10 ES for OpenGL ES 3.1, where fragment shaders may write buffers",
         profile: Profile::Native,
-        provides: &[Feature::FragmentAtomics, Feature::Fences, Feature::Coherent, Feature::Linkable],
+        provides: &[
+            Feature::FragmentAtomics,
+            Feature::Fences,
+            Feature::Coherent,
+            Feature::Linkable,
+            Feature::BindGroups,
+        ],
         emit: glsl::emit_es,
     },
     Target {
@@ -93,6 +103,8 @@ pub const TARGETS: &[Target] = &[
             Feature::EarlyDepth,
             Feature::SampleMask,
             Feature::Coverage,
+            Feature::SampleCounts,
+            Feature::BindGroups,
         ],
         emit: spirv::emit,
     },
@@ -107,6 +119,8 @@ pub const TARGETS: &[Target] = &[
             Feature::SampleMask,
             Feature::Coverage,
             Feature::Linkable,
+            Feature::SampleCounts,
+            Feature::BindGroups,
         ],
         emit: hlsl::emit,
     },
@@ -114,7 +128,7 @@ pub const TARGETS: &[Target] = &[
         name: "msl",
         summary: "Metal Shading Language 2.4",
         profile: Profile::Portable,
-        provides: &[Feature::FragmentAtomics, Feature::Coverage],
+        provides: &[Feature::FragmentAtomics, Feature::Coverage, Feature::SampleCounts, Feature::BindGroups],
         emit: msl::emit,
     },
 ];

@@ -42,6 +42,7 @@ const FEATURES: &[Feature] = &[
     Feature::Coverage,
     Feature::OwnEntryPoints,
     Feature::PrimitiveIndex,
+    Feature::SampleCounts,
 ];
 
 /// The functions of templates that stand for constructs that WGSL lacks.
