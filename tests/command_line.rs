@@ -90,9 +90,12 @@ fn portable_wgsl_has_four_bind_groups() {
     let with = |group: &str, target: &str| {
         fragbuf(&["generate", "ab_ll", "--target", target, "--group", group, "--out", out.to_str().unwrap()])
     };
-    let refused = with("4", "wgsl");
-    let text = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(1) && text.contains("`group: 4` requires more than 4 bind groups"), "{text}");
+    let rejected = with("4", "wgsl");
+    let text = String::from_utf8_lossy(&rejected.stderr).into_owned();
+    assert!(
+        rejected.status.code() == Some(1) && text.contains("`group: 4` requires more than 4 bind groups"),
+        "{text}"
+    );
     assert!(text.contains("`--group` from 0 to 3") && !out.exists(), "{text}");
     let others = with("31", "all");
     let warnings = String::from_utf8_lossy(&others.stderr).into_owned();

@@ -16,8 +16,8 @@ const SCRIPT: &str = include_str!("tint/validate.mjs");
 /// The version of Tint.
 const LOCK: &str = include_str!("tint/package-lock.json");
 
-/// Returns the number of distinct sources in portable WGSL, and a text for each that Tint refuses.
-pub fn refused(files: &[&File]) -> (usize, Vec<String>) {
+/// Returns the number of distinct sources in portable WGSL, and a text for each that Tint rejects.
+pub fn rejected(files: &[&File]) -> (usize, Vec<String>) {
     let mut seen = BTreeSet::new();
     let distinct: Vec<&File> =
         files.iter().copied().filter(|file| file.target == "wgsl" && seen.insert(&file.bytes)).collect();
@@ -68,7 +68,7 @@ fn errors(sources: &[String]) -> Vec<Option<String>> {
 }
 
 fn assert_valid(files: &[File]) -> usize {
-    let (count, diagnostics) = refused(&files.iter().collect::<Vec<_>>());
+    let (count, diagnostics) = rejected(&files.iter().collect::<Vec<_>>());
     assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n\n"));
     count
 }
@@ -133,14 +133,14 @@ fn tint_accepts_two_buffers_in_a_shader() {
     }
 }
 
-/// What naga accepts and Tint refuses. A validator that accepts it would validate nothing.
+/// What naga accepts and Tint rejects. A validator that accepts it would validate nothing.
 #[test]
-fn tint_refuses_mixed_operators_and_unclosed_templates() {
+fn tint_rejects_mixed_operators_and_unclosed_templates() {
     let sources = [
         "fn f(a: u32, b: u32) -> u32 { return a * b ^ a; }",
         "fn f(a: u32, b: u32) -> bool { return a < b >> 2u; }",
         "fn f(a: u32, b: u32) -> bool { return a < (b >> 2u); }",
     ];
-    let refused: Vec<bool> = errors(&sources.map(str::to_owned)).iter().map(Option::is_some).collect();
-    assert_eq!(refused, [true, true, false]);
+    let rejected: Vec<bool> = errors(&sources.map(str::to_owned)).iter().map(Option::is_some).collect();
+    assert_eq!(rejected, [true, true, false]);
 }

@@ -32,8 +32,8 @@ pub fn validate<'a>(files: impl Iterator<Item = &'a File>) -> usize {
         scope.spawn(work);
     });
     let mut diagnostics = diagnostics.into_inner().unwrap();
-    let (portable, refused) = tint::refused(&files);
-    diagnostics.extend(refused);
+    let (portable, rejected) = tint::rejected(&files);
+    diagnostics.extend(rejected);
     assert!(diagnostics.is_empty(), "{}", diagnostics.join("\n\n"));
     jobs.len() + portable
 }

@@ -142,7 +142,7 @@ impl SelectedRow {
     pub fn needs(&self, given: &DescriptionValues) -> impl Iterator<Item = Feature> {
         let value = |symbol: &str| given.value(symbol).or_else(|| self.option(symbol));
         // If a formula has no value, its feature is required.
-        let holds = move |formula: &Formula| formula.evaluate(&value).map_or(true, |value| value != 0);
+        let holds = move |formula: &Formula| formula.evaluate(&value) != Ok(0);
         let conditional = self.row.needs_if.iter().filter(move |(when, _)| holds(when)).map(|(_, feature)| *feature);
         self.row.needs.iter().copied().chain(conditional)
     }
