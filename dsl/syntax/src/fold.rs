@@ -8,7 +8,7 @@ use fragbuf_model::{SourceSpan, codes};
 
 use crate::methods::Spelling;
 use crate::report::Report;
-use crate::tree::{Block, Expr, Function, Kind, Operator, Sequence, Statement};
+use crate::tree::{Block, Expr, Function, Kind, Operator, Statement};
 use crate::types::Type;
 
 /// The value of a constant expression.
@@ -80,21 +80,12 @@ impl Folding<'_> {
             }
             Kind::Block(block) => self.block(block),
             other => {
-                let values: Vec<Option<Value>> =
-                    other.operands().into_iter().map(|operand| self.expr(operand)).collect();
-                self.check_loop_range(other, &values, expr);
+                for operand in other.operands() {
+                    self.expr(operand);
+                }
                 other.block().map(|block| self.block(block));
                 None
             }
-        }
-    }
-
-    /// Rejects an inclusive range that ends at the greatest number: the loop counter would overflow.
-    fn check_loop_range(&mut self, kind: &Kind, bounds: &[Option<Value>], expr: &Expr) {
-        let Kind::For(each) = kind else { return };
-        let (Sequence::Range { inclusive: true, .. }, [_, Some(end)]) = (&each.sequence, bounds) else { return };
-        if matches!(end, Value::U32(u32::MAX) | Value::I32(i32::MAX)) {
-            self.reject(expr, "this loop would count past the greatest number", "write `a..b`, or a smaller end");
         }
     }
 

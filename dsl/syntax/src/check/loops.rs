@@ -69,10 +69,6 @@ impl Checker<'_, '_, '_> {
         let to = self.expr(end, None);
         let ty = self.range_type(&from, &to)?;
         let inclusive = matches!(range.limits, syn::RangeLimits::Closed(_));
-        if inclusive && reversed {
-            self.unsupported(span, "`.rev()` of `..=` is not supported", "write `(a..b + 1).rev()`");
-            return None;
-        }
         let variable = self.loop_variable(pattern, ty)?;
         Some(Sequence::Range { variable, ty, from: Box::new(from), to: Box::new(to), inclusive, reversed })
     }

@@ -12,6 +12,7 @@ mod methods;
 mod names;
 mod needs;
 mod numbers;
+mod ranges;
 mod source;
 mod statements;
 

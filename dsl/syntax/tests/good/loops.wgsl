@@ -3,7 +3,9 @@ fn user_counted(n: u32) -> f32 {
     for (var i = 0i; i < 8i; i++) {
         sum += f32(i);
     }
-    for (var i = 1u; i <= n; i++) {
+    var i_more = 1u <= n;
+    for (var i = 1u; i_more; i++) {
+        i_more = i < n;
         if i == 3u {
             continue;
         }
