@@ -1,11 +1,12 @@
 //! Tests `fragbuf::build` in a build script: a small crate builds and runs, repeats no work, and fails on an invalid description.
 //! Layouts are compared with those that naga computes from the generated source.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use fragbuf::build::{Build, bindings};
+use fragbuf::load::Description;
 use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, target};
 
 use crate::cases::{checked, named};
@@ -273,4 +274,73 @@ fn an_alternative_has_its_own_plan() {
     let (second, targets) = rest.split_once("pub mod wgsl {").unwrap();
     assert!(first.contains("pub mod locks") && !second.contains("pub mod locks"));
     assert!(part(targets, "glsl").contains("pub use super::plan_1 as plan;"));
+}
+
+/// A user file whose names are keywords of Rust, differ only by case, or are not in Rust's style.
+fn odd_names() -> Description {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("odd_names");
+    std::fs::create_dir_all(&folder).unwrap();
+    let first_k = std::fs::read_to_string("examples/user_storage/first_k.wgsl").unwrap();
+    let more = "//: parameter box box = 3, from 1 to 9
+//: parameter limit limit = 3, from 1 to 9
+//: buffer Taken[pixel < n + fragments + kept + box]: word
+//: buffer dyn[pixel < pixels]: word
+//: pass store: ";
+    let row =
+        first_k.replacen("//: pass store: ", more, 1).replacen("slots plain", "slots plain, Taken plain, dyn plain", 1);
+    std::fs::write(folder.join("odd.wgsl"), row).unwrap();
+    let description = "buffer Odd { storage: wgsl(\"odd.wgsl\"); keep 8; }";
+    std::fs::write(folder.join("odd.fragbuf"), description).unwrap();
+    Description::read(&folder.join("odd.fragbuf")).unwrap()
+}
+
+/// Compiles the bindings of every technique and named case, in a library and in a private module of a program, with warnings as
+/// errors, and computes sizes and their parameters in constants.
+#[test]
+fn bindings_of_every_technique_compile_without_warnings() {
+    let registry = Registry::builtin();
+    let techniques = registry.techniques().iter().map(|technique| technique.key.clone());
+    let techniques = techniques.map(|key| (key.clone(), Description::Technique(key), vec![]));
+    let cases = named().into_iter().map(|(name, description, set)| (name.to_owned(), description, set));
+    let odd = ("odd_names".to_owned(), odd_names(), vec![]);
+    let targets: Vec<&'static Target> = ["wgsl", "wgsl-native", "glsl"].map(|name| target(name).unwrap()).into();
+    let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("all_bindings");
+    let (mut text, mut modules) = (String::new(), BTreeSet::new());
+    for (name, description, set) in
+        techniques.chain(cases).chain([odd]).filter(|(name, ..)| modules.insert(name.clone()))
+    {
+        let variant = checked(&description, &set).unwrap_or_else(|errors| panic!("{name}: {errors}"));
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let generation = generate(&variant, &request, &registry).unwrap_or_else(|errors| panic!("{name}: {errors}"));
+        for file in &generation.files {
+            let path = root.join("files").join(&name).join(&file.path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, &file.bytes).unwrap();
+        }
+        text.push_str(&bindings(&name, &name, &generation, 0, &format!("files/{name}")));
+    }
+    std::fs::write(root.join("fragbuf.rs"), text).unwrap();
+    const USES: &str = "const _: () = {
+        assert!(shaders::ab_array::plan::defaults::n(4, 3, 25) == 3);
+        assert!(shaders::ab_array::plan::buffers::entries::bytes(4, 3, 3) == 4 * 2 * 3 * 12);
+        assert!(shaders::kplus_array::plan::defaults::k() == 8);
+        assert!(shaders::odd_names::plan::buffers::taken_::bytes(1, 2, 3) == 4 * 9);
+        assert!(shaders::odd_names::plan::box_ + shaders::odd_names::plan::limit == 6);
+    };";
+    let library =
+        format!("//! Bindings.\n#![allow(missing_docs)]\npub mod shaders {{ include!(\"fragbuf.rs\"); }}\n{USES}");
+    let program = format!("mod shaders {{ include!(\"fragbuf.rs\"); }}\n{USES}\nfn main() {{}}\n");
+    for (kind, main) in [("lib", library), ("bin", program)] {
+        let path = root.join(format!("{kind}.rs"));
+        std::fs::write(&path, main).unwrap();
+        let lints = ["-D", "warnings", "-D", "unused", "-D", "unreachable_pub", "-D", "nonstandard_style"];
+        let rustc = Command::new("rustc")
+            .args(["--edition", "2024", "--crate-type", kind, "--emit", "metadata"])
+            .args(lints)
+            .arg(&path)
+            .current_dir(&root)
+            .output()
+            .unwrap();
+        assert!(rustc.status.success(), "{}", String::from_utf8_lossy(&rustc.stderr));
+    }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use fragbuf::load::{Description, load};
 use fragbuf::report::render;
-use fragbuf::vocabulary::Symbol;
+use fragbuf::vocabulary::{BindingTime, SYMBOLS, Symbol};
 use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, generate, target};
 use fragbuf_codegen::{PlanValue, SymbolId};
 use fragbuf_model::codes;
@@ -451,6 +451,9 @@ fn lengths() -> Vec<(String, bool)> {
         nested("(1 + n * ", ")"),
     ]);
     let right = right.map(str::to_owned).into_iter().chain(deep);
+    // Every symbol that a row of the registry may use in a size.
+    let symbols = SYMBOLS.iter().filter(|symbol| symbol.when != BindingTime::Iteration);
+    let right = right.chain(symbols.map(|symbol| format!("{} + 1", symbol.name)));
     right.map(|text| (text, true)).chain(wrong.map(|text| (text.to_owned(), false))).collect()
 }
 

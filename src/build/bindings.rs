@@ -1,20 +1,23 @@
 //! Writes the Rust bindings of generated passes: entry points and sources, binding numbers, buffer sizes, block layouts.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use fragbuf_codegen::Plan;
+use fragbuf_codegen::{Plan, PlanValue, Quantity, SymbolId};
 use fragbuf_model::{UniformBlock, UniformType};
 use fragbuf_targets::{File, Generation, PlanForTargets};
 
 use super::rust;
 
+/// The lints that bindings may cause in the caller's crate: names of user files are kept, and a crate need not use every binding.
+const ALLOWED: &str =
+    "dead_code, non_upper_case_globals, unreachable_pub, unused_imports, unused_parens, clippy::all, clippy::pedantic";
+
 /// Returns a module `name` of bindings for a generation from `source`. Paths of files begin with `folder`, relative to the
 /// Rust file. A plan is a module `plan`, with a number if targets have different plans; each target is a module with one
 /// module per pass.
 pub fn bindings(name: &str, source: &str, generation: &Generation, group: u32, folder: &str) -> String {
-    let mut text = format!(
-        "\n/// Generated from `{source}`.\n#[allow(dead_code, unused_parens, clippy::all)]\npub mod {name} {{\n"
-    );
+    let mut text = format!("\n/// Generated from `{source}`.\n#[allow({ALLOWED})]\npub mod {name} {{\n");
     for (index, planned) in generation.plans.iter().enumerate() {
         plan(&plan_name(index), &planned.plan, group, &mut text);
     }
@@ -38,7 +41,7 @@ fn plan(name: &str, plan: &Plan, group: u32, text: &mut String) {
     let _ = writeln!(text, "        /// The bind group of all declarations.\n        pub const GROUP: u32 = {group};");
     let mut names = Names::with("GROUP");
     for (constant, value) in &plan.constants {
-        let name = names.fresh(constant.clone());
+        let name = names.fresh(rust::identifier(constant));
         let _ = writeln!(text, "        /// `{constant}` of the shaders.\n        pub const {name}: u32 = {value};");
     }
     blocks(plan, text);
@@ -95,19 +98,57 @@ fn vertex(plan: &Plan, text: &mut String) {
 /// Writes the buffers: binding numbers, and sizes as functions of the values known at allocation.
 fn buffers(plan: &Plan, text: &mut String) {
     text.push_str("\n        /// Buffers and textures.\n        pub mod buffers {\n");
+    let mut names = Names::with("");
+    let mut used = BTreeSet::new();
     for planned in &plan.resources {
-        let (name, summary) = (rust::snake_case(&planned.resource.name), &planned.resource.summary);
-        let (parameters, words) = rust::formula(&planned.words, &plan.symbols);
-        let parameters: Vec<String> = parameters.iter().map(|parameter| format!("{parameter}: u64")).collect();
+        let (name, resource) = (names.fresh(rust::snake_case(&planned.resource.name)), &planned.resource);
+        let size = rust::formula(&planned.words, &plan.symbols);
         let _ =
-            write!(text, "            /// `{}`: {summary}.\n            pub mod {name} {{\n", planned.resource.name);
+            writeln!(text, "            /// `{}`: {}.\n            pub mod {name} {{", resource.name, resource.summary);
         let binding = planned.binding;
         let _ = writeln!(text, "                /// The binding.\n                pub const BINDING: u32 = {binding};");
         let _ = writeln!(text, "                /// Bytes: 4 * ({}).", planned.words);
-        let _ = writeln!(text, "                pub const fn bytes({}) -> u64 {{", parameters.join(", "));
-        let _ = writeln!(text, "                    4 * {words}\n                }}\n            }}");
+        function("bytes", &size, "4 * ", 4, plan, text);
+        text.push_str("            }\n");
+        used.extend(size.parameters);
     }
     text.push_str("        }\n");
+    defaults(used, plan, text);
+}
+
+/// Writes the values that symbols have unless the host sets others, for parameters of sizes.
+fn defaults(used: BTreeSet<SymbolId>, plan: &Plan, text: &mut String) {
+    let of = |id: SymbolId| match &plan.symbols.get(id).value {
+        PlanValue::Default(quantity) => Some((id, quantity)),
+        _ => None,
+    };
+    let defaults: Vec<(SymbolId, &Quantity)> = used.into_iter().filter_map(of).collect();
+    if defaults.is_empty() {
+        return;
+    }
+    text.push_str("\n        /// The values of parameters, unless the host sets others.\n        pub mod defaults {\n");
+    for (id, quantity) in defaults {
+        let symbol = plan.symbols.get(id);
+        let _ = writeln!(text, "            /// `{}`, {}: {quantity}.", symbol.name, symbol.meaning);
+        let value = rust::formula(quantity, &plan.symbols);
+        function(&rust::identifier(&symbol.name), &value, "", 3, plan, text);
+    }
+    text.push_str("        }\n");
+}
+
+/// Writes a constant function of a formula, with the meaning of each parameter.
+fn function(name: &str, of: &rust::RustFormula, factor: &str, level: usize, plan: &Plan, text: &mut String) {
+    let indent = "    ".repeat(level);
+    let symbols: Vec<_> = of.parameters.iter().map(|id| plan.symbols.get(*id)).collect();
+    if !symbols.is_empty() {
+        let _ = writeln!(text, "{indent}///");
+    }
+    for symbol in &symbols {
+        let _ = writeln!(text, "{indent}/// * `{}`: {}.", symbol.name, symbol.meaning);
+    }
+    let parameters: Vec<String> = symbols.iter().map(|symbol| format!("{}: u64", symbol.name)).collect();
+    let _ = writeln!(text, "{indent}pub const fn {name}({}) -> u64 {{", parameters.join(", "));
+    let _ = writeln!(text, "{indent}    {factor}{}\n{indent}}}", of.value);
 }
 
 fn target_module(target: &str, plan: &str, planned: &PlanForTargets, files: &[&File], folder: &str, text: &mut String) {

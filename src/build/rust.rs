@@ -16,18 +16,32 @@ pub(super) fn snake_case(name: &str) -> String {
     if identifier.is_empty() || identifier.starts_with(|first: char| first.is_ascii_digit()) {
         identifier.insert(0, '_');
     }
-    if KEYWORDS.split_whitespace().any(|keyword| keyword == identifier) || identifier == "_" {
+    if identifier == "_" {
         identifier.push('_');
     }
-    identifier
+    self::identifier(&identifier)
 }
 
-/// Returns the parameters of a constant function, and its value. Symbols of generation time are numbers, the addressing row
+/// Returns a name of WGSL; a keyword of Rust gets one more underscore.
+pub(super) fn identifier(name: &str) -> String {
+    let is_keyword = KEYWORDS.split_whitespace().any(|keyword| keyword == name);
+    if is_keyword { format!("{name}_") } else { name.to_owned() }
+}
+
+/// A formula in Rust.
+pub(super) struct RustFormula {
+    /// The symbols that it names, in the order of the table.
+    pub parameters: Vec<SymbolId>,
+    /// The expression.
+    pub value: String,
+}
+
+/// Returns a formula as an expression of its parameters. Symbols of generation time are numbers, the addressing row
 /// defines the pixels of a frame, and all other symbols are parameters.
-pub(super) fn formula(of: &Quantity, symbols: &SymbolTable) -> (Vec<String>, String) {
+pub(super) fn formula(of: &Quantity, symbols: &SymbolTable) -> RustFormula {
     let mut used = BTreeSet::new();
-    let text = expression(of.term(), symbols, &mut used);
-    (used.into_iter().map(|id| symbols.get(id).name.to_string()).collect(), text)
+    let value = expression(of.term(), symbols, &mut used);
+    RustFormula { parameters: used.into_iter().collect(), value }
 }
 
 fn expression(term: &Term, symbols: &SymbolTable, used: &mut BTreeSet<SymbolId>) -> String {
@@ -91,7 +105,11 @@ mod tests {
         let draft = Draft::from_technique("kplus_array", &SourceSpan::new("test", 1, 1));
         let variant = check(&draft, &registry).unwrap();
         let plan = plan(&variant, &Selection::first(&variant), &registry).unwrap();
-        let of = |text: &'static str| formula(&plan.symbols.compile(&text.into()).unwrap(), &plan.symbols);
+        let of = |text: &'static str| {
+            let formula = formula(&plan.symbols.compile(&text.into()).unwrap(), &plan.symbols);
+            let names = formula.parameters.into_iter().map(|id| plan.symbols.get(id).name.to_string());
+            (names.collect::<Vec<_>>(), formula.value)
+        };
         let (parameters, text) = of("pixels * k * entry_words");
         assert_eq!(parameters, ["width", "height", "k"]);
         assert_eq!(text, "(((width * height) * k) * 2)");
