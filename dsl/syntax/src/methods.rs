@@ -48,6 +48,8 @@ pub(crate) enum Spelling {
     /// An expression; `$0` is the receiver, `$1` … the arguments, `$T` the receiver's type. An argument that occurs twice
     /// is bound to a name first.
     Template(&'static str),
+    /// Two such expressions: one for calls whose `$1` is a constant other than 0, and one for all other calls.
+    ByZero { nonzero: &'static str, other: &'static str },
 }
 
 /// Returns the row of a method of this type.
@@ -107,7 +109,7 @@ const SELF: MethodType = MethodType::Receiver;
 const F: MethodType = MethodType::Fixed(F32);
 const U: MethodType = MethodType::Fixed(U32);
 
-use Spelling::{Call, Template};
+use Spelling::{ByZero, Call, Template};
 
 /// Returns a row.
 const fn row(
@@ -127,8 +129,8 @@ pub(crate) const METHODS: &[Method] = &[
     // Size and order.
     row(FLOATS, "abs", &[], SELF, Call("abs"), ""),
     row(SIGNED, "abs", &[], SELF, Call("abs"), "i32::MIN stays itself, as in release builds"),
-    row(ORDERED, "min", &[SELF], SELF, Call("min"), ""),
-    row(ORDERED, "max", &[SELF], SELF, Call("max"), ""),
+    row(ORDERED, "min", &[SELF], SELF, Call("min"), "of 0.0 and -0.0: either"),
+    row(ORDERED, "max", &[SELF], SELF, Call("max"), "of 0.0 and -0.0: either"),
     row(ORDERED, "clamp", &[SELF, SELF], SELF, Call("clamp"), "lower bound above upper: Rust panics"),
     row(FLOAT, "signum", &[], SELF, Template("select(1.0, -1.0, (bitcast<u32>($0) >> 31u) == 1u)"), "by the sign bit: never 0"),
     row(FLOAT, "copysign", &[F], SELF, Template("bitcast<f32>((bitcast<u32>($0) & 0x7fffffffu) | (bitcast<u32>($1) & 0x80000000u))"), ""),
@@ -140,32 +142,32 @@ pub(crate) const METHODS: &[Method] = &[
     row(FLOAT, "round_ties_even", &[], SELF, Call("round"), ""),
     row(FLOATS, "fract", &[], SELF, Template("$0 - trunc($0)"), "with the sign of the number; WGSL's fract is never negative"),
     row(VECTOR, "fract_gl", &[], SELF, Call("fract"), "x - floor(x)"),
-    row(FLOAT, "rem_euclid", &[F], SELF, Template("select($0 % $1, $0 % $1 + abs($1), $0 % $1 < 0.0)"), ""),
+    row(FLOAT, "rem_euclid", &[F], SELF, Template("select($0 % $1, $0 % $1 + abs($1), $0 % $1 < 0.0)"), "WGSL rounds the quotient: near a multiple of the divisor, 0 or the divisor"),
     row(SIGNED, "rem_euclid", &[SELF], SELF, Template("select($0 % $1, $0 % $1 + abs($1), $0 % $1 < 0i)"), ""),
     row(UNSIGNED, "rem_euclid", &[SELF], SELF, Template("$0 % $1"), ""),
     // Powers.
     row(FLOAT, "sqrt", &[], SELF, Call("sqrt"), "of at least 0"),
     row(FLOATS, "recip", &[], SELF, Template("1.0 / $0"), ""),
-    row(FLOAT, "powf", &[F], SELF, Call("pow"), "of at least 0: WGSL has no power of a negative number"),
-    row(VECTOR, "powf", &[F], SELF, Template("pow($0, $T($1))"), "of at least 0"),
+    row(FLOAT, "powf", &[F], SELF, ByZero { nonzero: "pow($0, $1)", other: "select(pow($0, $1), 1.0, $1 == 0.0)" }, "of at least 0: WGSL has no power of a negative number, and no negative power of 0"),
+    row(VECTOR, "powf", &[F], SELF, ByZero { nonzero: "pow($0, $T($1))", other: "select(pow($0, $T($1)), $T(1.0), $1 == 0.0)" }, "of at least 0, and of more than 0 for a negative power"),
     row(FLOATS, "exp", &[], SELF, Call("exp"), ""),
     row(FLOAT, "exp2", &[], SELF, Call("exp2"), ""),
     row(FLOAT, "ln", &[], SELF, Call("log"), "of more than 0"),
     row(FLOAT, "log2", &[], SELF, Call("log2"), "of more than 0"),
     row(FLOATS, "mul_add", &[SELF, SELF], SELF, Call("fma"), "WGSL may round between, Rust does not"),
     // Angles.
-    row(FLOAT, "sin", &[], SELF, Call("sin"), ""),
-    row(FLOAT, "cos", &[], SELF, Call("cos"), ""),
-    row(FLOAT, "tan", &[], SELF, Call("tan"), ""),
+    row(FLOAT, "sin", &[], SELF, Call("sin"), "accurate from -π to π"),
+    row(FLOAT, "cos", &[], SELF, Call("cos"), "accurate from -π to π"),
+    row(FLOAT, "tan", &[], SELF, Call("tan"), "accurate from -π to π"),
     row(FLOAT, "asin", &[], SELF, Call("asin"), "of -1 to 1"),
     row(FLOAT, "acos", &[], SELF, Call("acos"), "of -1 to 1"),
     row(FLOAT, "atan", &[], SELF, Call("atan"), ""),
-    row(FLOAT, "atan2", &[F], SELF, Call("atan2"), ""),
-    row(FLOAT, "sinh", &[], SELF, Call("sinh"), ""),
-    row(FLOAT, "cosh", &[], SELF, Call("cosh"), ""),
-    row(FLOAT, "tanh", &[], SELF, Call("tanh"), ""),
-    row(FLOAT, "asinh", &[], SELF, Call("asinh"), ""),
-    row(FLOAT, "acosh", &[], SELF, Call("acosh"), "of at least 1"),
+    row(FLOAT, "atan2", &[F], SELF, Call("atan2"), "not of 0 and 0: undefined on some devices"),
+    row(FLOAT, "sinh", &[], SELF, Call("sinh"), "of -88 to 88"),
+    row(FLOAT, "cosh", &[], SELF, Call("cosh"), "of -88 to 88"),
+    row(FLOAT, "tanh", &[], SELF, Template("tanh(clamp($0, -16.0, 16.0))"), "1 beyond 16 in both; tanh of large numbers is NaN on some devices"),
+    row(FLOAT, "asinh", &[], SELF, Call("asinh"), "of -1e19 to 1e19; WGSL allows large errors below -1000"),
+    row(FLOAT, "acosh", &[], SELF, Call("acosh"), "of 1 to 1e19"),
     row(FLOAT, "atanh", &[], SELF, Call("atanh"), "of more than -1, less than 1"),
     row(FLOAT, "to_radians", &[], SELF, Call("radians"), ""),
     row(FLOAT, "to_degrees", &[], SELF, Call("degrees"), ""),

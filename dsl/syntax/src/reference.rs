@@ -49,7 +49,11 @@ fn statements(markdown: &mut String) {
 }
 
 fn methods(markdown: &mut String) {
-    markdown.push_str("\n# Methods\n\n| receiver | method | in WGSL | |\n|---|---|---|---|\n");
+    markdown.push_str(
+        "\n# Methods\n\nResults are equal to Rust's within the accuracy of WGSL. Devices may replace numbers nearer to 0 than 1.2e-38 by 0 \
+         and ignore the sign of 0. Infinities and NaN are not supported. `%` of floats rounds the quotient.\n",
+    );
+    markdown.push_str("\n| receiver | method | in WGSL | |\n|---|---|---|---|\n");
     for method in METHODS {
         let _ = writeln!(
             markdown,
@@ -79,7 +83,7 @@ fn signature(method: &Method) -> String {
 fn spelling(wgsl: Spelling) -> String {
     let expression = match wgsl {
         Spelling::Call(function) => format!("{function}(x, …)"),
-        Spelling::Template(template) => ["x", "a", "b"]
+        Spelling::Template(template) | Spelling::ByZero { other: template, .. } => ["x", "a", "b"]
             .iter()
             .enumerate()
             .fold(template.to_owned(), |template, (i, name)| template.replace(&format!("${i}"), name)),

@@ -2,11 +2,12 @@
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod device;
+
 use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
-use fragbuf_runtime::wgpu::util::DeviceExt;
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The allowed difference between two words.
 #[derive(Clone, Copy, PartialEq)]
@@ -34,13 +35,6 @@ const CORPUS: [(&str, &str, Tolerance, [u32; 3]); 7] = [
     ("wide_numbers", include_str!("corpus/wide_numbers.wgsl"), Tolerance::Exact, [1, 1, 1]),
 ];
 
-fn parsed(source: &str) -> (naga::Module, ModuleInfo) {
-    let module =
-        naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
-    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
-    (module, info)
-}
-
 /// Returns seeded numbers of all sizes, with zero and sign bits.
 fn seeded(length: usize) -> Vec<u32> {
     let mut state = 0x2545_f491u32;
@@ -67,7 +61,7 @@ fn initial(program: &Bytecode) -> Vec<Vec<u32>> {
 }
 
 fn interpreted(source: &str, groups: [u32; 3]) -> (Bytecode, Vec<Vec<u32>>) {
-    let (module, info) = parsed(source);
+    let (module, info) = device::parsed(source);
     let program = Bytecode::entry_point(&module, &info, "main", &Options::default()).unwrap();
     let mut buffers = initial(&program);
     let end = dispatch(&program, groups, &mut buffers);
@@ -79,77 +73,6 @@ fn interpreted(source: &str, groups: [u32; 3]) -> (Bytecode, Vec<Vec<u32>>) {
     (program, buffers)
 }
 
-/// Runs the shader on a device; returns the words of the buffers in the order of the program.
-fn on_device(
-    headless: &Headless,
-    shader: &str,
-    entry: &str,
-    program: &Bytecode,
-    groups: [u32; 3],
-    initial: &[Vec<u32>],
-) -> Vec<Vec<u32>> {
-    let device = &headless.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(shader.into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
-    let bytes = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
-    let buffers: Vec<(Option<u32>, wgpu::Buffer)> = program
-        .buffers
-        .iter()
-        .zip(initial)
-        .map(|(buffer, words)| {
-            let contents = bytes(words);
-            let init = wgpu::util::BufferInitDescriptor { label: None, contents: &contents, usage: storage };
-            (buffer.binding.map(|(_, binding)| binding), device.create_buffer_init(&init))
-        })
-        .collect();
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
-        .iter()
-        .filter_map(|(binding, buffer)| {
-            Some(wgpu::BindGroupEntry { binding: (*binding)?, resource: buffer.as_entire_binding() })
-        })
-        .collect();
-    let layout = pipeline.get_bind_group_layout(0);
-    let group =
-        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
-    }
-    let read: Vec<wgpu::Buffer> = buffers
-        .iter()
-        .map(|(_, buffer)| {
-            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-            let descriptor =
-                wgpu::BufferDescriptor { label: None, size: buffer.size(), usage, mapped_at_creation: false };
-            let copy = device.create_buffer(&descriptor);
-            encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
-            copy
-        })
-        .collect();
-    headless.queue.submit([encoder.finish()]);
-    read.iter().for_each(|buffer| buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap()));
-    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let words = |buffer: &wgpu::Buffer| {
-        let view = buffer.slice(..).get_mapped_range().unwrap();
-        view.chunks_exact(4).map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap())).collect()
-    };
-    read.iter().map(words).collect()
-}
-
 #[test]
 fn a_device_leaves_the_same_words() {
     let features = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
@@ -157,7 +80,7 @@ fn a_device_leaves_the_same_words() {
     let mut differences = Vec::new();
     for (name, source, tolerance, groups) in CORPUS {
         let (program, ours) = interpreted(source, groups);
-        let theirs = on_device(&headless, source, "main", &program, groups, &initial(&program));
+        let theirs = device::run(&headless, source, "main", &program, groups, &initial(&program));
         for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.iter().zip(&theirs)) {
             if buffer.binding.is_none() {
                 continue;
@@ -280,7 +203,7 @@ fn a_device_leaves_the_same_words_after_every_pass_of_a_frame() {
                 "resolve" => (format!("{source}{RESOLVED}"), "wrapped", [5, 4, 1]),
                 other => (source.to_owned(), other, [1, 1, 1]),
             };
-            let (module, info) = parsed(&source);
+            let (module, info) = device::parsed(&source);
             let program = Bytecode::entry_point(&module, &info, entry, &Options::default()).unwrap();
             let binding_of = |buffer: &fragbuf_interpreter::Buffer| buffer.binding.map(|(_, binding)| binding);
             let mut ours: Vec<Vec<u32>> = program
@@ -290,7 +213,7 @@ fn a_device_leaves_the_same_words_after_every_pass_of_a_frame() {
                     binding_of(buffer).and_then(|at| memory.get(&at).cloned()).unwrap_or_else(|| vec![0; LENGTH])
                 })
                 .collect();
-            let theirs = on_device(&headless, &source, entry, &program, groups, &ours);
+            let theirs = device::run(&headless, &source, entry, &program, groups, &ours);
             assert_eq!(dispatch(&program, groups, &mut ours), DispatchEnd::Ended, "{technique} {pass}");
             for (buffer, (ours, theirs)) in program.buffers.iter().zip(ours.into_iter().zip(theirs)) {
                 let Some(at) = binding_of(buffer) else { continue };

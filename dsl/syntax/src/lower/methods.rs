@@ -15,6 +15,7 @@ impl Lowering<'_> {
     pub(super) fn method(&mut self, spelling: Spelling, arguments: &[Expr]) -> ExprSource {
         let mut sources = self.operands(&arguments.iter().collect::<Vec<_>>());
         let all_constant = self.all_constant(arguments);
+        let spelling = self.chosen(spelling, arguments);
         for (index, (argument, source)) in arguments.iter().zip(&mut sources).enumerate() {
             let repeated = occurs_twice(spelling, index) && !is_plain(argument);
             if repeated || (all_constant && index == 0) {
@@ -23,7 +24,7 @@ impl Lowering<'_> {
         }
         match spelling {
             Spelling::Call(name) => ExprSource::call(name, &sources),
-            Spelling::Template(template) => {
+            Spelling::Template(template) | Spelling::ByZero { other: template, .. } => {
                 let receiver = arguments.first().map(|receiver| self.function.type_of(receiver));
                 fill(template, &sources, receiver.map_or("f32", |receiver| receiver.wgsl()))
             }

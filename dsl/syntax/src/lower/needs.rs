@@ -4,7 +4,7 @@
 //! be an arm of `select`.
 
 use super::lowering::Lowering;
-use crate::fold;
+use crate::fold::{self, Value};
 use crate::methods::Spelling;
 use crate::tree::{Block, Expr, Function, If, Kind, Statement};
 use crate::types::Type;
@@ -30,8 +30,17 @@ impl Lowering<'_> {
 
     /// Returns whether an argument must be bound to a name: it occurs twice in the template, or all arguments are constant.
     pub(super) fn binds(&self, spelling: Spelling, arguments: &[Expr]) -> bool {
+        let spelling = self.chosen(spelling, arguments);
         let twice = |(index, argument): (usize, &Expr)| occurs_twice(spelling, index) && !is_plain(argument);
         arguments.iter().enumerate().any(twice) || self.all_constant(arguments)
+    }
+
+    /// Returns the spelling of a call with these arguments.
+    pub(super) fn chosen(&self, spelling: Spelling, arguments: &[Expr]) -> Spelling {
+        let Spelling::ByZero { nonzero, other } = spelling else { return spelling };
+        let value = arguments.get(1).and_then(|argument| fold::constant(argument, self.function));
+        let is_nonzero = matches!(value, Some(Value::Float(parts)) if parts.iter().all(|part| *part != 0.0));
+        Spelling::Template(if is_nonzero { nonzero } else { other })
     }
 
     pub(super) fn all_constant(&self, arguments: &[Expr]) -> bool {
@@ -122,7 +131,9 @@ fn reads_mutable(expr: &Expr, function: &Function) -> bool {
 pub(super) fn occurs_twice(spelling: Spelling, index: usize) -> bool {
     match spelling {
         Spelling::Call(_) => false,
-        Spelling::Template(template) => template.matches(&format!("${index}")).count() > 1,
+        Spelling::Template(template) | Spelling::ByZero { other: template, .. } => {
+            template.matches(&format!("${index}")).count() > 1
+        }
     }
 }
 

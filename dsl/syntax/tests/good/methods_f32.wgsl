@@ -10,7 +10,7 @@ fn user_parts(x: f32, y: f32) -> f32 {
 }
 
 fn user_powers(x: f32, y: f32) -> f32 {
-    return sqrt(x) + 1.0 / x + 1.0 / (x + y) + pow(x, y) + exp(x) + exp2(x) + log(x) + log2(x) + fma(x, y, 1.0);
+    return sqrt(x) + 1.0 / x + 1.0 / (x + y) + select(pow(x, y), 1.0, y == 0.0) + exp(x) + exp2(x) + log(x) + log2(x) + fma(x, y, 1.0);
 }
 
 fn user_angles(x: f32, y: f32) -> f32 {
@@ -18,7 +18,7 @@ fn user_angles(x: f32, y: f32) -> f32 {
 }
 
 fn user_hyperbolic(x: f32) -> f32 {
-    return sinh(x) + cosh(x) + tanh(x) + asinh(x) + acosh(x) + atanh(x);
+    return sinh(x) + cosh(x) + tanh(clamp(x, -16.0, 16.0)) + asinh(x) + acosh(x) + atanh(x);
 }
 
 fn user_bits(x: f32) -> f32 {
