@@ -86,7 +86,8 @@ fn spelling(wgsl: Spelling) -> String {
         Spelling::Template(template) | Spelling::ByZero { other: template, .. } => ["x", "a", "b"]
             .iter()
             .enumerate()
-            .fold(template.to_owned(), |template, (i, name)| template.replace(&format!("${i}"), name)),
+            .fold(template.to_owned(), |template, (i, name)| template.replace(&format!("${i}"), name))
+            .replace("$T", "Self"),
     };
     expression.replace('|', "\\|")
 }

@@ -11,6 +11,7 @@ use std::fmt::Write;
 use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
+use functions::vectors::vectors;
 use functions::{Function, Word, loops, numbers, whole_numbers};
 
 /// Seeded numbers.
@@ -135,4 +136,24 @@ fn methods_of_whole_numbers_have_the_results_of_rust() {
 fn methods_of_floats_have_the_results_of_rust() {
     let found = differences(&numbers());
     assert!(found.is_empty(), "{} results differ:\n{}", found.len(), found.join("\n"));
+}
+
+#[test]
+fn methods_of_vectors_have_the_results_of_rust() {
+    let found = differences(&vectors());
+    assert!(found.is_empty(), "{} results differ:\n{}", found.len(), found.join("\n"));
+}
+
+/// The functions call every method that `fragbuf language` lists.
+#[test]
+fn every_method_is_compared() {
+    let sources: String =
+        [loops(), whole_numbers(), numbers(), vectors()].iter().flatten().map(|function| function.source).collect();
+    let reference = fragbuf_syntax::reference();
+    let methods = reference.split("# Methods").nth(1).unwrap().split("\n# ").next().unwrap();
+    let names: Vec<&str> =
+        methods.lines().filter_map(|line| line.split('`').nth(1)?.split_once('(').map(|(name, _)| name)).collect();
+    assert!(names.len() > 80, "{names:?}");
+    let missing: Vec<&&str> = names.iter().filter(|name| !sources.contains(&format!(".{name}("))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }

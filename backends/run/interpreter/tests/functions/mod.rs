@@ -1,4 +1,4 @@
-//! Functions that are compiled twice: as Rust and as closures of fragbuf. They call every method of numbers.
+//! Functions that are compiled twice: as Rust and as closures of fragbuf. They call every method.
 
 /// A value of a function, as one word of a buffer.
 pub trait Word: Copy + 'static {
@@ -87,6 +87,7 @@ macro_rules! functions {
         $(#[allow(clippy::manual_clamp, clippy::suboptimal_flops, reason = "the functions are written for the test")]
         fn $name($($parameter: $type),+) -> $result $body)*
 
+        /// Returns the functions.
         pub fn $table() -> Vec<Function> {
             vec![$(Function {
                 name: stringify!($name),
@@ -103,6 +104,8 @@ macro_rules! functions {
         }
     };
 }
+
+pub mod vectors;
 
 // Every loop ends after five iterations, so that a loop past its end has another result instead of no end.
 functions! { loops:
