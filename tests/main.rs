@@ -13,6 +13,7 @@ mod build_script;
 mod cases;
 mod catalogue;
 mod check;
+mod closures;
 mod command_line;
 mod devices;
 mod diagnostics;
