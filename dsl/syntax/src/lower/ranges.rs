@@ -36,8 +36,8 @@ impl Lowering<'_> {
             return;
         }
         match (is_open, *reversed) {
-            (true, false) => self.to_bound(&range, [&from, &to, &to], Operator::Less),
-            (true, true) => self.to_bound(&range, [&from, &to, &from], Operator::Greater),
+            (true, false) => self.through_last(&range, [&from, &to, &to], Operator::Less),
+            (true, true) => self.through_last(&range, [&from, &to, &from], Operator::Greater),
             (false, true) => self.backward(&range, &from, &after.unwrap_or(to)),
             (false, false) => {
                 let operator = if *inclusive { Operator::LessEqual } else { Operator::Less };
@@ -75,7 +75,7 @@ impl Lowering<'_> {
 
     /// Writes a loop whose last index may be the greatest or least value of its type: a variable contains whether another
     /// iteration follows. The step after the last iteration may wrap; nothing reads its result.
-    fn to_bound(&mut self, range: &Range<'_>, [from, to, last]: [&ExprSource; 3], operator: Operator) {
+    fn through_last(&mut self, range: &Range<'_>, [from, to, last]: [&ExprSource; 3], operator: Operator) {
         let more = self.names.fresh(&format!("{}_more", self.user_name(range.variable, "index")));
         // The first comparison would hold for every end.
         let any = match from.source == least(range.ty).source {
