@@ -408,6 +408,30 @@ fn a_default_outside_of_its_range_is_said_where_it_stands() {
     }
 }
 
+/// A default may use the constants of earlier parameters, as in a row of the registry, but not those of later ones.
+#[test]
+fn a_default_depends_on_earlier_constants() {
+    let lines = |first: &str, second: &str| {
+        let parameters = format!("{first}\n{second}\n//: provides");
+        example("first_k.wgsl").replace("//: provides", &parameters)
+    };
+    let (spare, more) =
+        ("//: parameter spare SPARE = 2, from 0 to 9", "//: parameter more MORE = SPARE * 3 + capacity, from 0 to 99");
+    let folder = with("earlier-constants", DESCRIPTION, &lines(spare, more));
+    let read = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let variant = load(&read, &[], &[], &registry).variant.unwrap_or_else(|errors| panic!("{errors}"));
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&variant, &request, &registry).unwrap();
+    assert_eq!(generation.plans[0].plan.symbols.number_of("MORE"), Some(14));
+
+    let file = lines(more, spare);
+    let found = placed("later-constants", DESCRIPTION, &file);
+    let (line, column) = position(&file, "SPARE * 3");
+    let places: Vec<_> = found.iter().map(|(code, at, from, _)| (*code, *at, *from)).collect();
+    assert_eq!(places, [("invalid-row", line, column)], "{found:?}");
+}
+
 /// Returns lengths with every operator, also deep and long ones, and whether shaders and devices can compute them for `keep 8`.
 fn lengths() -> Vec<(String, bool)> {
     let right = [

@@ -81,8 +81,12 @@ impl Statements {
     /// Returns the symbols that formulas of the row may use: those that have a value before a pass runs and do not change
     /// between slices or iterations, and the row's constants so far.
     pub(super) fn symbols(&self) -> Vec<String> {
-        let known =
-            SYMBOLS.iter().filter(|symbol| symbol.when != BindingTime::Iteration).map(|symbol| symbol.name.to_owned());
+        self.symbols_until(BindingTime::Readback)
+    }
+
+    /// Returns the symbols that have a value at this time, and the row's constants so far.
+    fn symbols_until(&self, time: BindingTime) -> Vec<String> {
+        let known = SYMBOLS.iter().filter(|symbol| symbol.when <= time).map(|symbol| symbol.name.to_owned());
         known.chain(self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string())).collect()
     }
 
@@ -94,9 +98,8 @@ impl Statements {
         let constant = self.constant(line, SHAPE)?;
         self.reader.punct(line, '=', SHAPE)?;
         let default = line.until(&[',']);
-        let generation = SYMBOLS.iter().filter(|symbol| symbol.when <= BindingTime::Generation);
-        let generation: Vec<&str> = generation.map(|symbol| symbol.name).collect();
-        self.reader.formula(&default, &generation)?;
+        let symbols = self.symbols_until(BindingTime::Generation);
+        self.reader.formula(&default, &symbols)?;
         self.reader.record_span(RowItem::Default, &default);
         if !line.punct(',') || !line.keyword("from") {
             return self.reader.unexpected(line, "`, from`", SHAPE);
