@@ -84,7 +84,7 @@ pub struct Function {
 /// Defines functions in Rust and a table of them with their sources.
 macro_rules! functions {
     ($table:ident: $(fn $name:ident($($parameter:ident: $type:ty),+) -> $result:ty $body:block)*) => {
-        $(#[allow(clippy::manual_clamp, clippy::suboptimal_flops, reason = "the functions are written for the test")]
+        $(#[allow(clippy::eq_op, clippy::manual_clamp, clippy::suboptimal_flops, reason = "the functions are written for the test")]
         fn $name($($parameter: $type),+) -> $result $body)*
 
         /// Returns the functions.
@@ -278,8 +278,8 @@ functions! { numbers:
     fn ln(x: f32) -> f32 { x.abs().ln() }
     fn log2(x: f32) -> f32 { x.abs().log2() }
     fn mul_add(x: f32, y: f32, z: f32) -> f32 { x.clamp(-8.0, 8.0).mul_add(y.clamp(-8.0, 8.0), z.clamp(-8.0, 8.0)) }
-    fn sin(x: f32) -> f32 { x.clamp(-3.14, 3.14).sin() }
-    fn cos(x: f32) -> f32 { x.clamp(-3.14, 3.14).cos() }
+    fn sin(x: f32) -> f32 { x.clamp(-3.1, 3.1).sin() }
+    fn cos(x: f32) -> f32 { x.clamp(-3.1, 3.1).cos() }
     fn tan(x: f32) -> f32 { x.clamp(-1.5, 1.5).tan() }
     fn asin(x: f32) -> f32 { x.clamp(-1.0, 1.0).asin() }
     fn acos(x: f32) -> f32 { x.clamp(-1.0, 1.0).acos() }
