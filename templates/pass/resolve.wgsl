@@ -5,6 +5,10 @@ var<private> resolved: u32;
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    if !is_in_frame(position.xy) {
+        // A helper invocation: its result has no effect.
+        return vec4<f32>(0.0);
+    }
     resolved = pixel_index(position.xy);
     for (var cursor = resolve_first(); cursor != END; cursor = resolve_next(cursor)) {
         sort_gather(resolve_read(cursor));

@@ -8,6 +8,10 @@ var<private> worst_slot: u32;
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    if !is_in_frame(position.xy) {
+        // A helper invocation: its result has no effect.
+        return vec4<f32>(0.0);
+    }
     let pixel = pixel_index(position.xy);
     var cursor = storage_first(pixel);
     while cursor != END {

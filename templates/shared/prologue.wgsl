@@ -1,14 +1,14 @@
 // Conditions that every pass over the scene tests first. All passes that draw the scene must test the same conditions.
 
-/// Returns whether a fragment meets the constraints and no opaque surface hides it. `position` is the fragment's, in
-/// pixels.
+/// Returns whether a fragment is inside the frame or slice, meets the constraints, and no opaque surface hides it.
+/// `position` is the fragment's, in pixels.
 fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
-    return admit(fragment) && !opaque_hides(position, fragment);
+    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment);
 }
 
 /// Returns the same, and counts the fragment. One pass of a frame calls this function.
 fn fragment_enters_counted(position: vec2<f32>, fragment: Fragment) -> bool {
-    if !admit(fragment) {
+    if !is_in_frame(position) || !admit(fragment) {
         return false;
     }
     if opaque_hides(position, fragment) {

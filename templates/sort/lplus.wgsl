@@ -33,10 +33,11 @@ fn sorted_layer(index: u32) -> Fragment {
     if clamped < lplus_begin {
         lplus_first_batch();
     }
-    while lplus_begin + lplus_size <= clamped && lplus_begin + lplus_size < lplus_count {
+    // An empty batch ends the loop: memory then differs from what the first walk read.
+    while lplus_size > 0u && lplus_begin + lplus_size <= clamped && lplus_begin + lplus_size < lplus_count {
         lplus_next_batch();
     }
-    return fragment_unpack(lplus_batch[clamped - lplus_begin]);
+    return fragment_unpack(lplus_batch[min(clamped - lplus_begin, LPLUS_BATCH - 1u)]);
 }
 
 fn lplus_first_batch() {

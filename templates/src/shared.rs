@@ -2,9 +2,11 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 11] = [
+pub(crate) const TEMPLATES: [Template; 13] = [
     template!("shared/markers"),
     template!("shared/prologue"),
+    template!("shared/edges"),
+    template!("shared/bounded_walk"),
     template!("shared/sentinels"),
     template!("shared/counter_names"),
     template!("shared/encoding"),

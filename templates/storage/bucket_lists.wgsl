@@ -36,15 +36,16 @@ fn storage_insert(pixel: u32, entry: Packed) {
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    return bucket_lists_seek(pixel, 0u);
+    return bounded_walk_first(bucket_lists_seek(pixel, 0u), frame.fragments);
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
     let link = links_load(cursor);
     if link != 0u {
-        return link - 1u;
+        return bounded_walk_next(link - 1u, frame.fragments);
     }
-    return bucket_lists_seek(pixel, bucket_lists_bucket(pixel, nodes_load(cursor).key) + 1u);
+    let bucket = bucket_lists_bucket(pixel, nodes_load(cursor).key);
+    return bounded_walk_next(bucket_lists_seek(pixel, bucket + 1u), frame.fragments);
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {

@@ -17,11 +17,11 @@ fn storage_insert(pixel: u32, entry: Packed) {
 
 fn storage_first(pixel: u32) -> u32 {
     // 0, the empty list, wraps around to END.
-    return heads_load(pixel) - 1u;
+    return bounded_walk_first(heads_load(pixel) - 1u, frame.fragments);
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
-    return links_load(cursor) - 1u;
+    return bounded_walk_next(links_load(cursor) - 1u, frame.fragments);
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {

@@ -65,22 +65,22 @@ fn storage_insert(pixel: u32, entry: Packed) {
 fn storage_first(pixel: u32) -> u32 {
     nodes_read = 1u;
     // NO_NODE wraps around to END.
-    return heads_load(pixel) - 1u;
+    return bounded_walk_first(heads_load(pixel) - 1u, frame.fragments);
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
-    let next = links_load(cursor);
+    let next = bounded_walk_next(links_load(cursor) - 1u, frame.fragments);
     if nodes_read < frame.k {
         nodes_read += 1u;
-        return next - 1u;
+        return next;
     }
     if end_reached {
         return END;
     }
     end_reached = true;
     // Better fragments were inserted after these.
-    for (var beyond = next; beyond != NO_NODE; beyond = links_load(beyond - 1u)) {
-        on_lost(pixel, nodes_load(beyond - 1u), DISPLACED);
+    for (var beyond = next; beyond != END; beyond = bounded_walk_next(links_load(beyond) - 1u, frame.fragments)) {
+        on_lost(pixel, nodes_load(beyond), DISPLACED);
     }
     return END;
 }

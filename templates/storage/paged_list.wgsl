@@ -53,20 +53,25 @@ fn storage_insert(pixel: u32, entry: Packed) {
 
 fn storage_first(pixel: u32) -> u32 {
     // 0, the empty list, wraps around to END.
-    return cursors_load(pixel) - 1u;
+    return bounded_walk_first(cursors_load(pixel) - 1u, paged_list_size());
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
     if cursor % PAGE_ENTRIES != 0u {
-        return cursor - 1u;
+        return bounded_walk_next(cursor - 1u, paged_list_size());
     }
     let page = cursor / PAGE_ENTRIES;
     if page < pixel_count() {
         return END;
     }
-    return links_load(page - pixel_count()) - 1u;
+    return bounded_walk_next(links_load(page - pixel_count()) - 1u, paged_list_size());
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {
     return entries_load(cursor);
+}
+
+/// Returns the number of entries of all pages.
+fn paged_list_size() -> u32 {
+    return (pixel_count() + frame.fragments / PAGE_ENTRIES) * PAGE_ENTRIES;
 }

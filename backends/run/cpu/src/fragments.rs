@@ -37,7 +37,7 @@ pub(crate) struct FragmentBatch<'a> {
 }
 
 impl<'a> FragmentBatch<'a> {
-    /// Runs the fragments of a tile.
+    /// Runs the fragments of a tile, and its helper invocations outside of the frame.
     pub(crate) fn run(&self, bin: &Bin, machine: &mut Machine<'a>, view: &mut View<'_>) {
         let mut samples = 0;
         match self.draw.order {
@@ -49,11 +49,12 @@ impl<'a> FragmentBatch<'a> {
                 }
             }),
         }
+        self.run_helpers(bin, machine, view);
         self.results.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
     /// Calls `fragment` for every fragment of the tile, triangle after triangle.
-    fn for_each_fragment(&self, bin: &Bin, mut fragment: impl FnMut(&'a Triangle, FragmentPosition)) {
+    pub(crate) fn for_each_fragment(&self, bin: &Bin, mut fragment: impl FnMut(&'a Triangle, FragmentPosition)) {
         let attachments = &self.draw.attachments;
         let sampling = (attachments.samples, self.draw.coverage);
         for number in self.bins.triangles(bin) {

@@ -27,6 +27,7 @@ mod fixed_function;
 mod fragment_stage;
 mod fragments;
 mod frame;
+mod helpers;
 mod interface;
 mod memory;
 mod mesh;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod dual;
+mod helpers;
 mod host;
 mod indirect;
 mod interleaved;

@@ -94,8 +94,13 @@ pub fn device(code: &Arc<Code>, order: FragmentOrder) -> Device {
 pub fn built_in(key: &str) -> Device {
     let registry = Registry::builtin();
     let draft = Draft::from_technique(key, &SourceSpan::new(key, 1, 1));
-    let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-    device(&Arc::new(Code::of(&variant, &registry).unwrap()), FragmentOrder::Submission)
+    device(&Arc::new(built_in_of(&draft, &registry)), FragmentOrder::Submission)
+}
+
+/// Compiles a draft of built-in rows.
+pub fn built_in_of(draft: &Draft, registry: &Registry) -> Code {
+    let variant = check(draft, registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    Code::of(&variant, registry).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns a fullscreen pass that draws the output.

@@ -160,7 +160,7 @@ fn run_to_end(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<(), Stri
     }
 }
 
-fn is_position(input: &InterfaceVariable) -> bool {
+pub(crate) fn is_position(input: &InterfaceVariable) -> bool {
     matches!(input.binding, Some(Binding::BuiltIn(BuiltIn::Position { .. })))
 }
 

@@ -134,6 +134,11 @@ impl<'s> Frame<'s> {
         Ok(())
     }
 
+    /// Returns the words of the uniform buffer of the frame for a slice.
+    pub(crate) fn frame_words(&self, slice: u32) -> Result<Vec<u32>, String> {
+        self.values.frame_words(&self.subject.plan, slice, 0).map_err(|error| error.to_string())
+    }
+
     /// Swaps resources in memory so that these exchanges are flipped.
     fn exchange(&mut self, flipped: u32) {
         for (number, [a, b]) in self.subject.plan.frame.exchanges.iter().enumerate() {

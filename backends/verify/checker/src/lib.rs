@@ -41,6 +41,7 @@ mod kept_set;
 mod memory;
 mod merging;
 mod model;
+mod outside;
 mod pausing;
 mod pool_case;
 mod probe;

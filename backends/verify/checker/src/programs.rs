@@ -10,6 +10,8 @@ use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, codes};
 use fragbuf_targets::Checked;
 use fragbuf_templates::vocabulary::Kind;
 
+use crate::outside::FullscreenProgram;
+
 /// The functions of `templates/shared/markers.wgsl`.
 pub(crate) const MARKERS: [(&str, Marker); 4] = [
     ("memory_fence", Marker::Fence),
@@ -105,6 +107,14 @@ impl Runnable {
     pub(crate) fn is_of(&self, run: PassRun) -> bool {
         self.id == run.pass && self.iteration.is_none_or(|iteration| iteration == run.iteration)
     }
+}
+
+/// Compiles the fragment stage of a fullscreen pass.
+pub(crate) fn fullscreen_program(plan: &Plan, checked: &Checked) -> Result<FullscreenProgram, Vec<Unsupported>> {
+    let is_fragment = |entry: &&EntryPoint| entry.stage == Stage::Fragment;
+    let name = checked.pass().entry_points.iter().find(is_fragment).map_or("", |entry| entry.name.as_str());
+    let program = Bytecode::entry_point(checked.module(), checked.info(), name, &options(checked))?;
+    Ok(FullscreenProgram { pass: checked.pass().name.clone(), program: with_external_textures(program, plan)? })
 }
 
 /// Returns the options that compile a checked pass.

@@ -10,8 +10,9 @@ use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Permits, Soundness};
 
+use crate::outside::FullscreenProgram;
 use crate::probe::{probe_pass, probe_row};
-use crate::programs::{Runnable, StreamPrograms, diagnostics, options};
+use crate::programs::{Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
 use crate::read_out::ReadOut;
 
 /// The probe pass of a plan whose storage emits a stream.
@@ -31,6 +32,8 @@ pub(crate) enum RetryLimit {
 pub(crate) struct Subject {
     pub(crate) plan: Plan,
     pub(crate) passes: Vec<Runnable>,
+    /// The fullscreen passes whose textures are all external.
+    pub(crate) fullscreen: Vec<FullscreenProgram>,
     /// Reads what a pixel holds.
     pub(crate) read_out: ReadOut,
     /// The bound of the storage, where a cull relies on it.
@@ -67,10 +70,11 @@ impl Subject {
         let registry = registry.clone().with(stream_row);
         let plan = plan(variant, &selection, &registry)?;
         let needs_bound = selection.rows.iter().any(|row| row.row.requires.contains(&Capability::ConservativeBound));
-        let (passes, stream) = compiled(&plan, target, &registry)?;
+        let (passes, fullscreen, stream) = compiled(&plan, target, &registry)?;
         let read_out = ReadOut::new(&plan, target.profile, &registry)?;
         Ok(Some(Subject {
             passes,
+            fullscreen,
             bound: read_out.bound.clone().filter(|_| needs_bound),
             read_out,
             stream,
@@ -122,7 +126,7 @@ fn compiled(
     plan: &Plan,
     target: &Target,
     registry: &Registry,
-) -> Result<(Vec<Runnable>, Option<StreamPrograms>), Diagnostics> {
+) -> Result<(Vec<Runnable>, Vec<FullscreenProgram>, Option<StreamPrograms>), Diagnostics> {
     let mut probed = plan.clone();
     if plan.selection.provides().contains(&Capability::Streams) {
         probed.passes.push(probe_pass(plan, READ_STREAM));
@@ -130,13 +134,16 @@ fn compiled(
     let linking = Linking { profile: target.profile, form: Form::Program, prefix: String::new(), group: 0 };
     let span = &plan.variant.name.span;
     let mut passes = Vec::new();
+    let mut fullscreen = Vec::new();
     let mut stream = None;
     for (number, source) in link(&probed, &linking, registry)?.passes.into_iter().enumerate() {
         let (pass, id) = (&probed.passes[number], PassId(number));
         let checked = check(source, target.profile, span)?;
         if pass.name == READ_STREAM {
             stream = Some(stream_programs(&checked, span)?);
-        } else if pass.kind != Kind::Fullscreen {
+        } else if pass.kind == Kind::Fullscreen {
+            fullscreen.extend(fullscreen_program(plan, &checked).ok());
+        } else {
             for iteration in iterations(plan, id) {
                 let runnable = Runnable::new(plan, (pass, id), &checked);
                 let runnable = runnable.map_err(|unsupported| diagnostics(&checked, &unsupported, span))?;
@@ -145,7 +152,7 @@ fn compiled(
         }
     }
     passes.sort_by_key(|runnable| position(plan, runnable));
-    Ok((passes, stream))
+    Ok((passes, fullscreen, stream))
 }
 
 fn stream_programs(checked: &Checked, span: &SourceSpan) -> Result<StreamPrograms, Diagnostics> {

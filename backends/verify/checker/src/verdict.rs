@@ -15,6 +15,7 @@ use crate::fragments::Candidates;
 use crate::frame::Frame;
 use crate::kept_set::KeptSet;
 use crate::model::Model;
+use crate::outside::check_outside;
 use crate::pool_case::ample_values;
 use crate::report::{Schedule, schedule};
 use crate::subject::{RetryLimit, Subject};
@@ -186,6 +187,11 @@ fn check_all(
     let searches = [Some(options), has_races.then(|| options.without_races())];
     if !subject.passes.iter().any(|pass| pass.pass.kind == Kind::Geometry) {
         return Err("no pass of the plan draws the scene".to_owned());
+    }
+    if let Some(failure) = check_outside(subject, &candidates.ranked[NEIGHBOUR])? {
+        report.failure = Some(failure);
+        report.is_declared = false;
+        return Ok(());
     }
     let capacity = subject.plan.capacity();
     let entries: Vec<Option<u32>> = match subject.keeps_best() {

@@ -21,7 +21,7 @@ fn store(inputs: FragmentInput) {
 }
 
 fn store_fragment(position: vec2<f32>, fragment: Fragment) {
-    if !admit(fragment) {
+    if !is_in_frame(position) || !admit(fragment) {
         return;
     }
     count_event(GENERATED);
@@ -64,6 +64,16 @@ fn a_loop_waits_for_the_samples_of_the_fragments_under_test() {
     assert!(found.failure.is_none() && found.is_exhaustive, "{:?}", found.failure);
     let found = checked(&repeated(Until::Times("3".into())), "ab_ll", &[]);
     assert!(found.failure.is_some(), "a third iteration stores everything twice");
+}
+
+#[test]
+fn a_pass_that_stores_outside_of_the_frame_fails() {
+    let registry = repeated(Until::NoSamples("store".to_owned()));
+    let unguarded = STORE_ONCE.replace("!is_in_frame(position) || ", "");
+    let mut row = registry.row("pass", "store_once").unwrap().clone();
+    row.template = Some(Template::new("pass/store_once.wgsl", unguarded));
+    let failure = checked(&registry.with(row), "ab_ll", &[]).failure.unwrap();
+    assert!(failure.case.contains("outside of the frame"), "{failure:?}");
 }
 
 /// Returns the list with its heads exchanged with another buffer while fragments are stored, and then copied back.

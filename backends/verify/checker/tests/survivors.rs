@@ -142,12 +142,6 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "one more attempt: the number of attempts is a bound, not part of the specification",
     ),
     (
-        "storage/ordered_list",
-        "on_lost(pixel, nodes_load(beyond - 1u), DISPLACED);",
-        "on_lost(pixel, nodes_load(beyond - 2u), DISPLACED);",
-        "`overflow: drop`, the only supported row, counts a fragment and does not read it",
-    ),
-    (
         "storage/bounded_regions",
         "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
         "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
