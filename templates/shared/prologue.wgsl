@@ -8,7 +8,10 @@ fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
 
 /// Returns the same, and counts the fragment. One pass of a frame calls this function.
 fn fragment_enters_counted(position: vec2<f32>, fragment: Fragment) -> bool {
-    if !is_in_frame(position) || !admit(fragment) {
+    if !is_in_frame(position) {
+        return false;
+    }
+    if !admit(fragment) {
         return false;
     }
     if opaque_hides(position, fragment) {
