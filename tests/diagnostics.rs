@@ -181,7 +181,7 @@ fn a_hint_is_a_change_that_works() {
 
 /// Some capabilities are provided under a condition, or by no row that a description can choose.
 #[test]
-fn a_missing_capability_has_help_whoever_provides_it() {
+fn a_missing_capability_always_has_help() {
     let builtin = Registry::builtin();
     let over = builtin.row("resolve", "over").unwrap().clone();
     let mut missing = 0;

@@ -129,7 +129,7 @@ fn tint_accepts_two_buffers_in_a_shader() {
         }";
     for (near, all) in [("kplus_array", "ab_ll"), ("mdt32_coplanar", "ab_ll"), ("kb_ps", "kb_mha")] {
         let shader = format!("{}{}{host}", store(near, "near", 1), store(all, "all", 2));
-        assert_eq!(errors(&[shader.clone()]), [None], "{shader}");
+        assert_eq!(errors(std::slice::from_ref(&shader)), [None], "{shader}");
     }
 }
 

@@ -121,12 +121,11 @@ impl Subject {
     }
 }
 
+/// The compiled passes of a plan: those that the checker interleaves, fullscreen passes, and the functions of a stream.
+type Compiled = (Vec<Runnable>, Vec<FullscreenProgram>, Option<StreamPrograms>);
+
 /// Links, checks and compiles the passes of a plan and, where the storage emits a stream, its functions.
-fn compiled(
-    plan: &Plan,
-    target: &Target,
-    registry: &Registry,
-) -> Result<(Vec<Runnable>, Vec<FullscreenProgram>, Option<StreamPrograms>), Diagnostics> {
+fn compiled(plan: &Plan, target: &Target, registry: &Registry) -> Result<Compiled, Diagnostics> {
     let mut probed = plan.clone();
     if plan.selection.provides().contains(&Capability::Streams) {
         probed.passes.push(probe_pass(plan, READ_STREAM));

@@ -1,4 +1,6 @@
-//! No walk over memory depends on what memory holds for its end.
+//! Tests that walks over memory end whatever the memory holds.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use fragbuf_interpreter::{Exit, Sequential};
 use fragbuf_model::{Draft, SourceSpan, check};
