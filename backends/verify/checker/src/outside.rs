@@ -15,13 +15,6 @@ use crate::report::Schedule;
 use crate::sequential::{machine_with, run_alone};
 use crate::subject::Subject;
 
-/// The fragment stage of a fullscreen pass.
-#[derive(Debug)]
-pub(crate) struct FullscreenProgram {
-    pub(crate) pass: String,
-    pub(crate) program: Bytecode,
-}
-
 /// The slices that are drawn, of one row each: the first, and one with rows on both sides.
 const SLICES: [u32; 2] = [0, 3];
 

@@ -10,8 +10,6 @@ use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, codes};
 use fragbuf_targets::Checked;
 use fragbuf_templates::vocabulary::Kind;
 
-use crate::outside::FullscreenProgram;
-
 /// The functions of `templates/shared/markers.wgsl`.
 pub(crate) const MARKERS: [(&str, Marker); 4] = [
     ("memory_fence", Marker::Fence),
@@ -107,6 +105,13 @@ impl Runnable {
     pub(crate) fn is_of(&self, run: PassRun) -> bool {
         self.id == run.pass && self.iteration.is_none_or(|iteration| iteration == run.iteration)
     }
+}
+
+/// The fragment stage of a fullscreen pass.
+#[derive(Debug)]
+pub(crate) struct FullscreenProgram {
+    pub(crate) pass: String,
+    pub(crate) program: Bytecode,
 }
 
 /// Compiles the fragment stage of a fullscreen pass.

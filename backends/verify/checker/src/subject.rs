@@ -10,9 +10,8 @@ use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Permits, Soundness};
 
-use crate::outside::FullscreenProgram;
 use crate::probe::{probe_pass, probe_row};
-use crate::programs::{Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
+use crate::programs::{FullscreenProgram, Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
 use crate::read_out::ReadOut;
 
 /// The probe pass of a plan whose storage emits a stream.
@@ -141,6 +140,7 @@ fn compiled(plan: &Plan, target: &Target, registry: &Registry) -> Result<Compile
         if pass.name == READ_STREAM {
             stream = Some(stream_programs(&checked, span)?);
         } else if pass.kind == Kind::Fullscreen {
+            // A pass that samples what another pass drew has no textures here.
             fullscreen.extend(fullscreen_program(plan, &checked).ok());
         } else {
             for iteration in iterations(plan, id) {
