@@ -11,13 +11,25 @@ use crate::{Action, LoweredFrame, PlannedPass, Quantity, SymbolTable};
 pub(super) fn words_per_pixel(resources: &[PlannedResource], symbols: &SymbolTable) -> Polynomial {
     let internal = resources.iter().filter(|planned| !planned.is_external());
     let total =
-        internal.fold(Polynomial::default(), |total, planned| total.plus(&polynomial(&planned.words, symbols), 1));
+        internal.fold(Polynomial::default(), |total, planned| total.plus(&size_by_k(&planned.words, symbols), 1));
     total
         .coefficient("pixels")
         .plus(&total.coefficient("fragments").times(&Polynomial::symbol("f")), 1)
         .plus(&total.coefficient("kept").times(&Polynomial::symbol("f_k")), 1)
         .plus(&total.fractions("fragments", "f"), 1)
 }
+
+/// Returns a size with the capacity as k: in the papers, memory is that of the greatest k.
+fn size_by_k(words: &Quantity, symbols: &SymbolTable) -> Polynomial {
+    let number = |name: &str| symbols.number_of(name).filter(|_| name != CAPACITY);
+    let size = words.formula().read().and_then(|size| size.polynomial(&number)).unwrap_or_default();
+    let factor = size.coefficient(CAPACITY);
+    let by = |name: &str| factor.times(&Polynomial::symbol(name));
+    size.plus(&by(CAPACITY), -1).plus(&by("k"), 1)
+}
+
+/// The symbol of the greatest k that generated code supports.
+const CAPACITY: &str = "capacity";
 
 /// Returns how often the passes that meet `is_counted` run, as a formula over the limits of loops.
 pub(super) fn runs(

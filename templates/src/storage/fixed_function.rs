@@ -60,7 +60,7 @@ pub(super) fn depth_tested() -> Row {
 /// Returns the row that stores the first k fragments in the samples of a pixel by the stencil test.
 pub(super) fn stencil_routed() -> Row {
     let by_sample = |name: &str, element: Element, summary: &'static str| {
-        Resource::new(name, element, summary).by("sample", "k").by("pixel", "pixels").cleared(0)
+        Resource::new(name, element, summary).by("sample", "capacity").by("pixel", "pixels").cleared(0)
     };
     // A fragment with partial coverage is lost or duplicated. On devices that support it, it covers all samples or
     // none.

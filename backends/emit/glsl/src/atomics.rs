@@ -13,7 +13,9 @@ use crate::precedence::{Precedence, Text};
 use crate::types::numeric;
 
 const MEMORY_SCOPE: &str = "GL_KHR_memory_scope_semantics";
+/// 64-bit atomics. No driver of OpenGL has the extension of Vulkan.
 const WIDE_ATOMICS: &str = "GL_EXT_shader_atomic_int64";
+const OPENGL_WIDE_ATOMICS: &str = "GL_NV_shader_atomic_int64";
 
 impl FunctionPrinter<'_, '_> {
     /// Returns the shared global that a pointer points into.
@@ -43,7 +45,8 @@ impl FunctionPrinter<'_, '_> {
             Some((ScalarKind::Uint, 4)) => "0u".to_owned(),
             Some((ScalarKind::Sint, 4)) => "0".to_owned(),
             Some((ScalarKind::Uint, 8)) => {
-                self.printer.requirements.extensions.insert(WIDE_ATOMICS);
+                let extension = if self.printer.vulkan() { WIDE_ATOMICS } else { OPENGL_WIDE_ATOMICS };
+                self.printer.requirements.extensions.insert(extension);
                 "0ul".to_owned()
             }
             _ => self.error("atomics of this type", pointer),

@@ -4,8 +4,11 @@
 //! with a test, as naga lowers them; else `while (true)`. The continuing block runs at the end of each iteration and before
 //! each `continue`. A single statement prints as the third part of a `for`; a longer block prints at each of these
 //! positions.
+//!
+//! In the dialects of OpenGL, `while (a && b)` prints as `while (a) { if (!b) { break; }`. Mesa 22.3.6 miscompiles the
+//! first form if `b` reads an element of an array of structs that the body reads again: the second read gives zero.
 
-use naga::{Block, Expression, Handle, Span, Statement, SwitchCase, SwitchValue};
+use naga::{BinaryOperator, Block, Expression, Handle, Span, Statement, SwitchCase, SwitchValue};
 
 use crate::function::{FunctionPrinter, LoopContext};
 
@@ -132,10 +135,14 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
         if let Some(condition) = context.break_if {
             let condition = self.expression(condition);
-            self.line(format!("if ({condition}) {{"));
-            self.line("    break;");
-            self.line("}");
+            self.exit_if(&condition);
         }
+    }
+
+    fn exit_if(&mut self, condition: &str) {
+        self.line(format!("if ({condition}) {{"));
+        self.line("    break;");
+        self.line("}");
     }
 
     /// Prints a loop; an initialiser has already opened the scope of a `for`.
@@ -151,10 +158,12 @@ impl<'m> FunctionPrinter<'_, 'm> {
         if !opened {
             self.print_comments_above(span);
         }
-        let (start, condition) = match self.leading_test(body) {
-            Some((index, condition)) => (index + 1, Some(self.expression(condition))),
-            None => (0, None),
+        let (start, mut tests) = match self.leading_test(body) {
+            Some((index, condition)) => (index + 1, self.tests(condition).into_iter()),
+            None => (0, Vec::new().into_iter()),
         };
+        let condition = tests.next().map(|condition| self.expression(condition));
+        let exits: Vec<String> = tests.map(|condition| self.negated(condition)).collect();
         let update = if break_if.is_none() { self.single_update(body, continuing) } else { None };
         let context = LoopContext { block: Some(continuing), break_if, switches: 0 };
         let has_end = update.is_none() && (!continuing.is_empty() || break_if.is_some());
@@ -163,6 +172,9 @@ impl<'m> FunctionPrinter<'_, 'm> {
         self.line(header(initialiser, condition, update));
         self.loops.push(if has_end { context } else { without_end });
         self.open_block();
+        for exit in exits {
+            self.exit_if(&exit);
+        }
         self.loop_body(body, start);
         if has_end && !ends_in_jump(body) {
             self.end_of_iteration(context);
@@ -199,6 +211,16 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 Some((index, *condition))
             }
             _ => None,
+        }
+    }
+
+    /// Returns the tests of a loop: the condition, or in the dialects of OpenGL each operand of its `&&`.
+    fn tests(&self, condition: Handle<Expression>) -> Vec<Handle<Expression>> {
+        let circuit = self.plan.short_circuits.get(&condition);
+        let is_printed_here = !self.values.contains_key(&condition) && !self.printer.vulkan();
+        match circuit.filter(|circuit| is_printed_here && circuit.operator == BinaryOperator::LogicalAnd) {
+            Some(circuit) => [self.tests(circuit.left), self.tests(circuit.right)].concat(),
+            None => vec![condition],
         }
     }
 

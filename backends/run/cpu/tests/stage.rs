@@ -23,7 +23,7 @@ pub fn texture(name: &str, format: TextureFormat) -> Resource {
 }
 
 pub fn sampled(name: &str, format: TextureFormat) -> Resource {
-    Resource::new(name, Element::Texture(format), "").by("sample", "k").by("pixel", "pixels")
+    Resource::new(name, Element::Texture(format), "").by("sample", "capacity").by("pixel", "pixels")
 }
 
 /// Compiles a storage row with the WGSL of its skeletons, in which `binding(name)` is the binding of that resource. `keep` is

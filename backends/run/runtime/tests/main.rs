@@ -22,6 +22,7 @@ mod buckets;
 mod capture;
 mod cpu_device;
 mod criteria;
+mod drivers;
 mod embedding;
 mod failures;
 mod invariance;

@@ -2,7 +2,7 @@
 //! best of them, and their colour.
 
 #[path = "../../../../tests/oracle/reference.rs"]
-mod reference;
+pub mod reference;
 
 pub use reference::ordered_key;
 

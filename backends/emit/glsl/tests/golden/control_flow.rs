@@ -1,6 +1,8 @@
 //! Golden tests of loops, branches and the declarations in them.
 
 use super::expect;
+use super::support::print;
+use fragbuf_glsl::{Dialect, Unit};
 
 #[test]
 fn for_loop() {
@@ -76,7 +78,10 @@ fn while_loop_with_continue() {
 uint walk(uint head) {
     uint node = head;
     uint count = 0u;
-    while (node != 0u && count < LIMIT) {
+    while (node != 0u) {
+        if (count >= LIMIT) {
+            break;
+        }
         node = a[node];
         if (node == 7u) {
             continue;
@@ -87,6 +92,33 @@ uint walk(uint head) {
 }
 ",
     );
+}
+
+/// Only the dialects of OpenGL split the test of a loop.
+#[test]
+fn vulkan_keeps_the_test_of_a_loop() {
+    let source = "@group(0) @binding(0) var<storage, read_write> a: array<u32>;
+        fn last(n: u32) -> u32 {
+            var i = n;
+            while i > 0u && a[i] < a[i - 1u] && a[i] != 3u { i--; }
+            return i;
+        }
+        @compute @workgroup_size(1) fn main() { a[0] = last(a[1]); }";
+    let print = |dialect| print(source, Unit::EntryPoint("main"), dialect).unwrap();
+    assert!(print(Dialect::Vulkan450).contains("while (i > 0u && a[i] < a[i - 1u] && a[i] != 3u) {\n"));
+    let exits = "while (i > 0u) {
+        if (a[i] >= a[i - 1u]) {
+            break;
+        }
+        if (a[i] == 3u) {
+            break;
+        }
+        i--;
+    }";
+    for dialect in [Dialect::OpenGl450, Dialect::Es310] {
+        let text = print(dialect);
+        assert!(text.contains(exits), "{text}");
+    }
 }
 
 #[test]

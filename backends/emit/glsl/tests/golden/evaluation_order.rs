@@ -114,7 +114,10 @@ fn effects_keep_their_order_in_a_condition() {
         }",
         "
 uint guarded(uint i) {
-    while (a[0] > 1u && bump(0u) < 5u) {
+    while (a[0] > 1u) {
+        if (bump(0u) >= 5u) {
+            break;
+        }
         uint a_value = a[1];
         a[1] = a_value + bump(i);
     }

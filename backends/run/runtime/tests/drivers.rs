@@ -1,0 +1,135 @@
+//! Every technique on two software drivers at odd sizes, whole and in slices, in permuted drawing orders: the image is that of the
+//! reference, or of the CPU device where a technique states that it loses fragments.
+//!
+//! The drivers differ where it matters: SwiftShader runs helper invocations beside the frame, lavapipe does not.
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh};
+use fragbuf_model::Variant;
+use fragbuf_runtime::headless::{Headless, Offscreen};
+use fragbuf_runtime::{Error, Output, Renderer, Settings, Sizing};
+use fragbuf_targets::target;
+use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::{Capability, KeepDefault};
+
+use crate::oracle::reference;
+use crate::stage::{self, BACKGROUND, FORMAT, renderer, shaders, technique, vertex_buffer};
+use scene::{Numbers, Quad, first_difference, image, over_background, quads, vertices};
+
+#[path = "../../../../tests/oracle/scene.rs"]
+mod scene;
+
+/// The width and height of each frame, and the rows of its slices.
+const FRAMES: [([u32; 2], Option<u32>); 6] =
+    [([13, 7], None), ([13, 7], Some(3)), ([1, 1], None), ([31, 1], None), ([1, 9], Some(2)), ([37, 23], None)];
+
+/// SwiftShader's manifest for the Vulkan loader, from Debian's package chromium.
+const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
+
+/// Draws quads on the adapter of all tests.
+fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], size: [u32; 2]) -> Vec<[f32; 4]> {
+    let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
+    let buffer = vertex_buffer(stage, &vertices(quads, size, &inputs));
+    let offscreen = Offscreen::new(&stage.device, FORMAT, size[0], size[1]).unwrap();
+    let [r, g, b] = BACKGROUND;
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
+    let rendered = renderer.render(&output, &mut |pass, _| {
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..6 * quads.len() as u32, 0..1);
+    });
+    rendered.unwrap();
+    offscreen.colors(&stage.device, &stage.queue).unwrap()
+}
+
+/// Returns the image of the CPU device.
+fn on_cpu(device: &mut Device, quads: &[Quad], size: [u32; 2], inputs: &[&str]) -> Vec<[f64; 3]> {
+    let bytes = vertices(quads, size, inputs);
+    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();
+    let picture = device.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
+    picture.pixels.iter().map(|pixel| over_background(pixel.map(f64::from), BACKGROUND)).collect()
+}
+
+/// Compares a variant in every frame. Fails with what the device lacks.
+fn compare(stage: &Headless, key: &str, variant: &Variant, k: Option<u32>) -> Result<(), Error> {
+    // Techniques that portable WGSL cannot express use naga's WGSL.
+    let is_portable = variant.select(target("wgsl").unwrap().provides).is_ok();
+    let shaders = shaders(variant, if is_portable { "wgsl" } else { "wgsl-native" });
+    let code = Arc::new(Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{key}: {error}")));
+    for (size, slice) in FRAMES {
+        let [width, height] = size;
+        let settings = Settings { slice, ..Settings::new(FORMAT, width, height) };
+        let mut renderer = renderer(stage, &shaders, &settings)?;
+        let order = FragmentOrder::Submission;
+        let settings = fragbuf_cpu::Settings { width, height, sizing: Sizing::Auto, order };
+        let mut cpu = Device::new(code.clone(), settings).unwrap();
+        let storage = &renderer.plan().selection.row("storage").unwrap().row;
+        let keeps_best = [Capability::KeepsAll, Capability::KeepsBest].iter().any(|kept| storage.may_provide(*kept));
+        let is_exact = keeps_best && renderer.plan().hazards.is_empty();
+        let inputs: Vec<String> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.clone()).collect();
+        let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+        let mut numbers = Numbers::seeded(u64::from(width));
+        // As many as automatic sizing reserves memory for.
+        let mut quads = quads(8, size, &mut numbers);
+        for order in 0..3 {
+            let seen = draw(stage, &mut renderer, &quads, size);
+            let expected = match is_exact {
+                true => image(&quads, size, k, BACKGROUND),
+                false => on_cpu(&mut cpu, &quads, size, &inputs),
+            };
+            if let Some(difference) = first_difference(&seen, &expected) {
+                panic!("{key}, {size:?}, slices of {slice:?} rows, order {order}: {difference}: {quads:?}");
+            }
+            numbers.shuffle(&mut quads);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_technique_at_odd_sizes() {
+    let stage = stage::device();
+    println!("driver: {}", stage.info.name);
+    for row in Registry::builtin().techniques() {
+        let k = match row.keep {
+            KeepDefault::All => None,
+            KeepDefault::Best(most) => Some(most.min(4)),
+        };
+        let set = k.map(|k| k.to_string());
+        let variant = technique(&row.key, &set.iter().map(|k| ("k", k.as_str())).collect::<Vec<_>>());
+        match compare(&stage, &row.key, &variant, k) {
+            Ok(()) => println!("right: {}", row.key),
+            Err(error) => println!("left out: {}: {error}", row.key),
+        }
+    }
+}
+
+/// Runs a test of this binary on SwiftShader and returns what it printed.
+fn on_swiftshader(test: &str) -> String {
+    assert!(Path::new(SWIFTSHADER).exists(), "this test needs SwiftShader: install Debian's package chromium");
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args([test, "--exact", "--nocapture"])
+        .env("VK_DRIVER_FILES", SWIFTSHADER)
+        .env("VK_ICD_FILENAMES", SWIFTSHADER)
+        .output()
+        .unwrap();
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{printed}\n{}", String::from_utf8_lossy(&output.stderr));
+    printed
+}
+
+/// The Vulkan loader reads its settings when a process opens the first device, so the second driver runs in a process of its own.
+#[test]
+fn every_technique_at_odd_sizes_on_swiftshader() {
+    let printed = on_swiftshader("drivers::every_technique_at_odd_sizes");
+    println!("{printed}");
+    assert!(printed.contains("driver: SwiftShader"), "{printed}");
+    let left_out: Vec<&str> =
+        printed.lines().filter_map(|line| line.strip_prefix("left out: ")?.split(':').next()).collect();
+    // SwiftShader has no 64-bit atomics.
+    assert_eq!(left_out, ["kb_mdt64"]);
+    assert_eq!(printed.matches("right: ").count() + 1, Registry::builtin().techniques().len());
+}

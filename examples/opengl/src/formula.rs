@@ -1,0 +1,92 @@
+//! Evaluates the formulas of a manifest: whole numbers with `+ - * /`, `min`, `max`, `ceil_div`,
+//! `pow2` and `log2_ceil` over symbols.
+
+use crate::Error;
+
+/// Returns the value of a formula. `symbol` returns the value of a symbol, or `None` if it has none.
+pub fn evaluate(formula: &str, symbol: &dyn Fn(&str) -> Option<u64>) -> Result<u64, Error> {
+    let mut parser = Parser { rest: formula, symbol };
+    let value = parser.sum().filter(|_| parser.rest.trim().is_empty());
+    value.ok_or_else(|| Error(format!("the formula `{formula}` has no value")))
+}
+
+struct Parser<'a> {
+    rest: &'a str,
+    symbol: &'a dyn Fn(&str) -> Option<u64>,
+}
+
+impl<'a> Parser<'a> {
+    fn sum(&mut self) -> Option<u64> {
+        let mut value = self.product()?;
+        loop {
+            if self.takes('+') {
+                value = value.checked_add(self.product()?)?;
+            } else if self.takes('-') {
+                value = value.checked_sub(self.product()?)?;
+            } else {
+                return Some(value);
+            }
+        }
+    }
+
+    fn product(&mut self) -> Option<u64> {
+        let mut value = self.factor()?;
+        loop {
+            if self.takes('*') {
+                value = value.checked_mul(self.factor()?)?;
+            } else if self.takes('/') {
+                value = value.checked_div(self.factor()?)?;
+            } else {
+                return Some(value);
+            }
+        }
+    }
+
+    fn factor(&mut self) -> Option<u64> {
+        if self.takes('(') {
+            let value = self.sum()?;
+            return self.takes(')').then_some(value);
+        }
+        let word = self.word();
+        if self.takes('(') {
+            return self.call(word);
+        }
+        word.parse().ok().or_else(|| (self.symbol)(word))
+    }
+
+    fn call(&mut self, function: &str) -> Option<u64> {
+        let mut arguments = vec![self.sum()?];
+        while self.takes(',') {
+            arguments.push(self.sum()?);
+        }
+        if !self.takes(')') {
+            return None;
+        }
+        match (function, arguments.as_slice()) {
+            ("min", [a, b]) => Some(*a.min(b)),
+            ("max", [a, b]) => Some(*a.max(b)),
+            ("ceil_div", [a, b]) => (*b != 0).then(|| a.div_ceil(*b)),
+            ("pow2", [a]) => 1u64.checked_shl((*a).try_into().ok()?),
+            ("log2_ceil", [a]) => Some(a.checked_next_power_of_two()?.ilog2().into()),
+            _ => None,
+        }
+    }
+
+    /// Takes a name or a number.
+    fn word(&mut self) -> &'a str {
+        let text = self.rest.trim_start();
+        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+        self.rest = &text[end..];
+        &text[..end]
+    }
+
+    fn takes(&mut self, wanted: char) -> bool {
+        match self.rest.trim_start().strip_prefix(wanted) {
+            Some(rest) => {
+                self.rest = rest;
+                true
+            }
+            None => false,
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Generated GLSL on a real OpenGL driver, at odd sizes and in permuted drawing orders: every technique, every row of every axis, every k
+//! below the capacity. The image is that of a reference that shares no code with the templates, or of the CPU device for techniques
+//! that state that they lose fragments.
+#![allow(missing_docs, reason = "tests need no documentation")]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by a panic")]
+
+mod pixels;
+#[path = "../../../tests/oracle/reference.rs"]
+mod reference;
+#[path = "../../../tests/oracle/scene.rs"]
+mod scene;
