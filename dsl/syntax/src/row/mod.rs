@@ -22,6 +22,7 @@
 //! //: soundness atomics                                       atomics, interlock, lock or racy
 //! ```
 
+mod former;
 mod line;
 mod properties;
 mod reader;

@@ -8,6 +8,7 @@ use fragbuf_templates::vocabulary::{
     Capability, DescriptionValues, Feature, Formula, FormulaError, Permits, RowItem, RowItemSpan,
 };
 
+use super::former;
 use super::line::Line;
 use crate::report::Stop;
 use crate::unknown_name;
@@ -101,7 +102,8 @@ impl Reader {
 
     /// Returns the capability of this name. The help lists the `features` that are also valid here.
     fn capability_of(&mut self, name: &Spanned<String>, features: &[Feature]) -> Read<Capability> {
-        if let Some(capability) = Capability::ALL.iter().find(|capability| capability.name() == name.value) {
+        let present = former::present(&name.value);
+        if let Some(capability) = Capability::ALL.iter().find(|capability| capability.name() == present) {
             return Ok(*capability);
         }
         if Feature::ALL.iter().any(|feature| feature.name() == name.value) {
@@ -117,7 +119,7 @@ impl Reader {
 
     /// Returns what the name of a hazard permits.
     pub(super) fn permits(&mut self, name: &Spanned<String>) -> Read<Permits> {
-        if let Some(Shorthand::Permits(permits)) = Shorthand::of(&name.value) {
+        if let Some(Shorthand::Permits(permits)) = Shorthand::of(former::present(&name.value)) {
             return Ok(permits);
         }
         let known = Shorthand::ALL.into_iter().filter(|(_, one)| matches!(one, Shorthand::Permits(_)));
@@ -128,7 +130,8 @@ impl Reader {
 
     /// Returns the value of a name in a table.
     pub(super) fn one_of<T: Copy>(&mut self, name: &Spanned<String>, table: &[(&str, T)], what: &str) -> Read<T> {
-        if let Some((_, value)) = table.iter().find(|(key, _)| *key == name.value) {
+        let present = former::present(&name.value);
+        if let Some((_, value)) = table.iter().find(|(key, _)| *key == present) {
             return Ok(*value);
         }
         let known: Vec<&str> = table.iter().map(|(name, _)| *name).collect();

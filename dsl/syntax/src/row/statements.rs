@@ -4,6 +4,7 @@
 
 use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, Spanned, UserRow, codes};
 
+use super::former;
 use super::line::Line;
 use super::reader::{Read, Reader};
 use crate::report::{FIRST, Stop};
@@ -92,7 +93,8 @@ impl Statements {
     }
 
     fn statement(&mut self, line: &mut Line<'_>) -> Read<()> {
-        let keyword = self.reader.name(line, "a statement", "`buffer`, `pass`, `provides`")?;
+        let mut keyword = self.reader.name(line, "a statement", "`buffer`, `pass`, `provides`")?;
+        keyword.value = former::present(&keyword.value).to_owned();
         if SINGLE.contains(&keyword.value.as_str()) {
             // Other errors of the line are reported, too.
             let _ = self.once(&keyword.value, &keyword.span, "merge the two lines, or remove one of them");

@@ -1,0 +1,63 @@
+//! Former words of row headers. Files that have them still parse; messages and documents use the present words.
+
+/// The former words and the present ones.
+const FORMER: [(&str, &str); 18] = [
+    ("offers", "provides"),
+    ("beside", "value"),
+    ("critical", "mutual-exclusion"),
+    ("ordered-critical", "ordered-mutual-exclusion"),
+    ("own-atomics", "lock-free"),
+    ("survives-races", "race-tolerant"),
+    ("race", "unsynchronised"),
+    ("left-to-tests", "sync-by-fixed-function"),
+    ("left-to-shaders", "sync-in-shader"),
+    ("best-suffice", "accepts-k-best-only"),
+    ("bound-any-instant", "conservative-bound"),
+    ("spares-room", "allocates-k-best-only"),
+    ("loses-whole", "reports-whole-fragments"),
+    ("displaces-in-turn", "displaces-under-lock"),
+    ("values-pairs", "pair-values"),
+    ("culls-nothing", "no-cull"),
+    ("given-up", "timed-out"),
+    ("unsettled", "not-converged"),
+];
+
+/// Returns the present word for a keyword, a capability or a property.
+pub(super) fn present(word: &str) -> &str {
+    FORMER.iter().find(|(former, _)| *former == word).map_or(word, |(_, present)| present)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::row;
+
+    #[test]
+    fn former_words_mean_the_present_ones() {
+        let present = "//: storage -- all of it\n\
+            //: buffer rest[pixel < pixels]: value -- the rest\n\
+            //: pass store: rest coherent\n\
+            //: provides lock-free, indexed\n\
+            //: requires mutual-exclusion, fragment-atomics\n\
+            //: hazard timed-out -- a fragment\n\
+            \n\
+            fn storage_insert(pixel: u32, entry: Packed) {}\n";
+        let former = present
+            .replace(": value", ": beside")
+            .replace("provides lock-free", "offers own-atomics")
+            .replace("mutual-exclusion", "critical")
+            .replace("timed-out", "given-up");
+        let read = |text: &str| {
+            let mut row =
+                row(text, "mine.wgsl", "wgsl:mine.wgsl", "mine.wgsl").map_err(|errors| errors.to_string())?.row;
+            row.template = None;
+            row.item_spans.clear();
+            Ok::<_, String>(row)
+        };
+        let (former, present) = (read(&former), read(present));
+        assert_eq!(present.as_ref().map(|row| row.hazards[0].name.to_string()), Ok("timed-out".to_owned()));
+        assert_eq!(
+            former.map(|row| (row.resources, row.provides, row.requires)),
+            present.map(|row| (row.resources, row.provides, row.requires))
+        );
+    }
+}
