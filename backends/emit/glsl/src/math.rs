@@ -84,7 +84,7 @@ impl FunctionPrinter<'_, '_> {
         };
         let operands: Vec<_> = [Some(arg), arg1, arg2, arg3].into_iter().flatten().collect();
         operands.iter().for_each(|operand| self.check_scalar(*operand));
-        let scalar = self.shape(arg).map(|(_, scalar)| scalar);
+        let (lanes, scalar) = self.shape(arg).map_or((1, None), |(lanes, scalar)| (lanes, Some(scalar)));
         let kind = scalar.map(|scalar| scalar.kind);
         let takes_wide = matches!(fun, MathFunction::Abs | MathFunction::Min | MathFunction::Max | MathFunction::Clamp);
         if scalar.is_some_and(|scalar| scalar.width > 4) && !takes_wide {
@@ -102,7 +102,7 @@ impl FunctionPrinter<'_, '_> {
             }
             MathFunction::Dot if kind != Some(ScalarKind::Float) => self.integer_dot(&operands),
             MathFunction::Dot => self.call("dot", &operands),
-            MathFunction::QuantizeToF16 => self.quantize(expression, arg),
+            MathFunction::QuantizeToF16 => self.call_helper(Helper::QuantizeToHalf(lanes), &operands),
             MathFunction::CountOneBits => self.bit_function("bitCount", arg),
             MathFunction::FirstTrailingBit => self.bit_function("findLSB", arg),
             MathFunction::FirstLeadingBit => self.bit_function("findMSB", arg),
@@ -115,6 +115,10 @@ impl FunctionPrinter<'_, '_> {
                 self.call_helper(Helper::PackBytes { signed: false, clamp: true }, &operands)
             }
             MathFunction::Pack4xI8Clamp => self.call_helper(Helper::PackBytes { signed: true, clamp: true }, &operands),
+            MathFunction::Modf => self.call_helper(Helper::Modf(lanes), &operands),
+            MathFunction::Frexp => self.call_helper(Helper::Frexp(lanes), &operands),
+            MathFunction::Dot4U8Packed => self.call_helper(Helper::DotBytes { signed: false }, &operands),
+            MathFunction::Dot4I8Packed => self.call_helper(Helper::DotBytes { signed: true }, &operands),
             MathFunction::Unpack4xU8 => self.call_helper(Helper::UnpackBytes { signed: false }, &operands),
             MathFunction::Unpack4xI8 => self.call_helper(Helper::UnpackBytes { signed: true }, &operands),
             fun => match plain_name(fun) {
@@ -148,15 +152,6 @@ impl FunctionPrinter<'_, '_> {
         let terms: Vec<String> =
             ["x", "y", "z", "w"].iter().take(lanes).map(|c| format!("{left}.{c} * {right}.{c}")).collect();
         Text::new(terms.join(" + "), Precedence::Sum)
-    }
-
-    /// Prints quantizeToF16(), which GLSL lacks.
-    fn quantize(&mut self, expression: Handle<Expression>, value: Handle<Expression>) -> Text {
-        if self.shape(value).is_some_and(|(lanes, _)| lanes > 1) {
-            return Text::primary(self.error("quantizeToF16 of a vector", expression));
-        }
-        let value = self.expression(value);
-        Text::primary(format!("unpackHalf2x16(packHalf2x16(vec2({value}, 0.0))).x"))
     }
 
     /// Prints a bit function. GLSL's return `int`; -1, for no bit, is all ones in both types.

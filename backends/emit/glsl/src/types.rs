@@ -3,8 +3,9 @@
 //! Naming a structure here also requires its declaration, which `globals` prints later.
 
 use naga::proc::TypeResolution;
-use naga::{ArraySize, Handle, Scalar, ScalarKind, Span, Type, TypeInner, VectorSize};
+use naga::{ArraySize, Handle, Module, PredeclaredType, Scalar, ScalarKind, Span, Type, TypeInner, VectorSize};
 
+use crate::helpers::{Helper, lanes};
 use crate::printer::Printer;
 
 /// Returns `uint`, `int`, `float`, `bool` or `uint64_t`; nothing for other widths.
@@ -104,6 +105,10 @@ impl Printer<'_> {
                 (name, format!("[{size}]{dimensions}"))
             }
             TypeInner::Struct { .. } => {
+                if let Some(helper) = result_of(self.module, ty) {
+                    self.helper(helper);
+                    return (helper.result().unwrap_or_default(), String::new());
+                }
                 self.requirements.types.insert(ty);
                 let name = self.names.types.get(&ty).cloned();
                 (name.unwrap_or_else(|| self.error("a structure without a name", span)), String::new())
@@ -166,6 +171,16 @@ impl Printer<'_> {
             }
             _ => self.error("the zero value of this type", span),
         }
+    }
+}
+
+/// Returns the helper that defines a type, if it is the result of modf() or frexp().
+fn result_of(module: &Module, ty: Handle<Type>) -> Option<Helper> {
+    let (predeclared, _) = module.special_types.predeclared_types.iter().find(|(_, handle)| **handle == ty)?;
+    match *predeclared {
+        PredeclaredType::ModfResult { size, .. } => Some(Helper::Modf(lanes(size))),
+        PredeclaredType::FrexpResult { size, .. } => Some(Helper::Frexp(lanes(size))),
+        _ => None,
     }
 }
 

@@ -33,10 +33,13 @@ impl Checked {
 
 /// Returns the naga capabilities that sources of this profile may use.
 pub(crate) fn capabilities(profile: Profile) -> Capabilities {
+    // pack2x16float and its kin belong to WGSL without extensions; naga has a capability for them.
+    let portable = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     match profile {
-        Profile::Portable => Capabilities::empty(),
+        Profile::Portable => portable,
         Profile::Native => {
-            Capabilities::MEMORY_DECORATION_COHERENT
+            portable
+                | Capabilities::MEMORY_DECORATION_COHERENT
                 | Capabilities::PRIMITIVE_INDEX
                 | Capabilities::SHADER_INT64
                 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX

@@ -54,8 +54,9 @@ impl Pack {
 
     fn component(self, word: u32) -> u32 {
         let x = f32::from_bits(word);
-        let snorm = |scale: f32| (0.5 + scale * x.clamp(-1.0, 1.0)).floor() as i32 as u32;
-        let unorm = |scale: f32| (0.5 + scale * x.clamp(0.0, 1.0)).floor() as u32;
+        // WGSL writes floor(0.5 + scale * x), whose sum may round up to the next integer; drivers round the product, ties to even.
+        let snorm = |scale: f32| (scale * x.clamp(-1.0, 1.0)).round_ties_even() as i32 as u32;
+        let unorm = |scale: f32| (scale * x.clamp(0.0, 1.0)).round_ties_even() as u32;
         match self {
             Pack::Snorm8 => snorm(127.0),
             Pack::Unorm8 => unorm(255.0),
