@@ -35,6 +35,7 @@ pub mod guide;
 pub mod load;
 pub mod report;
 pub mod snapshot;
+pub mod source_file;
 pub mod user_file;
 
 pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};

@@ -6,7 +6,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, codes};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_templates::Registry;
 
-use crate::user_file;
+use crate::{source_file, user_file};
 
 /// A description to load.
 #[derive(Clone, Debug)]
@@ -23,9 +23,9 @@ pub enum Description {
 }
 
 impl Description {
-    /// Reads the file at `path`. Messages name it by this path.
+    /// Reads the file at `path` ([`source_file`]). Messages name it by this path.
     pub fn read(path: &Path) -> std::io::Result<Self> {
-        Ok(Description::Text { file: path.display().to_string(), text: std::fs::read_to_string(path)? })
+        Ok(Description::Text { file: path.display().to_string(), text: source_file::read(path)? })
     }
 
     /// Returns the name in messages.

@@ -11,6 +11,8 @@ use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
 
+use crate::source_file;
+
 /// The user files of a draft.
 #[derive(Clone, Debug)]
 pub struct UserFiles {
@@ -49,7 +51,7 @@ fn read_row(
     let value = &alternative.value;
     let folder = Path::new(&*value.span.file).parent().unwrap_or(Path::new(""));
     let file = folder.join(path).display().to_string();
-    let text = std::fs::read_to_string(folder.join(path)).map_err(|error| {
+    let text = source_file::read(&folder.join(path)).map_err(|error| {
         let message = format!("`{file}` cannot be read: {error}");
         Diagnostic::new(codes::MISSING_FILE, &value.span, message, "paths are relative to the file that names them")
     })?;

@@ -27,7 +27,7 @@ fn picture(out: &Path, arguments: &[&str]) -> Vec<[u8; 4]> {
 type Projected = [[f64; 3]; 3];
 
 fn projected(scene: &Scene) -> Vec<Projected> {
-    let matrix = Camera::framing(scene, SIZE.0 as f32 / SIZE.1 as f32).view_projection.map(f64::from);
+    let matrix = Camera::framing(&[scene], SIZE.0 as f32 / SIZE.1 as f32).view_projection.map(f64::from);
     let project = |position: [f32; 3]| -> [f64; 3] {
         let [x, y, z] = position.map(f64::from);
         let row = |row: usize| matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
@@ -69,7 +69,8 @@ fn images_differ_from_the_drivers_only_at_edges_and_ties() {
     let folder = folder("devices");
     let pixels = (SIZE.0 * SIZE.1) as usize;
     for scene in ["builtin:cubes", "builtin:slabs,n=24", "builtin:marbles"] {
-        let triangles = projected(&fragbuf_scene::open(scene, [0.15, 0.45, 0.35, 0.4]).unwrap());
+        let triangles =
+            projected(&fragbuf_scene::open(scene, [0.15, 0.45, 0.35, 0.4], &fragbuf_scene::Limits::default()).unwrap());
         // The explanation is valid only if it applies to few pixels: tests a sample of all pixels.
         let sample: Vec<usize> = (0..pixels).step_by(STRIDE).collect();
         let may = |at: &usize| {

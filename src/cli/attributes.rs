@@ -6,6 +6,7 @@ use fragbuf_codegen::Plan;
 use fragbuf_model::Format;
 use fragbuf_scene::{Object, Scene};
 
+use super::memory::Budget;
 use super::output::Failure;
 
 /// The words of the vertices, three indices per triangle, and the range of indices of each object.
@@ -13,6 +14,8 @@ pub(crate) struct Geometry {
     pub(crate) vertices: Vec<u32>,
     pub(crate) indices: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
+    /// The memory that is left beside them.
+    pub(crate) memory: Budget,
 }
 
 /// A function that returns the words of one attribute of a vertex.
@@ -29,11 +32,18 @@ const SCENE_DATA: [(&[&str], &[Format], ReadWords); 4] = [
 ];
 
 /// Returns the vertices as the plan's geometry passes read them: the position, then the attributes in their order, without
-/// depth.
-pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> {
+/// depth. They are taken from `memory`.
+pub(crate) fn geometry(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Geometry, Failure> {
     let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
     let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
     let columns: Vec<(usize, ReadWords)> = columns.collect::<Result<_, _>>()?;
+    let words = 3 + columns.iter().map(|(words, _)| *words as u64).sum::<u64>();
+    let words = words.saturating_mul(scene.vertices() as u64).saturating_add(3 * scene.triangles() as u64);
+    let memory = memory.without(words.saturating_mul(4), "the list of vertices and indices")?;
+    // Numbers of vertices and indices have 32 bits.
+    if scene.vertices().max(3 * scene.triangles()) > u32::MAX as usize {
+        return Err(Failure::Input("the scene has too many vertices or triangles".to_owned()));
+    }
     let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(3 * scene.triangles()));
     let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
     for (id, object) in (0..).zip(&scene.objects) {
@@ -49,8 +59,7 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan) -> Result<Geometry, Failure> 
         objects.push(begin..indices.len() as u32);
         first += object.positions.len() as u32;
     }
-    u32::try_from(indices.len()).map_err(|_| Failure::Input("the scene has too many triangles".to_owned()))?;
-    Ok(Geometry { vertices, indices, objects })
+    Ok(Geometry { vertices, indices, objects, memory })
 }
 
 /// Returns the number of words of an attribute in a vertex, and the function that reads them.

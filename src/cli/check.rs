@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use fragbuf::{Registry, TARGETS, Target, target};
+use fragbuf::{Registry, TARGETS, Target, source_file, target};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
@@ -76,7 +76,7 @@ impl Check {
     }
 
     fn check_file(&self, file: &Path) -> Result<ExitCode, Failure> {
-        let source = std::fs::read_to_string(file).map_err(|error| Failure::files(file, &error))?;
+        let source = source_file::read(file).map_err(|error| Failure::files(file, &error))?;
         let name = file.display().to_string();
         let entry = self.entry.as_deref().unwrap_or_default();
         let shader = Shader { file: &name, source: &source, entry, fill: &self.fill };

@@ -7,7 +7,7 @@ use super::assignment::assignment;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
-use super::rendering::{RenderRequest, RenderResult, render};
+use super::rendering::{RenderRequest, render};
 use super::statistics::{FragmentCounts, statistics};
 use super::view::{View, scenes};
 
@@ -42,16 +42,19 @@ impl Compare {
         progress.set_message(format!("loading {}", view.scene));
         let (scene, opaque) = view.scene_views()?;
         let opaque = opaque.as_ref();
-        let one = |description: &str, set: &[(String, String)]| {
+        let one = |description: &str, set: &[(String, String)], held: u64| {
             let set = [&self.set, set].concat();
             // The hit ratio needs every event.
-            let request = RenderRequest { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque };
+            let request =
+                RenderRequest { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque, held };
             render(&request, view, &scene, &progress)
         };
-        let (first, second) = (one(&self.first, &self.set_first)?, one(&self.second, &self.set_second)?);
-        let displayed = |result: &RenderResult| picture::displayed(&result.stats.pixels, view.background, view.linear);
-        let difference = Difference::of(&displayed(&first), &displayed(&second));
-        picture::write(&view.out, view.size, &difference.heat(), true)?;
+        let first = one(&self.first, &self.set_first, view.image_bytes(DIFFERENCE))?;
+        let second = one(&self.second, &self.set_second, view.image_bytes(DIFFERENCE + IMAGE))?;
+        let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
+        let pixels = first.stats.pixels.iter().map(shown).zip(second.stats.pixels.iter().map(shown));
+        let difference = Difference::of(pixels);
+        picture::write(&view.out, view.size, &mut difference.heat(), true)?;
         drop(progress);
         let hits = [&first, &second].map(|result| FragmentCounts::of(result).map(|counts| counts.hit_ratio));
         if view.json {
@@ -76,6 +79,12 @@ impl Compare {
     }
 }
 
+/// The bytes per pixel of an image.
+const IMAGE: u64 = 16;
+
+/// The bytes per pixel of a [`Difference`].
+const DIFFERENCE: u64 = 4;
+
 /// The difference between two images.
 struct Difference {
     /// The greatest difference over the channels, by pixel.
@@ -87,16 +96,20 @@ struct Difference {
 }
 
 impl Difference {
-    fn of(first: &[[f32; 4]], second: &[[f32; 4]]) -> Self {
-        let distance = |(a, b): (&[f32; 4], &[f32; 4])| {
-            std::array::from_fn::<f32, 4, _>(|channel| (a[channel] - b[channel]).abs())
-        };
-        let channels: Vec<[f32; 4]> = first.iter().zip(second).map(distance).collect();
-        let pixels: Vec<f32> = channels.iter().map(|values| values.iter().copied().fold(0.0, f32::max)).collect();
-        let greatest = pixels.iter().copied().fold(0.0, f32::max);
-        let count = pixels.iter().filter(|value| **value > 0.5 / 255.0).count();
-        let squares: f64 = channels.iter().flatten().map(|value| f64::from(*value) * f64::from(*value)).sum();
-        Difference { greatest, count, mean_square: squares / (4 * channels.len().max(1)) as f64, pixels }
+    fn of(images: impl Iterator<Item = ([f32; 4], [f32; 4])>) -> Self {
+        let mut difference = Difference { pixels: Vec::new(), greatest: 0.0, count: 0, mean_square: 0.0 };
+        difference.pixels.reserve_exact(images.size_hint().0);
+        let mut squares = 0.0;
+        for (a, b) in images {
+            let channels: [f32; 4] = std::array::from_fn(|channel| (a[channel] - b[channel]).abs());
+            let greatest = channels.into_iter().fold(0.0, f32::max);
+            squares += channels.iter().map(|value| f64::from(*value) * f64::from(*value)).sum::<f64>();
+            difference.greatest = difference.greatest.max(greatest);
+            difference.count += usize::from(greatest > 0.5 / 255.0);
+            difference.pixels.push(greatest);
+        }
+        difference.mean_square = squares / (4 * difference.pixels.len().max(1)) as f64;
+        difference
     }
 
     /// Returns the peak signal-to-noise ratio over all channels in dB. `None`: the images are equal.
@@ -104,13 +117,13 @@ impl Difference {
         (self.mean_square > 0.0).then(|| -10.0 * self.mean_square.log10())
     }
 
-    /// Returns the heat map.
-    fn heat(&self) -> Vec<[f32; 4]> {
+    /// Returns the pixels of the heat map.
+    fn heat(&self) -> impl Iterator<Item = [f32; 4]> {
         let scale = 3.0 / self.greatest.max(1.0e-6);
-        let heat = |value: &f32| {
+        let heat = move |value: &f32| {
             let channel = |from: f32| (value * scale - from).clamp(0.0, 1.0);
             [channel(0.0), channel(1.0), channel(2.0), 1.0]
         };
-        self.pixels.iter().map(heat).collect()
+        self.pixels.iter().map(heat)
     }
 }

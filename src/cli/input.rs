@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fragbuf::load::{Description, load};
-use fragbuf::{Registry, Variant};
+use fragbuf::{Registry, Variant, source_file};
 
 use super::output::Failure;
 
@@ -17,14 +17,12 @@ impl Input {
     /// Reads the technique of this key, or the file of this name.
     pub(crate) fn read(argument: &str, registry: &Registry) -> Result<Self, Failure> {
         let path = Path::new(argument);
-        let is_file = path.extension().is_some_and(|extension| extension == "fragbuf") || path.is_file();
+        let is_file =
+            path.extension().is_some_and(|extension| extension == "fragbuf") || (path.exists() && !path.is_dir());
         if registry.technique(argument).is_some() || !is_file {
             return Ok(Input { description: Description::Technique(argument.to_owned()), sources: Vec::new() });
         }
-        let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::InvalidData => Failure::Files(format!("{argument}: the file is not UTF-8")),
-            _ => Failure::files(path, &error),
-        })?;
+        let text = source_file::read(path).map_err(|error| Failure::files(path, &error))?;
         let description = Description::Text { file: argument.to_owned(), text };
         Ok(Input { description, sources: Vec::new() })
     }

@@ -16,6 +16,8 @@ mod generate;
 mod input;
 mod language;
 mod list;
+#[cfg(feature = "pictures")]
+mod memory;
 mod output;
 mod page;
 #[cfg(feature = "pictures")]

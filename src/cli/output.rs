@@ -50,6 +50,7 @@ impl From<fragbuf_scene::Error> for Failure {
         let text = error.to_string();
         match error {
             fragbuf_scene::Error::Unreadable { .. } => Failure::Files(text),
+            fragbuf_scene::Error::TooLarge { .. } => Failure::Device(format!("{text} (`--memory`)")),
             fragbuf_scene::Error::Malformed { .. } => Failure::Input(text),
             fragbuf_scene::Error::Unknown(_) => Failure::Usage(text),
         }

@@ -1,4 +1,4 @@
-//! Blends colours over a background, encodes them and writes them as a PNG.
+//! Blends colours over a background, encodes them and writes them as a PNG, pixel by pixel: there is no second image in memory.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -6,10 +6,10 @@ use std::path::Path;
 
 use super::output::Failure;
 
-/// Blends premultiplied linear colours over a background. Returns straight values from 0 to 1: linear, or sRGB with linear
+/// Blends a premultiplied linear colour over a background. Returns straight values from 0 to 1: linear, or sRGB with linear
 /// alpha.
-pub(crate) fn displayed(pixels: &[[f32; 4]], background: [f32; 4], linear: bool) -> Vec<[f32; 4]> {
-    pixels.iter().map(|pixel| encoded(over(*pixel, background), linear)).collect()
+pub(crate) fn displayed(pixel: [f32; 4], background: [f32; 4], linear: bool) -> [f32; 4] {
+    encoded(over(pixel, background), linear)
 }
 
 /// Returns the straight colour of a premultiplied colour over a straight one.
@@ -33,14 +33,13 @@ fn srgb(value: f32) -> f32 {
     if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Writes values from 0 to 1 to a PNG, as 8 bits each.
+/// Writes values from 0 to 1 to a PNG, as 8 bits each: those of one pixel after the other, row by row from the top.
 pub(crate) fn write(
     path: &Path,
     (width, height): (u32, u32),
-    pixels: &[[f32; 4]],
+    pixels: &mut dyn Iterator<Item = [f32; 4]>,
     linear: bool,
 ) -> Result<(), Failure> {
-    let bytes: Vec<u8> = pixels.iter().flatten().map(|value| (255.0 * value).round() as u8).collect();
     let failed = |error: &dyn std::fmt::Display| Failure::Files(format!("{}: {error}", path.display()));
     let file = File::create(path).map_err(|error| Failure::files(path, &error))?;
     let mut file = BufWriter::new(file);
@@ -52,7 +51,14 @@ pub(crate) fn write(
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     }
     let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
-    writer.write_image_data(&bytes).map_err(|error| failed(&error))?;
+    let mut stream = writer.stream_writer().map_err(|error| failed(&error))?;
+    let mut row = Vec::with_capacity(4 * width as usize);
+    for _ in 0..height {
+        row.clear();
+        row.extend(pixels.take(width as usize).flatten().map(|value| (255.0 * value).round() as u8));
+        stream.write_all(&row).map_err(|error| Failure::files(path, &error))?;
+    }
+    stream.finish().map_err(|error| failed(&error))?;
     writer.finish().map_err(|error| failed(&error))?;
     file.flush().map_err(|error| Failure::files(path, &error))
 }

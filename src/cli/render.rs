@@ -36,11 +36,12 @@ impl Render {
             uniforms: &self.uniforms,
             count_all: view.json,
             opaque: opaque.as_ref(),
+            held: 0,
         };
         let result = render(&request, view, &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
-        let pixels = picture::displayed(&result.stats.pixels, view.background, view.linear);
-        picture::write(&view.out, view.size, &pixels, view.linear)?;
+        let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
+        picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
         drop(progress);
         if view.json {
             output::print(&output::json(&statistics(&self.description, &result, &scene)))?;

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use fragbuf_cpu::FragmentOrder;
-use fragbuf_scene::{BUILTIN_SCENES, Camera, Scene};
+use fragbuf_scene::{BUILTIN_SCENES, Camera, Limits, Scene};
 
 use super::device::{self, DeviceRequest, SelectedDevice};
+use super::memory::{self, Budget};
 use super::output::Failure;
 
 #[derive(clap::Args)]
@@ -46,6 +47,10 @@ pub(crate) struct View {
     /// tests and blending keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
     order: Option<FragmentOrder>,
+    /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
+    /// slices of rows
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
+    memory: Budget,
     /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
@@ -75,22 +80,33 @@ pub(crate) struct SceneView {
 impl View {
     /// Loads or generates the scene and the opaque scene, whose alpha becomes 1. The camera frames both.
     pub(crate) fn scene_views(&self) -> Result<(SceneView, Option<SceneView>), Failure> {
-        let scene = fragbuf_scene::open(&self.scene, self.color)?;
+        let scene = fragbuf_scene::open(&self.scene, self.color, &Limits { memory: self.memory.left() })?;
         let Some(opaque) = &self.opaque else {
-            let camera = self.camera(&scene);
+            let camera = self.camera(&[&scene]);
             return Ok((self.scene_view(scene, camera), None));
         };
-        let mut opaque = fragbuf_scene::open(opaque, self.color)?;
+        let rest = self.memory.without(scene.bytes(), "the scene")?;
+        let mut opaque = fragbuf_scene::open(opaque, self.color, &Limits { memory: rest.left() })?;
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
-        let both = Scene { objects: scene.objects.iter().chain(&opaque.objects).cloned().collect() };
-        let camera = self.camera(&both);
+        let camera = self.camera(&[&scene, &opaque]);
         Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
     }
 
-    fn camera(&self, scene: &Scene) -> Camera {
+    /// Returns the memory that is left beside scenes.
+    pub(crate) fn memory_beside(&self, scenes: &[&SceneView]) -> Result<Budget, Failure> {
+        let bytes = scenes.iter().fold(0, |sum: u64, view| sum.saturating_add(view.scene.bytes()));
+        self.memory.without(bytes, "the scene")
+    }
+
+    /// Returns the bytes of `bytes` bytes per pixel of the image.
+    pub(crate) fn image_bytes(&self, bytes: u64) -> u64 {
+        (u64::from(self.size.0) * u64::from(self.size.1)).saturating_mul(bytes)
+    }
+
+    fn camera(&self, scenes: &[&Scene]) -> Camera {
         match self.camera {
-            CameraArgument::Auto => Camera::framing(scene, self.size.0 as f32 / self.size.1 as f32),
+            CameraArgument::Auto => Camera::framing(scenes, self.size.0 as f32 / self.size.1 as f32),
             CameraArgument::Clip => Camera::clip(),
         }
     }

@@ -1,7 +1,7 @@
 //! Renders a task on the CPU device, which needs no driver.
 //!
 //! Input: a task and the order of fragments. Output: the result, redrawn with a larger pool until no fragment is lost to
-//! overflow.
+//! overflow, in slices as high as the memory budget allows.
 
 use std::sync::Arc;
 
@@ -18,6 +18,9 @@ use crate::cli::input::Input;
 use crate::cli::output::{Failure, warn};
 use crate::cli::uniforms;
 
+/// The bytes per pixel of an [`OpaqueImage`].
+const OPAQUE_IMAGE: u64 = 16 + 4;
+
 /// Renders the task.
 pub(super) fn render(
     task: &RenderTask<'_>,
@@ -25,20 +28,33 @@ pub(super) fn render(
     (input, registry): (&Input, &Registry),
     redraw: &mut RedrawState,
 ) -> Result<RenderResult, Failure> {
-    let RenderTask { request, view, scene, progress, variant, opaque } = task;
+    let RenderTask { request, view, scene, progress, variant, opaque, memory } = task;
     progress.set_message(format!("{}: compiling", request.description));
     let code = Code::of(variant, registry).map_err(|error| failure(error, |errors| input.failure(errors)))?;
     let code = Arc::new(code);
     let external = external_textures(&code.plan, *opaque)?;
     let opaque = opaque.map(|opaque| render_opaque(task, opaque, order, registry)).transpose()?;
-    let geometry = geometry(&scene.scene, &code.plan)?;
+    let geometry = geometry(&scene.scene, &code.plan, *memory)?;
     let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
+    let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
+    let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?.left();
     let uniforms = uniforms::values(request.uniforms, variant)?;
     let (width, height) = view.size;
     loop {
         let sizing = redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
-        let settings = Settings { width, height, sizing, order };
-        let mut device = Device::new(code.clone(), settings)?;
+        let slice = redraw.slice;
+        let settings = Settings { sizing, order, slice, memory, ..Settings::new(width, height) };
+        let mut device = match Device::new(code.clone(), settings) {
+            // A pool for all fragments of so many rows is too large.
+            Err(error) if is_too_large(&error) && redraw.pool_size.is_some() => {
+                if redraw.halve(slice.unwrap_or(height)) {
+                    continue;
+                }
+                return Err(error.into());
+            }
+            created => created?,
+        };
+        let rows = height.div_ceil(device.slices());
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
         }
@@ -49,16 +65,23 @@ pub(super) fn render(
         device.set_camera(&scene.camera.view_projection);
         redraw.frames += 1;
         let frame = redraw.frames;
-        let picture = device.render(&mesh, &|now| {
+        let drawn = device.render(&mesh, &|now| {
             progress.set_fraction(|| format!("{}: frame {frame}, pass {}", request.description, now.pass), now.share);
-        })?;
-        let overflow = picture.counters.as_ref().map_or(0, |counters| counters.get(POOL_EXHAUSTED));
+        });
+        let picture = match drawn {
+            // The slice has more fragments than the budget allows.
+            Err(error) if is_too_large(&error) && redraw.halve(rows) => continue,
+            drawn => drawn?,
+        };
+        let overflow = picture.slice_counters.iter().map(|counters| counters.get(POOL_EXHAUSTED)).max().unwrap_or(0);
         if overflow > 0 {
             // Every fragment that did not fit was counted, so the count gives the size of the next pool.
             let needed = device.pool_size_after(overflow);
-            let fragments = u32::try_from(needed);
-            redraw.pool_size =
-                Some(fragments.map_err(|_| Failure::Device(format!("{needed} fragments are too many")))?);
+            match u32::try_from(needed) {
+                Ok(fragments) => redraw.pool_size = Some(fragments),
+                Err(_) if redraw.halve(rows) => {}
+                Err(_) => return Err(Failure::Device(format!("{needed} fragments in one row are too many"))),
+            }
             continue;
         }
         for pass in &picture.out_of_bounds {
@@ -69,7 +92,7 @@ pub(super) fn render(
             counters: picture.counters,
             times: view.json.then_some(picture.times),
             bytes: device.allocated_bytes(),
-            slices: 1,
+            slices: device.slices(),
             loops: picture.loops,
         };
         return Ok(RenderResult {
@@ -82,6 +105,13 @@ pub(super) fn render(
             frames: redraw.frames,
         });
     }
+}
+
+/// Returns whether half as many rows may fit.
+fn is_too_large(error: &Error) -> bool {
+    use fragbuf_frame::Error as FrameError;
+    let is_size = |error: &FrameError| matches!(error, FrameError::TooLarge { .. } | FrameError::OverBudget(_));
+    matches!(error, Error::OutOfMemory { .. }) || matches!(error, Error::Frame(error) if is_size(error))
 }
 
 /// The image of the opaque scene and its depth buffer.
@@ -102,9 +132,11 @@ fn render_opaque(
     let code =
         Code::of(&opaque.variant, registry).map_err(|error| failure(error, |errors| opaque.input.failure(errors)))?;
     let code = Arc::new(code);
-    let geometry = geometry(&opaque.scene.scene, &code.plan)?;
+    let geometry = geometry(&opaque.scene.scene, &code.plan, task.memory)?;
     let (width, height) = task.view.size;
-    let mut device = Device::new(code.clone(), Settings { width, height, sizing: Sizing::Auto, order })?;
+    let depths = task.view.image_bytes(size_of::<f32>() as u64);
+    let memory = geometry.memory.without(depths, "the depth buffer of the opaque scene")?.left();
+    let mut device = Device::new(code.clone(), Settings { order, memory, ..Settings::new(width, height) })?;
     device.set_camera(&opaque.scene.camera.view_projection);
     let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
     let pixels = device.render(&mesh, &|_| {})?.pixels;

@@ -1,7 +1,7 @@
 //! Renders a task on an adapter of wgpu's: a GPU or a software driver.
 //!
 //! Input: a task and the chosen adapter. Output: the result, redrawn with a larger pool until no fragment is lost to
-//! overflow, in slices as high as the device's memory allows.
+//! overflow, in slices as high as the device's limits and the memory budget allow.
 
 use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, tier};
 use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
@@ -77,30 +77,37 @@ impl GpuRenderer {
         opaque: Option<OpaqueImage>,
         redraw: &mut RedrawState,
     ) -> Result<RenderResult, Failure> {
-        let RenderTask { request, view, scene, progress, variant, opaque: opaque_scene } = task;
+        let RenderTask { request, view, scene, progress, variant, opaque: opaque_scene, memory } = task;
         let external = external_textures(&self.shaders.plan, *opaque_scene)?;
         let (width, height) = view.size;
         let Headless { device, queue, .. } = &self.headless;
         progress.set_message(format!("{}: creating pipelines", request.description));
-        let mesh = Mesh::upload(device, queue, &geometry(&scene.scene, &self.shaders.plan)?)?;
+        let geometry = geometry(&scene.scene, &self.shaders.plan, *memory)?;
+        let mesh = Mesh::upload(device, queue, &geometry)?;
+        let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
+        let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?;
+        let memory = memory.without(view.image_bytes(IMAGE), "the image")?.left();
+        drop(geometry);
         let settings = Settings {
+            memory,
             timestamps: view.json,
             interlock: self.headless.interlock,
             ..Settings::new(BLENDED, width, height)
         };
         let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
         let uniforms = uniforms::values(request.uniforms, variant)?;
-        let (mut slice, mut rows) = (None, height);
         let stats = loop {
             let sizing =
                 redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
+            let slice = redraw.slice;
             let settings = Settings { sizing, slice, ..settings.clone() };
             let mut renderer = match block_on(device, Renderer::with(device, queue, &pipelines, &settings))? {
-                // A pool for all fragments of so many rows is too large: halve the slices.
-                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if redraw.pool_size.is_some() && rows > 1 => {
-                    rows = rows.div_ceil(2);
-                    (slice, redraw.pool_size) = (Some(rows), None);
-                    continue;
+                // A pool for all fragments of so many rows is too large.
+                Err(error) if is_too_large(&error) && redraw.pool_size.is_some() => {
+                    if redraw.halve(slice.unwrap_or(height)) {
+                        continue;
+                    }
+                    return Err(error.into());
                 }
                 created => created?,
             };
@@ -113,15 +120,12 @@ impl GpuRenderer {
             redraw.frames += 1;
             let (frame, slices) = (redraw.frames, renderer.slices());
             progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
-            rows = height.div_ceil(slices);
+            let rows = height.div_ceil(slices);
             match self.frame(&mut renderer, scene, &mesh, view.size) {
                 Ok(FrameOutcome::PoolExhausted { needed }) => redraw.pool_size = Some(needed),
                 Ok(FrameOutcome::Complete(stats)) => break stats,
-                // There are more fragments than a buffer may hold. Half as many rows have fewer.
-                Err(Error::TooLarge { .. } | Error::OutOfMemory { .. }) if rows > 1 => {
-                    rows = rows.div_ceil(2);
-                    (slice, redraw.pool_size) = (Some(rows), None);
-                }
+                // The slice has more fragments than a buffer or the budget allows.
+                Err(error) if is_too_large(&error) && redraw.halve(rows) => {}
                 Err(error) => return Err(error.into()),
             }
         };
@@ -150,8 +154,11 @@ impl GpuRenderer {
         let generation =
             generate(&opaque.variant, &request, registry).map_err(|errors| opaque.input.failure(errors))?;
         let shaders = Shaders::from_generation(&generation, TARGETS[0].name, 0)?;
-        let mesh = Mesh::upload(device, queue, &geometry(&opaque.scene.scene, &shaders.plan)?)?;
-        let settings = Settings::new(BLENDED, width, height);
+        let geometry = geometry(&opaque.scene.scene, &shaders.plan, task.memory)?;
+        let mesh = Mesh::upload(device, queue, &geometry)?;
+        let memory = geometry.memory.without(task.view.image_bytes(IMAGE), "the image of the opaque scene")?.left();
+        // In one slice: the next slice would clear the depth buffer of the former one.
+        let settings = Settings { memory, slice: Some(height), ..Settings::new(BLENDED, width, height) };
         let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
         match self.frame(&mut renderer, opaque.scene, &mesh, task.view.size)? {
             FrameOutcome::Complete(FrameStats { pixels, .. }) => {
@@ -210,6 +217,17 @@ impl GpuRenderer {
         }))
     }
 }
+
+/// Returns whether half as many rows may fit.
+fn is_too_large(error: &Error) -> bool {
+    matches!(error, Error::TooLarge { .. } | Error::OutOfMemory { .. } | Error::OverBudget(_))
+}
+
+/// The bytes per pixel of an image: four halves on the device, and four floats.
+const IMAGE: u64 = 8 + 16;
+
+/// The bytes per pixel of an [`OpaqueImage`].
+const OPAQUE_IMAGE: u64 = 16 + 4;
 
 /// The image of the opaque scene and its depth buffer.
 struct OpaqueImage {

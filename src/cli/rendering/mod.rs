@@ -37,6 +37,8 @@ pub(crate) fn render(
     let registry = Registry::builtin();
     let selected = view.select_device()?;
     let mut input = Input::read(request.description, &registry)?;
+    let scenes: Vec<&SceneView> = std::iter::once(scene).chain(request.opaque).collect();
+    let memory = view.memory_beside(&scenes)?.without(request.held, "the other image")?;
     let opaque = request.opaque.map(|scene| OpaqueScene::new(scene, &registry)).transpose()?;
     let unrounded = needs_unrounded_colors(scene);
     let mut defaults: Vec<(&str, &str)> = Vec::new();
@@ -53,7 +55,7 @@ pub(crate) fn render(
         let variant = input.variant_with_defaults(&set, &defaults, &registry)?;
         // Later iterations set the layers themselves.
         let has_fixed_layers = *has_fixed_layers.get_or_insert_with(|| sets_layers(&variant));
-        let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: opaque.as_ref() };
+        let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: opaque.as_ref(), memory };
         let mut result = match &selected {
             SelectedDevice::Cpu(order) => cpu::render(&task, *order, (&input, &registry), &mut redraw)?,
             #[cfg(feature = "gpu")]

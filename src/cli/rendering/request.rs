@@ -3,6 +3,7 @@
 use fragbuf::Variant;
 
 use super::opaque::OpaqueScene;
+use crate::cli::memory::Budget;
 use crate::cli::progress::Progress;
 use crate::cli::view::{SceneView, View};
 
@@ -15,6 +16,8 @@ pub(crate) struct RenderRequest<'a> {
     pub(crate) count_all: bool,
     /// The opaque scene, which is rendered first.
     pub(crate) opaque: Option<&'a SceneView>,
+    /// The bytes of other images that the command holds meanwhile.
+    pub(crate) held: u64,
 }
 
 /// One checked description to render on one device.
@@ -25,6 +28,8 @@ pub(super) struct RenderTask<'a> {
     pub(super) progress: &'a Progress,
     pub(super) variant: &'a Variant,
     pub(super) opaque: Option<&'a OpaqueScene<'a>>,
+    /// The memory that is left for vertices, images and frames.
+    pub(super) memory: Budget,
 }
 
 /// The state that redraws of one request share.
@@ -34,4 +39,17 @@ pub(super) struct RedrawState {
     pub(super) frames: u32,
     /// Fragments to reserve in the pool; `None` before a frame has shown how many are needed.
     pub(super) pool_size: Option<u32>,
+    /// The rows of a slice; `None`: as many as fit.
+    pub(super) slice: Option<u32>,
+}
+
+impl RedrawState {
+    /// Halves slices of `rows` rows, because what they hold does not fit; returns whether they can be halved. Half as many rows
+    /// have fewer fragments, so the former size of the pool is void.
+    pub(super) fn halve(&mut self, rows: u32) -> bool {
+        if rows > 1 {
+            (self.slice, self.pool_size) = (Some(rows.div_ceil(2)), None);
+        }
+        rows > 1
+    }
 }

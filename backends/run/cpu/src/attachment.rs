@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use fragbuf_frame::{Error, unsupported};
 use fragbuf_templates::vocabulary::{Blend, Compare, DepthState, Element, Pass, StencilOperation, TextureFormat};
 
+use crate::memory::Slice;
 use crate::texel::Texel;
 
 /// The attachments of a pass.
@@ -31,6 +32,8 @@ pub(crate) struct ColorAttachment<'a> {
     pub(crate) words: &'a [AtomicU32],
     pub(crate) texel: Texel,
     pub(crate) blend: Blend,
+    /// The pixel of the first texel: the output has the rows of a slice, a texture those of the frame.
+    pub(crate) first: usize,
 }
 
 /// A depth attachment and its test.
@@ -64,8 +67,9 @@ impl<'a> Attachments<'a> {
         pass: &Pass,
         [samples, mask, reference]: [u32; 3],
         textures: Textures<'_, 'a>,
-        (output, pixels): (&'a [AtomicU32], usize),
+        (output, slice): (&'a [AtomicU32], &Slice),
     ) -> Result<Self, Error> {
+        let pixels = slice.size.0 as usize * slice.size.1 as usize;
         if ![1, 2, 4, 8].contains(&samples) {
             return Err(unsupported(format!("{samples} samples per pixel")));
         }
@@ -80,18 +84,18 @@ impl<'a> Attachments<'a> {
             Ok((words, format))
         };
         let target = |target: &fragbuf_templates::vocabulary::ColorTarget| {
-            let (words, texel) = match target.resource.as_str() {
+            let (words, texel, first) = match target.resource.as_str() {
                 OUTPUT if samples > 1 => return Err(unsupported("a multisampled output".to_owned())),
-                OUTPUT => (output, Texel::Output),
+                OUTPUT => (output, Texel::Output, slice.first_pixel()),
                 name => {
                     let (words, format) = texture(name)?;
-                    (words, Texel::Format(format))
+                    (words, Texel::Format(format), 0)
                 }
             };
             if texel.is_integer() && target.blend != Blend::Replace {
                 return Err(unsupported(format!("blending of integers in `{}`", target.resource)));
             }
-            Ok(ColorAttachment { words, texel, blend: target.blend })
+            Ok(ColorAttachment { words, texel, blend: target.blend, first })
         };
         let depth = |state: &DepthState| {
             let (words, format) = texture(&state.resource)?;
@@ -119,12 +123,13 @@ impl<'a> Attachments<'a> {
 impl ColorAttachment<'_> {
     /// Returns the words of the texel `index`.
     pub(crate) fn load(&self, index: usize) -> [u32; 4] {
-        self.texel.load(self.words, index)
+        self.texel.load(self.words, index.saturating_sub(self.first))
     }
 
     pub(crate) fn store(&self, index: usize, texel: [u32; 4]) {
-        let words = self.texel.words();
-        for (stored, word) in self.words.iter().skip(index * words).zip(texel).take(words) {
+        let (words, index) = (self.texel.words(), index.saturating_sub(self.first));
+        let Some(stored) = index.checked_mul(words).and_then(|at| self.words.get(at..)) else { return };
+        for (stored, word) in stored.iter().zip(texel).take(words) {
             stored.store(word, Ordering::Relaxed);
         }
     }

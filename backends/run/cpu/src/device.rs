@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{
-    Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform, unsupported, zero_uniforms,
+    MemoryLimits, Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform, unsupported,
+    zero_uniforms,
 };
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
-use crate::memory::{Memory, read};
+use crate::memory::{Memory, memory_limits, read};
 use crate::settings::Settings;
 use crate::{Code, Error};
 
@@ -20,6 +21,7 @@ pub struct Device {
     pub(crate) code: Arc<Code>,
     pub(crate) settings: Settings,
     pub(crate) values: Values,
+    pub(crate) limits: MemoryLimits,
     pub(crate) readbacks: Readbacks,
     pub(crate) memory: Memory,
     pub(crate) uniforms: Vec<u32>,
@@ -33,20 +35,23 @@ pub struct Device {
 const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 impl Device {
-    /// Allocates the resources of a frame.
+    /// Allocates the resources of a frame, in slices that fit into the memory of the settings.
     pub fn new(code: Arc<Code>, settings: Settings) -> Result<Self, Error> {
         if settings.width == 0 || settings.height == 0 || settings.width.max(settings.height) > MAX_SIDE {
             let expected = format!("from 1 to {MAX_SIDE} pixels along each side");
             return Err(fragbuf_frame::Error::BadValue { name: "the size of the frame".to_owned(), expected }.into());
         }
         let (values, readbacks) = initial_values(&code.plan, (settings.width, settings.height), settings.sizing)?;
+        let limits = memory_limits(settings.memory);
+        let values = values.with_rows(limits.rows(&code.plan, &values, settings.slice)?);
         let mut memory = Memory::default();
-        memory.resize(&code.plan, &values)?;
+        memory.resize(&code.plan, &values, &limits)?;
         let uniforms = zero_uniforms(&code.plan.variant.uniforms);
         let resources = code.plan.resources.iter().enumerate();
         let missing = resources.filter(|(_, planned)| planned.is_external()).map(|(index, _)| index).collect();
         let (camera, objects) = (Vec::new(), Vec::new());
-        let mut device = Device { code, settings, values, readbacks, memory, uniforms, camera, objects, missing };
+        let mut device =
+            Device { code, settings, values, limits, readbacks, memory, uniforms, camera, objects, missing };
         device.set_camera(&IDENTITY);
         Ok(device)
     }
@@ -98,7 +103,13 @@ impl Device {
         &self.code.plan
     }
 
-    /// Returns the words of a resource after the last frame; `None` if the plan does not have it.
+    /// Returns the number of slices of the frame.
+    pub fn slices(&self) -> u32 {
+        self.values.slices()
+    }
+
+    /// Returns the words of a resource after the last frame; `None` if the plan does not have it. A texture has the whole frame; a
+    /// buffer has the last slice.
     pub fn words(&self, name: &str) -> Option<Vec<u32>> {
         let id = resource(&self.code.plan, name).ok()?;
         self.memory.resources.get(id.0).map(|words| read(words))

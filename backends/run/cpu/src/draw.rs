@@ -27,8 +27,11 @@ pub(crate) struct DrawResult {
     pub(crate) out_of_bounds: Option<OutOfBoundsAccess>,
 }
 
-/// The number of triangles that are set up and binned at a time. A shuffled pixel needs all triangles at once.
+/// The number of triangles that are set up at a time. A shuffled pixel needs all triangles at once.
 const BATCH: usize = 1 << 17;
+
+/// The entries of the lists of triangles of all tiles at which a batch is divided.
+const ENTRIES: usize = 1 << 22;
 
 /// Runs a draw call; calls `done` for every tile. `Err`: an unsupported construct, or a shader that does not terminate.
 pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<DrawResult, String> {
@@ -36,39 +39,51 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
     let (inputs, rate) = fragment_inputs(draw.vertex.0, draw.fragment.0)?;
     let outputs = fragment_outputs(draw.fragment.0)?;
     let (numbers, count) = (draw.numbers(), draw.vertex_count());
-    let batch = if draw.order == FragmentOrder::Submission { BATCH } else { numbers.len().max(1) };
+    let (batch, entries) = match draw.order {
+        FragmentOrder::Submission => (BATCH, ENTRIES),
+        FragmentOrder::Shuffled(_) => (numbers.len().max(1), usize::MAX),
+    };
     let results = TileResults::default();
     for instance in draw.arguments.instances.clone() {
         let mut words = vertices::run((draw.vertex.0, &draw.vertex.1), draw.vertices, count, instance)?;
         for numbers_of_batch in numbers.chunks(batch) {
             let share = numbers_of_batch.len() as f64 / numbers.len() as f64 / draw.arguments.instances.len() as f64;
             let triangles = triangles(draw, &layout, &mut words, count, numbers_of_batch);
-            let bins = Bins::of(&triangles, draw.size);
             let stage = FragmentStage { program: draw.fragment.0, inputs: &inputs, vertices: &words };
-            let tiles = FragmentBatch {
-                draw,
-                stage,
-                rate,
-                outputs: &outputs,
-                triangles: &triangles,
-                bins: &bins,
-                results: &results,
-            };
-            let part = share / bins.tiles.len().max(1) as f64;
-            bins.tiles.par_iter().for_each_init(
-                || (stage.machine(), draw.fragment.1.clone()),
-                |(machine, view), bin| {
-                    tiles.run(bin, machine, view);
-                    done(part);
-                },
-            );
-            if results.endless.load(Ordering::Relaxed) > 0 {
-                return Err("a fragment shader that does not terminate".to_owned());
+            let (mut rest, all) = (triangles.as_slice(), triangles.len() as f64);
+            while !rest.is_empty() {
+                let bins = Bins::of(rest, draw.size, &draw.rows, entries);
+                let tiles = FragmentBatch {
+                    draw,
+                    stage,
+                    rate,
+                    outputs: &outputs,
+                    triangles: rest,
+                    bins: &bins,
+                    results: &results,
+                };
+                let part = share * bins.sorted as f64 / all / bins.tiles.len().max(1) as f64;
+                run(&tiles, &|| done(part));
+                if results.endless.load(Ordering::Relaxed) > 0 {
+                    return Err("a fragment shader that does not terminate".to_owned());
+                }
+                rest = rest.get(bins.sorted..).unwrap_or_default();
             }
         }
     }
     let out_of_bounds = results.out_of_bounds.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(DrawResult { samples: results.samples.into_inner(), out_of_bounds })
+}
+
+/// Runs the tiles of a batch in parallel; calls `done` for every tile.
+fn run(batch: &FragmentBatch<'_>, done: &(dyn Fn() + Sync)) {
+    batch.bins.tiles.par_iter().for_each_init(
+        || (batch.stage.machine(), batch.draw.fragment.1.clone()),
+        |(machine, view), bin| {
+            batch.run(bin, machine, view);
+            done();
+        },
+    );
 }
 
 /// Sets up the triangles with these numbers. Appends the words of clipped corners to those of the vertices.

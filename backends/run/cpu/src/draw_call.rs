@@ -20,6 +20,8 @@ pub(crate) struct DrawCall<'a> {
     pub(crate) indices: Option<&'a [u32]>,
     pub(crate) arguments: DrawArguments,
     pub(crate) size: (u32, u32),
+    /// The rows of the slice.
+    pub(crate) rows: Range<u32>,
     pub(crate) attachments: Attachments<'a>,
     pub(crate) coverage: Coverage,
     pub(crate) order: FragmentOrder,

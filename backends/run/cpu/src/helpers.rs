@@ -1,8 +1,10 @@
-//! Runs the helper invocations beside the last column and the last row, as GPUs do: shaders run in quads of 2 x 2 pixels.
+//! Runs the helper invocations beside the last column and beside the first and last row of a slice, as GPUs do: shaders run in
+//! quads of 2 x 2 pixels.
 //!
-//! The fragments of a tile run first, so helper invocations find what they left in memory. Quads inside of the frame have
-//! helper invocations too, but those run at pixels of the frame, where fragments run as well.
+//! The fragments of a tile run first, so helper invocations find what they left in memory. Quads inside of the slice have
+//! helper invocations too, but those run at pixels of the slice, where fragments run as well.
 
+use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation, Reply, SharedMemory, WordAddress};
@@ -43,16 +45,19 @@ impl SharedMemory for Unchanged<'_, '_> {
 }
 
 impl<'a> FragmentBatch<'a> {
-    /// Runs the helper invocations of a tile that are outside of the frame. They may read out of bounds, which has no effect.
+    /// Runs the helper invocations of a tile that are outside of the slice. They may read out of bounds, which has no effect.
     pub(crate) fn run_helpers(&self, bin: &Bin, machine: &mut Machine<'a>, view: &View<'_>) {
-        let (width, height) = self.draw.size;
-        let [_, x1, _, y1] = bin.rectangle;
-        if (x1 < width || width % 2 == 0) && (y1 < height || height % 2 == 0) {
+        let (width, rows) = (self.draw.size.0, &self.draw.rows);
+        let [_, x1, y0, y1] = bin.rectangle;
+        let is_right = x1 == width && width % 2 == 1;
+        let is_top = y0 == rows.start && y0 % 2 == 1;
+        let is_bottom = y1 == rows.end && y1 % 2 == 1;
+        if !is_right && !is_top && !is_bottom {
             return;
         }
         machine.is_helper = true;
         self.for_each_fragment(bin, |triangle, position| {
-            for [x, y] in outside_of_frame([position.x, position.y], [width, height]) {
+            for [x, y] in outside_of_slice([position.x, position.y], width, rows) {
                 if self.results.endless.load(Ordering::Relaxed) > 0 {
                     return;
                 }
@@ -68,10 +73,10 @@ impl<'a> FragmentBatch<'a> {
     }
 }
 
-/// Returns the pixels outside of the frame that share an edge and a quad with this pixel and, if there are two, the one
+/// Returns the pixels outside of the slice that share an edge and a quad with this pixel and, if there are two, the one
 /// between them.
-fn outside_of_frame([x, y]: [u32; 2], [width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
-    let (is_beside, is_below) = ((x ^ 1) >= width, (y ^ 1) >= height);
+fn outside_of_slice([x, y]: [u32; 2], width: u32, rows: &Range<u32>) -> impl Iterator<Item = [u32; 2]> {
+    let (is_beside, is_below) = ((x ^ 1) >= width, !rows.contains(&(y ^ 1)));
     let beside = is_beside.then_some([x ^ 1, y]);
     let below = is_below.then_some([x, y ^ 1]);
     let between = (is_beside && is_below).then_some([x ^ 1, y ^ 1]);

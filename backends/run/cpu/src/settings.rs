@@ -1,8 +1,8 @@
 //! The settings of a device.
 
-use fragbuf_frame::Sizing;
+use fragbuf_frame::{DEFAULT_MEMORY, Sizing};
 
-/// The size of a frame, the sizing of its pools and the order of its fragments.
+/// The settings of a device. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// The width of the frame in pixels.
@@ -13,6 +13,27 @@ pub struct Settings {
     pub sizing: Sizing,
     /// The order in which the fragments of a pixel run.
     pub order: FragmentOrder,
+    /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole mesh. `None`: as many rows as
+    /// `memory` allows.
+    pub slice: Option<u32>,
+    /// The bytes that a frame may allocate: the plan's buffers and textures, and the image. The mesh, and the lists of one batch
+    /// of its triangles, are not part of them. Default: [`DEFAULT_MEMORY`], 2 GiB.
+    pub memory: u64,
+}
+
+impl Settings {
+    /// Returns the defaults for a frame of `width` × `height` pixels: automatic sizing, submission order, slices as high as 2 GiB
+    /// allow.
+    pub fn new(width: u32, height: u32) -> Self {
+        Settings {
+            width,
+            height,
+            sizing: Sizing::Auto,
+            order: FragmentOrder::Submission,
+            slice: None,
+            memory: DEFAULT_MEMORY,
+        }
+    }
 }
 
 /// The order in which the fragments of a pixel run.

@@ -1,6 +1,8 @@
-//! Tiles: the triangles that overlap each part of the frame, and the pixels that a triangle covers.
+//! Tiles: the triangles that overlap each part of a slice of the frame, and the pixels that a triangle covers.
 //!
 //! Lists of triangles keep the submission order.
+
+use std::ops::Range;
 
 use fragbuf_templates::vocabulary::Coverage;
 
@@ -15,6 +17,8 @@ pub(crate) type Rectangle = [u32; 4];
 /// The triangles of each tile that has any.
 pub(crate) struct Bins {
     pub(crate) tiles: Vec<Bin>,
+    /// The number of sorted triangles, the first of the list.
+    pub(crate) sorted: usize,
     /// The numbers of triangles, tile after tile.
     numbers: Vec<u32>,
 }
@@ -22,18 +26,24 @@ pub(crate) struct Bins {
 /// The range of the list that belongs to one tile.
 pub(crate) struct Bin {
     pub(crate) rectangle: Rectangle,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
 }
 
 impl Bins {
-    /// Sorts triangles into tiles.
-    pub(crate) fn of(triangles: &[Triangle], (width, height): (u32, u32)) -> Self {
+    /// Sorts triangles into the tiles of the rows `slice` of a frame, until the lists of the tiles have `limit` entries or more: a
+    /// large frame has many tiles, and a triangle may touch all of them.
+    pub(crate) fn of(triangles: &[Triangle], (width, height): (u32, u32), slice: &Range<u32>, limit: usize) -> Self {
         let columns = width.div_ceil(SIDE) as usize;
-        let rows = height.div_ceil(SIDE) as usize;
+        let rows = (slice.len() as u32).div_ceil(SIDE) as usize;
         let mut ends = vec![0; columns * rows];
-        let mut touched = Vec::with_capacity(2 * triangles.len());
+        let mut touched = Vec::with_capacity((2 * triangles.len()).min(limit));
+        let mut sorted = 0;
         for (number, triangle) in (0..).zip(triangles) {
-            touch(triangle, (width, height), |column, row| {
+            if touched.len() >= limit {
+                break;
+            }
+            sorted += 1;
+            touch(triangle, (width, height), slice, |column, row| {
                 let tile = row as usize * columns + column as usize;
                 ends[tile] += 1;
                 touched.push((tile as u32, number));
@@ -52,14 +62,14 @@ impl Bins {
         let mut tiles = Vec::new();
         let mut begin = 0;
         for (tile, end) in (0..).zip(ends) {
-            let (x0, y0) = (tile % columns as u32 * SIDE, tile / columns as u32 * SIDE);
+            let (x0, y0) = (tile % columns as u32 * SIDE, slice.start + tile / columns as u32 * SIDE);
             if end > begin {
-                let rectangle = [x0, (x0 + SIDE).min(width), y0, (y0 + SIDE).min(height)];
+                let rectangle = [x0, (x0 + SIDE).min(width), y0, (y0 + SIDE).min(slice.end)];
                 tiles.push(Bin { rectangle, range: begin..end });
             }
             begin = end;
         }
-        Bins { tiles, numbers }
+        Bins { tiles, sorted, numbers }
     }
 
     /// Returns the numbers of the triangles of a tile, in submission order.
@@ -68,16 +78,18 @@ impl Bins {
     }
 }
 
-fn touch(triangle: &Triangle, size: (u32, u32), mut tile: impl FnMut(u32, u32)) {
+fn touch(triangle: &Triangle, size: (u32, u32), slice: &Range<u32>, mut tile: impl FnMut(u32, u32)) {
     let [x0, x1, y0, y1] = triangle.bounds(size);
-    if x0 == x1 || y0 == y1 {
+    let (y0, y1) = (y0.max(slice.start), y1.min(slice.end));
+    if x0 >= x1 || y0 >= y1 {
         return;
     }
-    let (columns, rows) = (x0 / SIDE..=(x1 - 1) / SIDE, y0 / SIDE..=(y1 - 1) / SIDE);
+    let first = slice.start;
+    let (columns, rows) = (x0 / SIDE..=(x1 - 1) / SIDE, (y0 - first) / SIDE..=(y1 - 1 - first) / SIDE);
     let is_single = columns.start() == columns.end() && rows.start() == rows.end();
     for row in rows {
         for column in columns.clone() {
-            let rectangle = [column * SIDE, (column + 1) * SIDE, row * SIDE, (row + 1) * SIDE];
+            let rectangle = [column * SIDE, (column + 1) * SIDE, first + row * SIDE, first + (row + 1) * SIDE];
             if is_single || triangle.may_touch(rectangle) {
                 tile(column, row);
             }
@@ -152,7 +164,7 @@ mod tests {
 
     fn counts(triangles: &[Triangle], samples: u32) -> Vec<Vec<u32>> {
         let mut counts = vec![vec![0; samples as usize]; (SIZE.0 * SIZE.1) as usize];
-        let bins = Bins::of(triangles, SIZE);
+        let bins = Bins::of(triangles, SIZE, &(0..SIZE.1), usize::MAX);
         for bin in &bins.tiles {
             for number in bins.triangles(bin) {
                 cover(&triangles[*number as usize], bin.rectangle, SIZE, (samples, Coverage::PerSample), |covered| {

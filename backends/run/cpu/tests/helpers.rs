@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use fragbuf_cpu::{Device, Error, FragmentOrder, Mesh, Settings};
-use fragbuf_frame::Sizing;
 use fragbuf_model::Draft;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Element, Pass, Resource, Step};
@@ -30,7 +29,7 @@ fn count(width: u32, height: u32, order: FragmentOrder) -> Result<u32, Error> {
         vec![Step::Pass(Pass::geometry("count", "count").uses("total", Access::Atomic))],
     );
     let code = code(rows, &[("count", COUNT)], None).unwrap_or_else(|error| panic!("{error}"));
-    let mut device = Device::new(code, Settings { width, height, sizing: Sizing::Auto, order })?;
+    let mut device = Device::new(code, Settings { order, ..Settings::new(width, height) })?;
     let (vertices, indices) = mesh(&quad([0, 16, 0, 16], 0.5, [1.0; 4]));
     device.render(&Mesh { vertices: &vertices, indices: &indices }, &|_| {})?;
     Ok(device.words("total").unwrap()[0])
@@ -57,7 +56,7 @@ fn every_technique_ends_at_odd_sizes() {
         let code = Arc::new(built_in_of(&draft, &registry));
         for (width, height) in [(5, 4), (4, 5), (5, 5), (1, 1), (17, 33)] {
             for order in ORDERS {
-                let settings = Settings { width, height, sizing: Sizing::Auto, order };
+                let settings = Settings { order, ..Settings::new(width, height) };
                 let mut device = Device::new(code.clone(), settings).unwrap();
                 let picture = device.render(&Mesh { vertices: &vertices, indices: &indices }, &|_| {});
                 let picture = picture.unwrap_or_else(|error| panic!("{key}, {width} x {height}: {error}"));

@@ -13,5 +13,6 @@ mod peeling_loop;
 mod primitives;
 mod rejected_plans;
 mod routing;
+mod slices;
 mod stage;
 mod textures;

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use fragbuf_codegen::plan;
 use fragbuf_cpu::{Code, Device, Error, FragmentOrder, Mesh, Picture, Settings};
-use fragbuf_frame::Sizing;
 use fragbuf_model::{Draft, Selection, SourceSpan, Variant, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
@@ -86,7 +85,7 @@ pub fn storage(resources: Vec<Resource>, steps: Vec<Step>) -> Row {
 }
 
 pub fn device(code: &Arc<Code>, order: FragmentOrder) -> Device {
-    let settings = Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order };
+    let settings = Settings { order, ..Settings::new(SIZE, SIZE) };
     Device::new(code.clone(), settings).unwrap_or_else(|error| panic!("{error}"))
 }
 

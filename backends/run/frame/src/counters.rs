@@ -46,7 +46,19 @@ impl Counters {
         Counters::from_words(&sums)
     }
 
-    fn from_words(words: &[u32]) -> Self {
+    /// Returns the sums of the counters of slices.
+    pub fn total(slices: &[Counters]) -> Self {
+        let mut total = Counters::from_words(&[0; COUNTERS.len()]);
+        for slice in slices {
+            for (sum, counter) in total.0.iter_mut().zip(&slice.0) {
+                sum.count = sum.count.saturating_add(counter.count);
+            }
+        }
+        total
+    }
+
+    /// Returns the counters of one slice.
+    pub fn from_words(words: &[u32]) -> Self {
         let counters = COUNTERS.iter().zip(words);
         Counters(counters.map(|(&(name, is_loss, _), &count)| Counter { name, is_loss, count }).collect())
     }

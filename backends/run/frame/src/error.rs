@@ -34,6 +34,8 @@ pub enum Error {
         /// The suggested fix.
         help: &'static str,
     },
+    /// A frame needs more memory than the budget.
+    OverBudget(MemoryNeed),
     /// A value that the plan does not accept.
     BadValue {
         /// The value's name.
@@ -51,9 +53,47 @@ impl fmt::Display for Error {
             Error::TooLarge { what, needed, limit, limit_name, help } => {
                 write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
+            Error::OverBudget(need) => need.fmt(f),
             Error::BadValue { name, expected } => write!(f, "{name} must be {expected}"),
         }
     }
 }
 
 impl std::error::Error for Error {}
+
+/// The memory that a frame needs in slices of some height, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryNeed {
+    /// The width and the height of the frame.
+    pub size: (u32, u32),
+    /// The rows of a slice.
+    pub rows: u32,
+    /// The image.
+    pub image: u64,
+    /// The plan's textures, which have the size of the frame.
+    pub textures: u64,
+    /// The plan's buffers, which have the size of a slice, and all else that a slice needs.
+    pub buffers: u64,
+    /// The budget, which is less than the sum.
+    pub budget: u64,
+}
+
+impl MemoryNeed {
+    /// Returns the sum.
+    pub fn total(&self) -> u64 {
+        self.image.saturating_add(self.textures).saturating_add(self.buffers)
+    }
+}
+
+impl fmt::Display for MemoryNeed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let MemoryNeed { size: (width, height), rows, image, textures, buffers, budget } = self;
+        write!(
+            f,
+            "a frame of {width} x {height} pixels in slices of {rows} rows needs {} bytes (image {image}, textures {textures}, \
+             buffers of a slice {buffers}), and the memory budget is {budget} bytes: use a smaller frame, keep fewer fragments, or \
+             raise the budget (`--memory`, `Settings::memory`)",
+            self.total()
+        )
+    }
+}

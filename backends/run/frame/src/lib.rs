@@ -1,5 +1,5 @@
 //! A frame of a plan, for every device that runs one: the cursor that steps through its commands, values of the symbols in
-//! formulas, sizes of buffers, capacities for uncounted fragments, uniform words, counters.
+//! formulas, sizes of buffers, rows of a slice within a memory budget, capacities for uncounted fragments, uniform words, counters.
 //!
 //! Input: a plan and the frame's size. Output: steps, numbers and words. This crate names no device and allocates nothing on
 //! one.
@@ -11,6 +11,7 @@ mod error;
 mod host_step;
 mod loop_report;
 mod loops;
+mod memory;
 mod pass_time;
 mod pool_size;
 mod step;
@@ -20,13 +21,12 @@ mod values;
 pub use boxes::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
 pub use cursor::Cursor;
-pub use error::Error;
+pub use error::{Error, MemoryNeed};
 pub use loop_report::{LoopEnd, LoopReport};
 pub use loops::{max_iterations, max_pass_runs};
+pub use memory::{DEFAULT_MEMORY, MemoryLimits, resource_bytes};
 pub use pass_time::PassTime;
-pub use pool_size::{
-    PoolSize, Readbacks, Sizing, initial_values, pool_size_after, reserve, resource_bytes, reuse_pool_sizes,
-};
+pub use pool_size::{PoolSize, Readbacks, Sizing, initial_values, pool_size_after, reserve, reuse_pool_sizes};
 pub use step::{FrameStep, HostWait, PassRun, WordRange};
 pub use uniforms::{Value, set_uniform, zero_uniforms};
 pub use values::Values;

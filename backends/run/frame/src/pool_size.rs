@@ -3,6 +3,7 @@
 use fragbuf_codegen::{Plan, SymbolId};
 use fragbuf_templates::vocabulary::BindingTime;
 
+use crate::memory::resource_bytes;
 use crate::{Error, Values};
 
 /// How memory is sized for fragments whose number is unknown in advance. Plans without such resources ignore it.
@@ -87,7 +88,7 @@ fn counted_symbols(plan: &Plan) -> Vec<SymbolId> {
 }
 
 /// Whether a host step sets the symbol.
-fn is_set_by_host(plan: &Plan, id: SymbolId) -> bool {
+pub(crate) fn is_set_by_host(plan: &Plan, id: SymbolId) -> bool {
     plan.frame.decisions().any(|decision| decision.sets.contains(&id))
 }
 
@@ -128,7 +129,7 @@ fn fragments_in(plan: &Plan, values: &Values, limit: u64) -> Result<u32, Error> 
     let total = |fragments: u32| -> Result<u64, Error> {
         let mut values = values.clone();
         set_fragments(plan, &mut values, fragments);
-        Ok(resource_bytes(plan, &values)?.iter().map(|(_, bytes)| bytes).sum())
+        Ok(resource_bytes(plan, &values)?.iter().fold(0, |sum: u64, (_, bytes)| sum.saturating_add(*bytes)))
     };
     let empty = total(0)?;
     let fits = |fragments: u32| Ok(total(fragments)? - empty <= limit);
@@ -141,16 +142,4 @@ fn fragments_in(plan: &Plan, values: &Values, limit: u64) -> Result<u32, Error> 
         if fits(middle)? { yes = middle } else { no = middle }
     }
     Ok(yes)
-}
-
-/// Returns name and bytes of every resource. Counted symbols are 0 until fragments are counted. Where a host step sets k, the sizes are
-/// those for the greatest k, so that words written before the step keep their positions.
-pub fn resource_bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a str, u64)>, Error> {
-    let for_any_k = is_set_by_host(plan, SymbolId::K).then(|| values.with(SymbolId::K, plan.capacity().into()));
-    let values = for_any_k.as_ref().unwrap_or(values);
-    let sizes = plan.resources.iter().map(|planned| {
-        let name = &planned.resource.name;
-        Ok((name.as_str(), values.evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4)))
-    });
-    sizes.collect()
 }

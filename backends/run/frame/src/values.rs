@@ -101,7 +101,7 @@ impl Values {
         match self.assignments.get(id.index())? {
             Assignment::Unset => None,
             Assignment::Constant(number) => Some(*number),
-            Assignment::PerPixel(number) => Some(u64::from(*number) * self.pixels()),
+            Assignment::PerPixel(number) => Some(u64::from(*number).saturating_mul(self.pixels())),
         }
     }
 

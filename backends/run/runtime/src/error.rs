@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fragbuf_frame::MemoryNeed;
 use fragbuf_templates::vocabulary::FormulaError;
 
 /// Why a call failed. A failed call changes nothing: buffers, sizes and k stay as before.
@@ -34,6 +35,8 @@ pub enum Error {
         /// The suggested fix.
         help: &'static str,
     },
+    /// A frame needs more memory than the budget of the settings.
+    OverBudget(MemoryNeed),
     /// The device lacks features that the shaders need.
     MissingFeatures(wgpu::Features),
     /// There is not enough memory.
@@ -94,6 +97,7 @@ impl fmt::Display for Error {
             Error::TooLarge { what, needed, limit, limit_name, help } => {
                 write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
+            Error::OverBudget(need) => need.fmt(f),
             Error::MissingFeatures(features) => {
                 write!(f, "the device lacks {features:?}: request them, or use shaders of the target `wgsl`")
             }
@@ -134,6 +138,7 @@ impl From<fragbuf_frame::Error> for Error {
             fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, help } => {
                 Error::TooLarge { what, needed, limit, limit_name, help }
             }
+            fragbuf_frame::Error::OverBudget(need) => Error::OverBudget(need),
             fragbuf_frame::Error::BadValue { name, expected } => Error::BadValue { name, expected },
         }
     }

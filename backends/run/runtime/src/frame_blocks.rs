@@ -1,5 +1,7 @@
 //! The uniform blocks `frame`: one per slice and loop iteration, in one buffer with dynamic offsets.
 
+use fragbuf_codegen::Plan;
+
 use crate::Error;
 use crate::error_scope::in_error_scope;
 use crate::pipelines::PipelineSet;
@@ -16,13 +18,35 @@ pub(crate) struct FrameBlocks {
     iterations: u32,
 }
 
+/// Returns the bytes of a block.
+fn block_size(plan: &Plan) -> u64 {
+    (4 * plan.fields.len() as u64).next_multiple_of(16)
+}
+
+/// Returns the bytes from one block to the next.
+pub(crate) fn block_stride(device: &wgpu::Device, plan: &Plan) -> u64 {
+    block_size(plan).next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment).max(16))
+}
+
 impl FrameBlocks {
     pub(crate) async fn new(device: &wgpu::Device, pipelines: &PipelineSet, slices: u32) -> Result<Self, Error> {
-        let size = (4 * pipelines.plan.fields.len() as u64).next_multiple_of(16);
-        let stride = size.next_multiple_of(u64::from(device.limits().min_uniform_buffer_offset_alignment).max(16));
+        let (size, stride) = (block_size(&pipelines.plan), block_stride(device, &pipelines.plan));
+        let blocks = u64::from(slices) * u64::from(pipelines.max_iterations);
+        let bytes = stride.saturating_mul(blocks);
+        // Dynamic offsets have 32 bits.
+        let limit = device.limits().max_buffer_size.min(u32::MAX.into());
+        if bytes > limit {
+            return Err(Error::TooLarge {
+                what: format!("the uniform blocks of {slices} slices"),
+                needed: bytes,
+                limit,
+                limit_name: "max_buffer_size and offsets of 32 bits, in bytes",
+                help: "use a smaller frame, higher slices or fewer iterations",
+            });
+        }
         let descriptor = wgpu::BufferDescriptor {
             label: Some("fragbuf frame"),
-            size: stride * u64::from(slices) * u64::from(pipelines.max_iterations),
+            size: bytes,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         };

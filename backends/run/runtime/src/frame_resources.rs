@@ -1,7 +1,7 @@
 //! Everything that depends on the size of the frame: its slices, buffers, bind groups, queries, and placeholder attachments.
 //! A new value is built completely before it replaces the old one, so a failure leaves the old one in use.
 
-use fragbuf_frame::{COUNTERS_RESOURCE, Values};
+use fragbuf_frame::{COUNTERS_RESOURCE, MemoryLimits, Values};
 
 use crate::Error;
 use crate::bind_groups::{BindGroupSources, bind_groups, combination};
@@ -34,6 +34,7 @@ pub(crate) struct DeviceObjects<'a> {
     pub(crate) pipelines: &'a PipelineSet,
     pub(crate) uniforms: &'a UniformBuffers,
     pub(crate) timestamps: Timestamps,
+    pub(crate) limits: MemoryLimits,
 }
 
 /// Whether passes are timed.
@@ -50,9 +51,10 @@ impl FrameResources {
         values: Values,
         old: Option<&FrameResources>,
     ) -> Result<Self, Error> {
-        let DeviceObjects { device, queue, pipelines, timestamps, .. } = objects;
+        let DeviceObjects { device, queue, pipelines, timestamps, limits, .. } = objects;
         check_size(device, &values)?;
-        let memory = Memory::allocate(device, &pipelines.plan, &values, old.map(|old| &old.memory)).await?;
+        let old_memory = old.map(|old| &old.memory);
+        let memory = Memory::allocate(device, (&pipelines.plan, limits), &values, old_memory).await?;
         let frame_blocks = FrameBlocks::new(device, pipelines, values.slices()).await?;
         let make = || bind_groups(&sources(objects, &frame_blocks, &memory));
         let groups = in_error_scope(device, "the bind groups", 0, make).await?;

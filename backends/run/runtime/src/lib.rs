@@ -8,7 +8,8 @@
 //! ```
 //!
 //! `examples/embed.rs` is a host that owns its device and the order of its passes. [`Renderer::render`] renders whole frames
-//! where blocking is possible. Frames beyond a device limit are drawn in slices ([`Settings::slice`]). A k beyond the capacity
+//! where blocking is possible. Frames beyond a device limit or the memory budget
+//! ([`Settings::memory`]) are drawn in slices ([`Settings::slice`]). A k beyond the capacity
 //! of the pipelines needs other pipelines ([`Buckets`]).
 //!
 //! This crate contains no technique's name. Only [`Renderer::render`], [`block_on`] and [`headless`] block. Failures are
@@ -29,6 +30,7 @@ mod frame_resources;
 pub mod headless;
 mod layout;
 mod memory;
+mod memory_limits;
 mod objects;
 mod pattern;
 mod pipeline;
@@ -43,7 +45,6 @@ mod samples;
 mod segment;
 mod settings;
 mod shaders;
-mod slice_rows;
 mod texture;
 mod timing;
 mod uniform_buffers;
@@ -55,7 +56,9 @@ pub use blocking::block_on;
 pub use buckets::Buckets;
 pub use draw::{Call, Draw, Output};
 pub use error::Error;
-pub use fragbuf_frame::{Counter, Counters, LoopEnd, LoopReport, PassTime, PoolSize, Sizing, Value};
+pub use fragbuf_frame::{
+    Counter, Counters, DEFAULT_MEMORY, LoopEnd, LoopReport, MemoryNeed, PassTime, PoolSize, Sizing, Value,
+};
 pub use frame::{Frame, Recorded, SuspendedFrame};
 pub use objects::ObjectBox;
 pub use pipelines::Pipelines;

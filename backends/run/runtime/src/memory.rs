@@ -2,12 +2,12 @@
 //! plan's formula. A texture has the size of the frame, independent of slices. The caller supplies external textures.
 
 use fragbuf_codegen::{Plan, PlannedResource};
-use fragbuf_frame::{Values, resource_bytes};
+use fragbuf_frame::{MemoryLimits, Values};
 use fragbuf_templates::vocabulary::{Access, Element};
 
 use crate::Error;
 use crate::error_scope::in_error_scope;
-use crate::texture::{create_texture, texture_bytes};
+use crate::texture::create_texture;
 
 /// The buffers and textures of a plan's resources at one size.
 #[derive(Clone)]
@@ -35,14 +35,14 @@ enum DeviceObject {
 const PLACEHOLDER: u64 = 16;
 
 impl Memory {
-    /// Allocates memory for `values`. Objects of the right size come from `old`.
+    /// Allocates memory for `values` within the limits. Objects of the right size come from `old`.
     pub(crate) async fn allocate(
         device: &wgpu::Device,
-        plan: &Plan,
+        (plan, limits): (&Plan, &MemoryLimits),
         values: &Values,
         old: Option<&Memory>,
     ) -> Result<Self, Error> {
-        let sizes = checked_sizes(plan, values, &device.limits())?;
+        let sizes = limits.sizes(plan, values)?;
         let mut allocations = Vec::with_capacity(sizes.len());
         for (index, (size, planned)) in sizes.into_iter().zip(&plan.resources).enumerate() {
             let old = old.and_then(|old| old.allocations.get(index));
@@ -114,7 +114,6 @@ async fn allocate(
     let what = format!("`{}`", planned.resource.name);
     if let Element::Texture(format) = planned.resource.element {
         let is_external = planned.is_external();
-        let size = if is_external { 0 } else { texture_bytes(planned, values)? };
         let frame = (values.width(), values.height());
         let same = |texture: &wgpu::Texture| (texture.width(), texture.height()) == frame;
         let object = match old.map(|old| &old.object) {
@@ -153,30 +152,4 @@ fn create_buffer(device: &wgpu::Device, name: &str, size: u64, is_indirect: bool
         usage |= wgpu::BufferUsages::INDIRECT;
     }
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
-}
-
-/// Returns the bytes of every resource. Fails if a buffer exceeds a limit; textures have other limits.
-pub(crate) fn checked_sizes(plan: &Plan, values: &Values, limits: &wgpu::Limits) -> Result<Vec<u64>, Error> {
-    let sizes = resource_bytes(plan, values)?.into_iter().zip(&plan.resources);
-    let checked = sizes.map(|((name, bytes), planned)| match planned.resource.element {
-        Element::Texture(_) => Ok(bytes),
-        _ => check(limits, name, bytes).map(|()| bytes),
-    });
-    checked.collect()
-}
-
-fn check(limits: &wgpu::Limits, name: &str, needed: u64) -> Result<(), Error> {
-    let binding = (limits.max_storage_buffer_binding_size, "max_storage_buffer_binding_size, in bytes");
-    let buffer = (limits.max_buffer_size, "max_buffer_size, in bytes");
-    let (limit, limit_name) = if binding.0 <= buffer.0 { binding } else { buffer };
-    if needed <= limit {
-        return Ok(());
-    }
-    Err(Error::TooLarge {
-        what: format!("`{name}`"),
-        needed,
-        limit,
-        limit_name,
-        help: "use a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
-    })
 }

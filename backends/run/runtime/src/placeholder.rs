@@ -46,6 +46,14 @@ impl PlaceholderAttachment {
     }
 }
 
+/// Returns the bytes per pixel of the attachments of a plan.
+pub(crate) fn bytes_per_pixel(plan: &Plan) -> Result<u64, Error> {
+    let mut counts: Vec<u32> = plan.passes.iter().map(|pass| sample_count(plan, pass)).collect::<Result<_, _>>()?;
+    counts.sort_unstable();
+    counts.dedup();
+    Ok(counts.into_iter().map(u64::from).sum())
+}
+
 /// Creates a transient texture. Nothing is written to it, and tile-based GPUs give it no memory.
 fn create(device: &wgpu::Device, values: &Values, samples: u32) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {

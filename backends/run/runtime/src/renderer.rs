@@ -8,19 +8,20 @@ use std::sync::{Mutex, PoisonError};
 
 use fragbuf_codegen::{Plan, SymbolId};
 use fragbuf_frame::{
-    Readbacks, Values, initial_values, pool_size_after, reserve, reuse_pool_sizes, set_uniform, zero_uniforms,
+    MemoryLimits, Readbacks, Values, initial_values, pool_size_after, reserve, reuse_pool_sizes, set_uniform,
+    zero_uniforms,
 };
 
 use crate::error_scope::in_error_scope;
 use crate::external::accept;
 use crate::frame_resources::{DeviceObjects, FrameResources, Timestamps};
+use crate::memory_limits::memory_limits;
 use crate::objects::Objects;
 use crate::pipelines::PipelineSet;
 use crate::placeholder::placeholder_target;
 use crate::queries::Queries;
 use crate::samples::multisample;
 use crate::segment::FrameInputs;
-use crate::slice_rows::rows;
 use crate::uniform_buffers::{IDENTITY, UniformBuffers};
 use crate::words::to_bytes;
 use crate::{Error, ObjectBox, Pipelines, PoolSize, Settings, Shaders, Value, VertexInputs};
@@ -36,6 +37,8 @@ pub struct Renderer {
     pub(crate) frame_id: u64,
     /// The rows of a slice that the caller requests.
     slice: Option<u32>,
+    /// The bytes that may be allocated for a frame.
+    budget: u64,
     timestamps: Timestamps,
     uniform_buffers: UniformBuffers,
     uniforms: Vec<u32>,
@@ -72,12 +75,13 @@ impl Renderer {
         let is_timed = settings.timestamps && device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let timestamps = if is_timed { Timestamps::Enabled } else { Timestamps::Disabled };
         let (values, readbacks) = initial_values(&set.plan, (settings.width, settings.height), settings.sizing)?;
-        let values = values.with_rows(rows(&set.plan, &values, settings.slice, &device.limits())?);
+        let limits = memory_limits(device, set, settings.memory)?;
+        let values = values.with_rows(limits.rows(&set.plan, &values, settings.slice)?);
         let k = values.k();
         let uniforms = zero_uniforms(&set.plan.variant.uniforms);
         let make = || UniformBuffers::new(device, &uniforms);
         let uniform_buffers = in_error_scope(device, "the uniform buffers", 0, make).await?;
-        let objects = DeviceObjects { device, queue, pipelines: set, uniforms: &uniform_buffers, timestamps };
+        let objects = DeviceObjects { device, queue, pipelines: set, uniforms: &uniform_buffers, timestamps, limits };
         let resources = FrameResources::new(&objects, values, None).await?;
         let queries = Queries::new(device, set.queries(0)).await?;
         let renderer = Renderer {
@@ -88,6 +92,7 @@ impl Renderer {
             resources,
             frame_id: 0,
             slice: settings.slice,
+            budget: settings.memory,
             timestamps,
             uniform_buffers,
             uniforms,
@@ -131,7 +136,7 @@ impl Renderer {
     pub(crate) async fn switch_pipelines(&mut self, pipelines: &Pipelines, k: u32) -> Result<(), Error> {
         let before = std::mem::replace(&mut self.pipelines, pipelines.clone());
         let values = self.resources.values.of_plan(self.plan()).with(SymbolId::K, k.into());
-        let fits = rows(self.plan(), &values, self.slice, &self.device.limits());
+        let fits = self.rows(&values);
         let replaced = match fits {
             Ok(rows) => self.replace(values.with_rows(rows)).await,
             Err(error) => Err(error),
@@ -194,7 +199,7 @@ impl Renderer {
         let number = accept(self.plan(), &self.resources.values, name, texture)?;
         let mut memory = self.resources.memory.clone();
         memory.set_texture(number, texture);
-        let objects = self.device_objects();
+        let objects = self.device_objects()?;
         let what = format!("the bind groups with `{name}`");
         let make = || self.resources.bind_groups(&objects, &memory);
         self.resources.groups = in_error_scope(&self.device, &what, 0, make).await?;
@@ -284,7 +289,7 @@ impl Renderer {
 
     /// Resizes the frame to `values`, in slices that fit. An error changes nothing.
     async fn resize_to(&mut self, values: Values) -> Result<(), Error> {
-        let rows = rows(self.plan(), &values, self.slice, &self.device.limits())?;
+        let rows = self.rows(&values)?;
         self.reallocate(values.with_rows(rows)).await
     }
 
@@ -298,19 +303,29 @@ impl Renderer {
     }
 
     async fn replace(&mut self, values: Values) -> Result<(), Error> {
-        self.resources = FrameResources::new(&self.device_objects(), values, Some(&self.resources)).await?;
+        self.resources = FrameResources::new(&self.device_objects()?, values, Some(&self.resources)).await?;
         self.frame_id += 1;
         Ok(())
     }
 
-    fn device_objects(&self) -> DeviceObjects<'_> {
-        DeviceObjects {
+    /// Returns the rows of a slice for these values.
+    fn rows(&self, values: &Values) -> Result<u32, Error> {
+        Ok(self.limits()?.rows(self.plan(), values, self.slice)?)
+    }
+
+    fn limits(&self) -> Result<MemoryLimits, Error> {
+        memory_limits(&self.device, self.pipeline_set(), self.budget)
+    }
+
+    fn device_objects(&self) -> Result<DeviceObjects<'_>, Error> {
+        Ok(DeviceObjects {
             device: &self.device,
             queue: &self.queue,
             pipelines: self.pipeline_set(),
             uniforms: &self.uniform_buffers,
             timestamps: self.timestamps,
-        }
+            limits: self.limits()?,
+        })
     }
 
     /// Returns the inputs of a frame's steps.

@@ -1,6 +1,6 @@
 //! The settings of a renderer.
 
-use fragbuf_frame::Sizing;
+use fragbuf_frame::{DEFAULT_MEMORY, Sizing};
 
 /// The settings of a renderer. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Debug)]
@@ -13,9 +13,13 @@ pub struct Settings {
     pub height: u32,
     /// How memory is sized for fragments whose number is unknown in advance.
     pub sizing: Sizing,
-    /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole scene. `None`: as many rows as the
-    /// device's limits allow, which is the whole frame unless a buffer is too large.
+    /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole scene. `None`: as many rows as
+    /// the device's limits and `memory` allow, which is the whole frame unless its buffers are too large.
     pub slice: Option<u32>,
+    /// The bytes that a renderer may allocate on the device for a frame: the plan's buffers, its textures and the attachments of
+    /// passes without one, but not external textures and the view that the frame is resolved into. Slices are as high as it
+    /// allows. Default: [`DEFAULT_MEMORY`], 2 GiB.
+    pub memory: u64,
     /// Whether shaders check array bounds and limit loops at run time.
     pub checks: Checks,
     /// Whether the device has interlock, as [`crate::headless::open_device`] returns it; otherwise [`Interlock::Absent`].
@@ -69,6 +73,7 @@ impl Settings {
             height,
             sizing: Sizing::Auto,
             slice: None,
+            memory: DEFAULT_MEMORY,
             checks: Checks::Auto,
             interlock: Interlock::Absent,
             vertices: None,

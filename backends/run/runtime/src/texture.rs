@@ -52,13 +52,6 @@ pub(crate) fn texture_samples(plan: &Plan, planned: &PlannedResource) -> Result<
     Ok(Values::of_code(plan).word(length, &format!("the samples of `{}`", planned.resource.name))?)
 }
 
-/// Returns the bytes of a texture of the whole frame.
-pub(crate) fn texture_bytes(planned: &PlannedResource, values: &Values) -> Result<u64, Error> {
-    let whole = values.with_rows(values.height());
-    let words = whole.evaluate(&planned.words, &format!("`{}`", planned.resource.name))?;
-    Ok(words.saturating_mul(4))
-}
-
 /// Creates a texture of the size of the frame.
 pub(crate) fn create_texture(
     device: &wgpu::Device,

@@ -20,7 +20,7 @@ use crate::stage::{self, render_frame, renderer, settings, shaders, technique};
 
 pub fn device(variant: &Variant, order: FragmentOrder) -> Device {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order };
+    let settings = fragbuf_cpu::Settings { order, ..fragbuf_cpu::Settings::new(SIZE, SIZE) };
     Device::new(Arc::new(code), settings).unwrap()
 }
 
@@ -106,7 +106,7 @@ fn leaked_pages_only_reduce_the_pool() {
     let with = |order: FragmentOrder, size: u32| {
         let code = Code::of(&variant, &Registry::builtin()).unwrap();
         let sizing = Sizing::Reserve(PoolSize::Fragments(size));
-        let settings = fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing, order };
+        let settings = fragbuf_cpu::Settings { sizing, order, ..fragbuf_cpu::Settings::new(SIZE, SIZE) };
         let mut device = Device::new(Arc::new(code), settings).unwrap();
         let (kept, _) = draw(&mut device, &quads);
         let counters = fragbuf_runtime::Counters::per_slice(&device.words("counters").unwrap()).remove(0);

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh, Settings};
+use fragbuf_cpu::{Code, Device, Mesh, Settings};
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::{PoolSize, Sizing, VertexInputs};
 use fragbuf_targets::target;
@@ -38,10 +38,8 @@ fn device(variant: &Variant) -> Option<Device> {
     languages.iter().find(|provides| variant.select(provides).is_ok())?;
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
     let settings = Settings {
-        width: FRAME.0,
-        height: FRAME.1,
         sizing: Sizing::Reserve(PoolSize::Fragments(50 * FRAME.0 * FRAME.1)),
-        order: FragmentOrder::Submission,
+        ..Settings::new(FRAME.0, FRAME.1)
     };
     let mut device = Device::new(Arc::new(code), settings).unwrap();
     // The far plane: nothing is opaque.

@@ -4,10 +4,10 @@
 
 use std::sync::Arc;
 
-use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh};
+use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
-use fragbuf_runtime::{Error, Output, Sizing, VertexInputs};
+use fragbuf_runtime::{Error, Output, VertexInputs};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
 
@@ -110,8 +110,7 @@ fn on_cpu(variant: &Variant, triangles: &[Triangle]) -> Picture {
 /// Renders on the CPU device, behind an opaque surface at one depth if there is one.
 fn behind(opaque: Option<f32>, variant: &Variant, triangles: &[Triangle]) -> Picture {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings =
-        fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order: FragmentOrder::Submission };
+    let settings = fragbuf_cpu::Settings::new(SIZE, SIZE);
     let mut device = Device::new(Arc::new(code), settings).unwrap();
     if let Some(depth) = opaque {
         device.set_texture("opaque", &[depth; (SIZE * SIZE) as usize]).unwrap();

@@ -5,9 +5,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh};
+use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_runtime::headless::Offscreen;
-use fragbuf_runtime::{Counters, Output, Sizing, VertexInputs};
+use fragbuf_runtime::{Counters, Output, VertexInputs};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Coverage, Row, Step};
 
@@ -249,8 +249,7 @@ fn rendered_by_the_cpu(
     draft.set("k", &samples.to_string(), &span).unwrap();
     let variant = fragbuf_model::check(&draft, &registry).unwrap();
     let code = Arc::new(Code::of(&variant, &registry).unwrap());
-    let settings =
-        fragbuf_cpu::Settings { width: SIZE, height: SIZE, sizing: Sizing::Auto, order: FragmentOrder::Submission };
+    let settings = fragbuf_cpu::Settings::new(SIZE, SIZE);
     let mut device = Device::new(code, settings).unwrap();
     let words = vertices(triangles, &VertexInputs::of(device.plan()));
     let indices: Vec<u32> = (0..3 * triangles.len() as u32).collect();

@@ -3,6 +3,7 @@
 use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3};
 
+use crate::scene::bounds;
 use crate::{Object, Scene};
 
 /// A view-projection matrix, and the eye, which is also the position of the light.
@@ -38,16 +39,17 @@ impl Camera {
         Camera { view_projection: Mat4::IDENTITY.to_cols_array(), eye: Eye::Along([0.0, 0.0, 1.0]) }
     }
 
-    /// Returns a perspective three-quarter view. The whole scene just fits into a frame with this aspect, width over height.
-    pub fn framing(scene: &Scene, aspect: f32) -> Self {
-        let (least, greatest) = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
+    /// Returns a perspective three-quarter view. All scenes together just fit into a frame with this aspect, width over height.
+    pub fn framing(scenes: &[&Scene], aspect: f32) -> Self {
+        let objects = || scenes.iter().flat_map(|scene| &scene.objects);
+        let (least, greatest) = bounds(objects()).unwrap_or(([-1.0; 3], [1.0; 3]));
         let (least, greatest) = (Vec3::from_array(least), Vec3::from_array(greatest));
         let centre = least.midpoint(greatest);
         let turned = view::look_to_mat4(centre, -THREE_QUARTER.normalize(), Vec3::Y);
         let (tangent_y, tangent_x) = (HALF_ANGLE.tan() / MARGIN, HALF_ANGLE.tan() * aspect / MARGIN);
         // The distance of the eye from the centre for all points to be in view, and the range of depths.
         let (mut distance, mut depths) = (0.0_f32, (0.0_f32, 0.0_f32));
-        for position in scene.objects.iter().flat_map(Object::corners) {
+        for position in objects().flat_map(Object::corners) {
             let point = turned.transform_point3(Vec3::from_array(position));
             distance = distance.max(point.z + (point.x.abs() / tangent_x).max(point.y.abs() / tangent_y));
             depths = (depths.0.min(point.z), depths.1.max(point.z));

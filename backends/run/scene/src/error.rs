@@ -21,6 +21,19 @@ pub enum Error {
         /// The message.
         message: String,
     },
+    /// A scene needs more memory than its limits allow ([`Limits`](crate::Limits)).
+    TooLarge {
+        /// The file, or the name of the generated scene.
+        file: String,
+        /// The part of the scene that exceeds the limit.
+        what: String,
+        /// The bytes of the part, as far as they are known.
+        needed: u64,
+        /// The bytes that are left for it.
+        left: u64,
+        /// The bytes of the whole limit.
+        limit: u64,
+    },
     /// `builtin:…` names an unknown scene or parameter, or an invalid value.
     Unknown(String),
 }
@@ -47,6 +60,10 @@ impl fmt::Display for Error {
                 write!(f, "{file}: at byte {byte}: {message}")
             }
             Error::Malformed { file, position: FilePosition::Whole, message } => write!(f, "{file}: {message}"),
+            Error::TooLarge { file, what, needed, left, limit } => write!(
+                f,
+                "{file}: out of the memory budget: {what} needs {needed} bytes or more, and {left} of {limit} bytes are left: use a smaller model or a larger budget"
+            ),
             Error::Unknown(message) => f.write_str(message),
         }
     }
@@ -54,21 +71,30 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// An error in a file whose name is not known yet: its position and message.
+/// An error in a file whose name is not known yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct FileError(pub(crate) FilePosition, pub(crate) String);
+pub(crate) enum FileError {
+    /// The position and the message.
+    Malformed(FilePosition, String),
+    /// A part of the scene exceeds the limits.
+    TooLarge { what: String, needed: u64, left: u64, limit: u64 },
+}
 
 impl FileError {
     pub(crate) fn line(line: usize, message: impl Into<String>) -> Self {
-        FileError(FilePosition::Line(line), message.into())
+        FileError::Malformed(FilePosition::Line(line), message.into())
     }
 
     pub(crate) fn whole(message: impl Into<String>) -> Self {
-        FileError(FilePosition::Whole, message.into())
+        FileError::Malformed(FilePosition::Whole, message.into())
     }
 
     /// Adds the name of the file.
     pub(crate) fn in_file(self, file: &str) -> Error {
-        Error::Malformed { file: file.to_owned(), position: self.0, message: self.1 }
+        let file = file.to_owned();
+        match self {
+            FileError::Malformed(position, message) => Error::Malformed { file, position, message },
+            FileError::TooLarge { what, needed, left, limit } => Error::TooLarge { file, what, needed, left, limit },
+        }
     }
 }

@@ -2,13 +2,15 @@
 //!
 //! Input: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
 //! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex. A malformed model is never corrected
-//! silently; it is an [`Error`] with its position. This crate is independent of fragment buffers and devices.
+//! silently; it is an [`Error`] with its position, and a scene beyond the [`Limits`] is an error before its memory is allocated. This
+//! crate is independent of fragment buffers and devices.
 
 mod builtin;
 mod camera;
 mod error;
 mod file;
 mod gltf;
+mod limits;
 mod load;
 mod materials;
 mod normals;
@@ -21,6 +23,7 @@ mod text;
 pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
 pub use camera::{Camera, Eye};
 pub use error::{Error, FilePosition};
+pub use limits::Limits;
 pub use load::{load, open};
 pub use scene::{Object, Scene};
 pub use shading::light;

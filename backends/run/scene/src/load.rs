@@ -4,34 +4,38 @@ use std::path::Path;
 
 use crate::error::{Error, FileError};
 use crate::file::read;
-use crate::{BuiltinScene, Scene, gltf, normals, obj, ply};
+use crate::limits::Budget;
+use crate::{BuiltinScene, Limits, Scene, gltf, normals, obj, ply};
 
 /// Opens the scene `name`. `color` is the colour of parts for which the model gives none: linear, straight alpha.
-pub fn open(name: &str, color: [f32; 4]) -> Result<Scene, Error> {
+pub fn open(name: &str, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
     match name.strip_prefix("builtin:") {
-        Some(builtin) => Ok(builtin.parse::<BuiltinScene>()?.generate()),
-        None => load(Path::new(name), color),
+        Some(builtin) => builtin.parse::<BuiltinScene>()?.generate(limits),
+        None => load(Path::new(name), color, limits),
     }
 }
 
 /// Loads a model: OBJ, PLY, glTF or GLB by its extension, optionally compressed as `.gz`.
-pub fn load(path: &Path, color: [f32; 4]) -> Result<Scene, Error> {
+pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
     let file = path.display().to_string();
-    let bytes = read(path)?;
     let name = file.to_lowercase();
     let plain = name.strip_suffix(".gz").unwrap_or(&name);
     let extension = Path::new(plain).extension().map(|extension| extension.to_string_lossy().into_owned());
-    let mut scene = match extension.as_deref() {
-        Some("obj") => {
+    let extension = extension.as_deref().filter(|extension| EXTENSIONS.contains(extension));
+    let Some(extension) = extension else {
+        return Err(
+            FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz").in_file(&file)
+        );
+    };
+    let budget = Budget::new(limits);
+    let bytes = read(path, &budget)?;
+    let mut scene = match extension {
+        "obj" => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            obj::parse(&String::from_utf8_lossy(&bytes), &file, color, &|library| materials(folder, library))?
+            obj::parse(&bytes, &file, color, &|library| materials(folder, library, &budget), &budget)?
         }
-        Some("ply") => ply::parse(&bytes, color).map_err(|error| error.in_file(&file))?,
-        Some("gltf" | "glb") => gltf::parse(&bytes, path, color)?,
-        _ => {
-            return Err(FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz")
-                .in_file(&file));
-        }
+        "ply" => ply::parse(&bytes, color, &budget).map_err(|error| error.in_file(&file))?,
+        _ => gltf::parse(&bytes, path, color, &budget)?,
     };
     if scene.triangles() == 0 {
         return Err(FileError::whole("the model has no triangles").in_file(&file));
@@ -40,9 +44,11 @@ pub fn load(path: &Path, color: [f32; 4]) -> Result<Scene, Error> {
     Ok(scene)
 }
 
-/// Returns the name and the text of a material library in the folder of its model.
-fn materials(folder: &Path, library: &str) -> Result<(String, String), Error> {
+/// The extensions of models. Without one of them a file is not opened.
+const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
+
+/// Returns the name and the bytes of a material library in the folder of its model.
+fn materials(folder: &Path, library: &str, budget: &Budget) -> Result<(String, Vec<u8>), Error> {
     let path = folder.join(library);
-    let bytes = read(&path)?;
-    Ok((path.display().to_string(), String::from_utf8_lossy(&bytes).into_owned()))
+    Ok((path.display().to_string(), read(&path, budget)?))
 }

@@ -1,65 +1,117 @@
 //! MTL: the diffuse colour `Kd` and the opacity `d` (or `Tr`, its complement) of materials, by name. Textures and all other
 //! statements are ignored.
 
+use std::collections::HashMap;
+
 use crate::error::FileError;
-use crate::text::{lines, number, numbers};
+use crate::limits::Budget;
+use crate::text::{lines, numbers, quoted};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Material {
-    pub(crate) name: String,
     /// Linear, straight alpha; `None` if the file gives none.
     pub(crate) color: Option<[f32; 3]>,
     pub(crate) alpha: f32,
 }
 
-/// Parses the materials of a library.
-pub(crate) fn parse(text: &str) -> Result<Vec<Material>, FileError> {
-    let mut materials: Vec<Material> = Vec::new();
-    for (line, statement) in lines(text) {
-        let words: Vec<&str> = statement.split_whitespace().collect();
-        let Some((keyword, values)) = words.split_first() else { continue };
-        if *keyword == "newmtl" {
-            let name = values.join(" ");
-            if name.is_empty() {
-                return Err(FileError::line(line, "`newmtl` without a name"));
-            }
-            materials.push(Material { name, color: None, alpha: 1.0 });
-            continue;
-        }
-        let Some(material) = materials.last_mut() else {
-            return Err(FileError::line(line, format!("`{keyword}` before the first `newmtl`")));
-        };
-        match *keyword {
-            "Kd" => material.color = Some(color(values, line)?),
-            "d" => material.alpha = unit_number(values.strip_prefix(&["-halo"]).unwrap_or(values), line)?,
-            "Tr" => material.alpha = 1.0 - unit_number(values, line)?,
-            _ => {}
-        }
-    }
-    Ok(materials)
+/// The materials of all libraries of a model. A material replaces an earlier one of the same name.
+#[derive(Default)]
+pub(crate) struct Materials {
+    materials: Vec<Material>,
+    by_name: HashMap<String, usize>,
 }
 
-fn color(words: &[&str], line: usize) -> Result<[f32; 3], FileError> {
-    if let Some(kind @ ("spectral" | "xyz")) = words.first().copied() {
+/// The bytes of a material without its name: its list entry and its map entry.
+const MATERIAL: u64 = 96;
+
+/// The greatest number of names that a message lists.
+const MAX_LISTED: usize = 10;
+
+impl Materials {
+    /// Adds the materials of a library.
+    pub(crate) fn add(&mut self, library: &[u8], budget: &Budget) -> Result<(), FileError> {
+        let mut is_first = true;
+        for statement in lines(library) {
+            let (line, statement) = statement?;
+            let (keyword, values) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
+            if keyword == "newmtl" {
+                is_first = false;
+                self.begin(values, line, budget)?;
+                continue;
+            }
+            let Some(material) = self.materials.last_mut().filter(|_| !is_first) else {
+                return Err(FileError::line(line, format!("{} before the first `newmtl`", quoted(keyword))));
+            };
+            match keyword {
+                "Kd" => material.color = Some(color(values, line)?),
+                "d" => {
+                    let value = values.trim_start();
+                    material.alpha = unit_number(value.strip_prefix("-halo ").unwrap_or(value), line)?;
+                }
+                "Tr" => material.alpha = 1.0 - unit_number(values, line)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, name: &str, line: usize, budget: &Budget) -> Result<(), FileError> {
+        let name = single_spaces(name);
+        if name.is_empty() {
+            return Err(FileError::line(line, "`newmtl` without a name"));
+        }
+        budget.take(1, MATERIAL + name.len() as u64, "the materials")?;
+        self.by_name.insert(name, self.materials.len());
+        self.materials.push(Material { color: None, alpha: 1.0 });
+        Ok(())
+    }
+
+    /// Returns the index of the material `name`.
+    pub(crate) fn find(&self, name: &str, line: usize) -> Result<usize, FileError> {
+        let name = single_spaces(name);
+        self.by_name.get(&name).copied().ok_or_else(|| {
+            let mut names: Vec<&str> = self.by_name.keys().map(String::as_str).collect();
+            names.sort_unstable();
+            let more = names.len().saturating_sub(MAX_LISTED);
+            names.truncate(MAX_LISTED);
+            let available = match (names.len(), more) {
+                (0, _) => "no `mtllib` defines any".to_owned(),
+                (_, 0) => format!("the materials are {}", names.join(", ")),
+                _ => format!("the materials are {} and {more} more", names.join(", ")),
+            };
+            FileError::line(line, format!("unknown material {}: {available}", quoted(&name)))
+        })
+    }
+
+    pub(crate) fn get(&self, index: usize) -> Option<&Material> {
+        self.materials.get(index)
+    }
+}
+
+/// Returns a name with single spaces between its words.
+pub(crate) fn single_spaces(name: &str) -> String {
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn color(words: &str, line: usize) -> Result<[f32; 3], FileError> {
+    if let Some(kind @ ("spectral" | "xyz")) = words.split_whitespace().next() {
         return Err(FileError::line(line, format!("`Kd {kind}` is not supported: give red, green and blue")));
     }
+    let (values, count) = numbers::<3>(words, &[1, 3], line)?;
     // The format defines a single number as grey.
-    let values = numbers(words, &[1, 3], line)?;
-    let last = values.len() - 1;
-    let color: [f32; 3] = std::array::from_fn(|channel| values.get(channel.min(last)).copied().unwrap_or(0.0));
+    let color = if count == 1 { [values[0]; 3] } else { values };
     match color.iter().find(|value| !(0.0..=1.0).contains(*value)) {
         Some(value) => Err(FileError::line(line, format!("{value} is not from 0 to 1"))),
         None => Ok(color),
     }
 }
 
-fn unit_number(words: &[&str], line: usize) -> Result<f32, FileError> {
-    match words {
-        [word] => match number(word, line)? {
-            value if (0.0..=1.0).contains(&value) => Ok(value),
-            value => Err(FileError::line(line, format!("{value} is not from 0 to 1"))),
-        },
-        _ => Err(FileError::line(line, format!("expected 1 number, found {}", words.len()))),
+fn unit_number(words: &str, line: usize) -> Result<f32, FileError> {
+    let ([value], _) = numbers(words, &[1], line)?;
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(FileError::line(line, format!("{value} is not from 0 to 1")))
     }
 }

@@ -3,11 +3,12 @@
 //! The reader is our own because every error needs its line: `tobj` reports no lines, ignores unknown statements and materials,
 //! and panics on a short `Kd`. Curves, surfaces and display statements are ignored; an unknown statement is an error.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::error::{Error, FileError};
-use crate::materials::{self, Material};
-use crate::text::{lines, numbers};
+use crate::limits::{Budget, OBJECT};
+use crate::materials::{Materials, single_spaces};
+use crate::text::{lines, numbers, quoted};
 use crate::{Object, Scene};
 
 /// Statements without effect on the triangles.
@@ -51,110 +52,150 @@ const IGNORED: [&str; 37] = [
     "cdp",
 ];
 
-/// A function from the name of a library in the model to its file name and text.
-type Library<'a> = dyn Fn(&str) -> Result<(String, String), Error> + 'a;
+/// A function from the name of a library in the model to its file name and bytes.
+type Library<'a> = dyn Fn(&str) -> Result<(String, Vec<u8>), Error> + 'a;
+
+/// The bytes of a `v` or a `vn` in the lists of the reader, at most.
+const LISTED: u64 = 12 + 16;
+
+/// The bytes of an entry of [`Reader::known`].
+const KNOWN: u64 = 64;
 
 /// Reads a model. `library` returns a material library by its name in the model; `color` is the colour of vertices without
 /// one.
-pub(crate) fn parse(text: &str, file: &str, color: [f32; 4], library: &Library<'_>) -> Result<Scene, Error> {
-    let mut reader = Reader { color, ..Reader::default() };
-    for (line, statement) in lines(text) {
+pub(crate) fn parse(
+    bytes: &[u8],
+    file: &str,
+    color: [f32; 4],
+    library: &Library<'_>,
+    budget: &Budget,
+) -> Result<Scene, Error> {
+    let mut reader = Reader::new(color, budget);
+    // A library that the model names twice is read once.
+    let mut libraries: HashSet<String> = HashSet::new();
+    for statement in lines(bytes) {
+        let (line, statement) = statement.map_err(|error| error.in_file(file))?;
         let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
         if keyword == "mtllib" {
-            let (name, text) = library(rest.trim())?;
-            reader.materials.extend(materials::parse(&text).map_err(|error| error.in_file(&name))?);
+            if libraries.insert(rest.trim().to_owned()) {
+                let (name, bytes) = library(rest.trim())?;
+                reader.materials.add(&bytes, budget).map_err(|error| error.in_file(&name))?;
+            }
             continue;
         }
-        let words: Vec<&str> = rest.split_whitespace().collect();
-        reader.statement(keyword, &words, line).map_err(|error| error.in_file(file))?;
+        reader.statement(keyword, rest, line).map_err(|error| error.in_file(file))?;
     }
     Ok(reader.finish())
 }
 
-#[derive(Default)]
-struct Reader {
+struct Reader<'a> {
+    budget: &'a Budget,
     positions: Vec<[f32; 3]>,
     /// Per position, if the model gives one.
     colors: Vec<Option<[f32; 3]>>,
     normals: Vec<[f32; 3]>,
-    materials: Vec<Material>,
+    materials: Materials,
     material: Option<usize>,
     color: [f32; 4],
     scene: Scene,
     object: Object,
+    /// The corners of the current face.
+    corners: Vec<u32>,
     /// The vertices of the object, by position, normal and material.
     known: HashMap<(usize, Option<usize>, Option<usize>), u32>,
 }
 
-impl Reader {
-    fn statement(&mut self, keyword: &str, words: &[&str], line: usize) -> Result<(), FileError> {
+impl<'a> Reader<'a> {
+    fn new(color: [f32; 4], budget: &'a Budget) -> Self {
+        Reader {
+            budget,
+            positions: Vec::new(),
+            colors: Vec::new(),
+            normals: Vec::new(),
+            materials: Materials::default(),
+            material: None,
+            color,
+            scene: Scene::default(),
+            object: Object::default(),
+            corners: Vec::new(),
+            known: HashMap::new(),
+        }
+    }
+
+    fn statement(&mut self, keyword: &str, words: &str, line: usize) -> Result<(), FileError> {
         match keyword {
             "v" => {
-                let values = numbers(words, &[3, 4, 6, 7], line)?;
-                let (position, color) = values.split_at(3);
-                self.positions.push(to_array(position));
-                self.colors.push((color.len() >= 3).then(|| to_array(color)));
+                let ([x, y, z, rest @ ..], count): ([f32; 7], usize) = numbers(words, &[3, 4, 6, 7], line)?;
+                self.budget.take(1, LISTED, "the list of positions")?;
+                self.positions.push([x, y, z]);
+                let [r, g, b, _] = rest;
+                self.colors.push((count >= 6).then_some([r, g, b]));
             }
-            "vn" => self.normals.push(to_array(&numbers(words, &[3], line)?)),
+            "vn" => {
+                self.budget.take(1, LISTED, "the list of normals")?;
+                self.normals.push(numbers(words, &[3], line)?.0);
+            }
             "f" | "fo" => self.face(words, line)?,
             "o" | "g" => {
                 self.end_object();
-                self.object.name = words.join(" ");
+                self.object.name = single_spaces(words);
             }
-            "usemtl" => {
-                let name = words.join(" ");
-                let found = self.materials.iter().rposition(|material| material.name == name);
-                self.material = Some(found.ok_or_else(|| self.unknown_material(&name, line))?);
-            }
+            "usemtl" => self.material = Some(self.materials.find(words, line)?),
             _ if IGNORED.contains(&keyword) => {}
-            _ => return Err(FileError::line(line, format!("unknown statement `{keyword}`"))),
+            _ => return Err(FileError::line(line, format!("unknown statement {}", quoted(keyword)))),
         }
         Ok(())
     }
 
-    fn unknown_material(&self, name: &str, line: usize) -> FileError {
-        let names: Vec<&str> = self.materials.iter().map(|material| material.name.as_str()).collect();
-        let available = if names.is_empty() {
-            "no `mtllib` defines any".to_owned()
-        } else {
-            format!("the materials are {}", names.join(", "))
-        };
-        FileError::line(line, format!("unknown material `{name}`: {available}"))
-    }
-
-    fn face(&mut self, words: &[&str], line: usize) -> Result<(), FileError> {
-        if words.len() < 3 {
-            return Err(FileError::line(line, format!("a face with {} vertices: it needs 3 or more", words.len())));
+    fn face(&mut self, words: &str, line: usize) -> Result<(), FileError> {
+        let count = words.split_whitespace().count();
+        if count < 3 {
+            return Err(FileError::line(line, format!("a face with {count} vertices: it needs 3 or more")));
         }
-        let mut corners = Vec::with_capacity(words.len());
-        for word in words {
-            let mut parts = word.split('/');
-            let position = index(parts.next().unwrap_or(""), self.positions.len(), "position", line)?;
-            // Texture coordinates are checked, but not kept.
-            if let Some(texture) = parts.next().filter(|part| !part.is_empty()) {
-                texture.parse::<i64>().map_err(|_| FileError::line(line, format!("`{texture}` is not an index")))?;
-            }
-            let normal = parts.next().map(|part| index(part, self.normals.len(), "normal", line)).transpose()?;
-            if parts.next().is_some() {
-                return Err(FileError::line(line, format!("`{word}` has more than position/texture/normal")));
-            }
-            corners.push(self.corner(position, normal));
+        if self.object.triangles.is_empty() {
+            self.budget.take(1, OBJECT + self.object.name.len() as u64, "the scene's objects")?;
+        }
+        self.budget.triangles(count as u64 - 2)?;
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        for word in words.split_whitespace() {
+            corners.push(self.corner(word, line)?);
         }
         self.object.polygon(&corners);
+        self.corners = corners;
         Ok(())
     }
 
-    fn corner(&mut self, position: usize, normal: Option<usize>) -> u32 {
+    /// Returns the vertex of a corner, `position/texture/normal`.
+    fn corner(&mut self, word: &str, line: usize) -> Result<u32, FileError> {
+        let mut parts = word.split('/');
+        let position = index(parts.next().unwrap_or(""), self.positions.len(), "position", line)?;
+        // Texture coordinates are checked, but not kept.
+        if let Some(texture) = parts.next().filter(|part| !part.is_empty()) {
+            texture
+                .parse::<i64>()
+                .map_err(|_| FileError::line(line, format!("{} is not an index", quoted(texture))))?;
+        }
+        let normal = parts.next().map(|part| index(part, self.normals.len(), "normal", line)).transpose()?;
+        if parts.next().is_some() {
+            return Err(FileError::line(line, format!("{} has more than position/texture/normal", quoted(word))));
+        }
+        self.vertex(position, normal)
+    }
+
+    fn vertex(&mut self, position: usize, normal: Option<usize>) -> Result<u32, FileError> {
         let key = (position, normal, self.material);
         if let Some(known) = self.known.get(&key) {
-            return *known;
+            return Ok(*known);
         }
+        self.budget.vertices(&self.object, 1)?;
+        self.budget.take(1, KNOWN, "the index of the scene's vertices")?;
         let color = self.color_of(position);
         let at = self.positions.get(position).copied().unwrap_or_default();
         let normal = normal.and_then(|normal| self.normals.get(normal).copied()).unwrap_or_default();
         let vertex = self.object.vertex(at, normal, color);
         self.known.insert(key, vertex);
-        vertex
+        Ok(vertex)
     }
 
     /// Returns the colour of the material, else that of the vertex, else the default.
@@ -168,7 +209,9 @@ impl Reader {
     }
 
     fn end_object(&mut self) {
-        self.known.clear();
+        self.budget.give_back(self.known.len() as u64 * KNOWN);
+        // A new map, because clearing a large one takes as long as its capacity.
+        self.known = HashMap::new();
         let object = std::mem::take(&mut self.object);
         if !object.triangles.is_empty() {
             self.scene.objects.push(object);
@@ -181,16 +224,13 @@ impl Reader {
     }
 }
 
-fn to_array(values: &[f32]) -> [f32; 3] {
-    std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0.0))
-}
-
 /// Converts an index from 1, or from -1 backwards, to one from 0.
 fn index(word: &str, count: usize, of: &str, line: usize) -> Result<usize, FileError> {
-    let number: i64 = word.parse().map_err(|_| FileError::line(line, format!("`{word}` is not an index of a {of}")))?;
-    let from_zero = if number < 0 { count as i64 + number } else { number - 1 };
-    match usize::try_from(from_zero) {
-        Ok(index) if index < count => Ok(index),
+    let number: i64 =
+        word.parse().map_err(|_| FileError::line(line, format!("{} is not an index of a {of}", quoted(word))))?;
+    let from_zero = if number < 0 { (count as i64).checked_add(number) } else { number.checked_sub(1) };
+    match from_zero.map(usize::try_from) {
+        Some(Ok(index)) if index < count => Ok(index),
         _ => Err(FileError::line(line, format!("no {of} {number}: {count} are defined so far"))),
     }
 }

@@ -35,14 +35,28 @@ impl Scene {
 
     /// Returns the least and greatest coordinates of the triangles; `None` if there are none.
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        let used = self.objects.iter().flat_map(Object::corners);
-        used.map(|position| (position, position)).reduce(|(least, greatest), (position, _)| {
-            let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3]| {
-                std::array::from_fn(|axis| choose(from[axis], position[axis]))
-            };
-            (pick(f32::min, least), pick(f32::max, greatest))
-        })
+        bounds(&self.objects)
     }
+
+    /// Returns the bytes of the lists of all objects.
+    pub fn bytes(&self) -> u64 {
+        let bytes = |object: &Object| {
+            let vertices = size_of_val(&object.positions[..]) + size_of_val(&object.normals[..]);
+            size_of::<Object>() + vertices + size_of_val(&object.colors[..]) + size_of_val(&object.triangles[..])
+        };
+        self.objects.iter().map(|object| bytes(object) as u64).sum()
+    }
+}
+
+/// Returns the least and greatest coordinates of the triangles of objects; `None` if there are none.
+pub(crate) fn bounds<'a>(objects: impl IntoIterator<Item = &'a Object>) -> Option<([f32; 3], [f32; 3])> {
+    let used = objects.into_iter().flat_map(Object::corners);
+    used.map(|position| (position, position)).reduce(|(least, greatest), (position, _)| {
+        let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3]| {
+            std::array::from_fn(|axis| choose(from[axis], position[axis]))
+        };
+        (pick(f32::min, least), pick(f32::max, greatest))
+    })
 }
 
 impl Object {

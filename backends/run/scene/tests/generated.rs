@@ -2,10 +2,10 @@
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Eye, Scene, light, open};
+use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Eye, Limits, Scene, light, open};
 
 fn scene(name: &str) -> Scene {
-    open(&format!("builtin:{name}"), [1.0; 4]).unwrap()
+    open(&format!("builtin:{name}"), [1.0; 4], &Limits::default()).unwrap()
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn needles_are_long_thin_and_nearly_parallel() {
 
 #[test]
 fn unknown_names_list_the_known_ones() {
-    let error = |name: &str| match open(name, [1.0; 4]) {
+    let error = |name: &str| match open(name, [1.0; 4], &Limits::default()) {
         Err(Error::Unknown(message)) => message,
         other => format!("{other:?}"),
     };
@@ -79,7 +79,7 @@ fn the_framing_camera_shows_the_whole_scene_at_full_size() {
     for name in ["cubes", "slabs", "marbles", "hairball,strands=9", "needles,n=40"] {
         for aspect in [0.3, 1.0, 2.5] {
             let made = scene(name);
-            let camera = Camera::framing(&made, aspect);
+            let camera = Camera::framing(&[&made], aspect);
             let mut reach = 0.0_f32;
             for position in made.objects.iter().flat_map(|object| &object.positions) {
                 let [x, y, z] = project(&camera.view_projection, *position);

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use base64::Engine as _;
-use fragbuf_scene::{Error, FilePosition, Scene, load};
+use fragbuf_scene::{Error, FilePosition, Limits, Scene, load};
 use tempfile::TempDir;
 
 const COLOR: [f32; 4] = [0.5, 0.5, 0.5, 0.25];
@@ -18,7 +18,7 @@ fn loaded(files: &[(&str, &[u8])]) -> Result<Scene, Error> {
     for (path, (_, bytes)) in paths.iter().zip(files) {
         std::fs::write(path, bytes).unwrap();
     }
-    load(&paths[0], COLOR)
+    load(&paths[0], COLOR, &Limits::default())
 }
 
 /// Returns the file name, the position and the message of the error.
@@ -265,7 +265,7 @@ fn malformed_gltf_is_an_error() {
         (gltf(3, ""), "no binary chunk"),
         (gltf(3, r#", "uri": "data:;base64,!!""#), "its data is invalid"),
         (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"mesh\": 7"), "nodes[0].mesh"),
-        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"children\": [0]"), "its own descendant"),
+        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"children\": [0]"), "node 0 is its own child"),
     ];
     for (text, part) in cases {
         let (_, _, message) = malformed(&[("m.gltf", text.as_bytes())]);
@@ -280,5 +280,5 @@ fn malformed_gltf_is_an_error() {
 fn unsupported_files_are_errors() {
     let (_, _, message) = malformed(&[("m.stl", b"solid")]);
     assert!(message.contains(".obj"), "{message}");
-    assert!(matches!(load("nowhere.ply".as_ref(), COLOR), Err(Error::Unreadable { .. })));
+    assert!(matches!(load("nowhere.ply".as_ref(), COLOR, &Limits::default()), Err(Error::Unreadable { .. })));
 }

@@ -95,7 +95,7 @@ fn none<'a>(samples: u32) -> Attachments<'a> {
 }
 
 fn target(words: &[AtomicU32], blend: Blend) -> ColorAttachment<'_> {
-    ColorAttachment { words, texel: Texel::Output, blend }
+    ColorAttachment { words, texel: Texel::Output, blend, first: 0 }
 }
 
 /// Draws one after the other into one float attachment; returns its first pixel.
@@ -162,8 +162,10 @@ fn depth_is_compared_and_written() {
 #[test]
 fn several_attachments_get_separate_colours() {
     let (a, b, list) = (zeros(PIXELS), zeros(2 * PIXELS), zeros(64));
-    let bytes = ColorAttachment { words: &a, texel: Texel::Format(TextureFormat::Rgba8Unorm), blend: Blend::Replace };
-    let pairs = ColorAttachment { words: &b, texel: Texel::Format(TextureFormat::Rg32Float), blend: Blend::Max };
+    let whole = target(&a, Blend::Replace);
+    let bytes = ColorAttachment { texel: Texel::Format(TextureFormat::Rgba8Unorm), ..whole };
+    let whole = target(&b, Blend::Max);
+    let pairs = ColorAttachment { texel: Texel::Format(TextureFormat::Rg32Float), ..whole };
     let shader = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
         @fragment fn main(in: VertexOutput) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
     let attachments = Attachments { targets: vec![bytes, pairs], ..none(1) };

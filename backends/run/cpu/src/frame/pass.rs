@@ -37,7 +37,7 @@ impl Frame<'_> {
         let start = Instant::now();
         self.device.memory.arrange(&code.plan, run.flipped);
         let values = self.device.values.in_iteration(run.iteration);
-        let uniforms = words(&values.frame_words(&code.plan, 0, run.iteration)?);
+        let uniforms = words(&values.frame_words(&code.plan, self.number, run.iteration)?);
         let out_of_bounds = match (&code.passes[at], &pass.kind) {
             (PassCode::Compute(program), Kind::Compute { .. }) => {
                 let counts = workgroups(self, pass, &values)?;
@@ -123,6 +123,7 @@ impl Frame<'_> {
                 indices: Some(&BOX_TRIANGLES),
                 arguments: DrawArguments::once(BOX_TRIANGLES.len() as u32 / 3),
                 attachments: empty.attachments.clone(),
+                rows: empty.rows.clone(),
                 vertex: empty.vertex.clone(),
                 fragment: empty.fragment.clone(),
                 ..empty
@@ -159,7 +160,6 @@ impl Frame<'_> {
             let index = plan.resource_id(name)?.0;
             Some((self.device.memory.resources[index].as_slice(), plan.resources[index].resource.element))
         };
-        let pixels = settings.width as usize * settings.height as usize;
         Ok(DrawCall {
             vertex: (vertex, self.view(vertex, uniforms)?),
             fragment: (fragment, self.view(fragment, uniforms)?),
@@ -167,7 +167,8 @@ impl Frame<'_> {
             indices: None,
             arguments: DrawArguments::once(0),
             size: (settings.width, settings.height),
-            attachments: Attachments::of(pass, numbers, &textures, (&self.output, pixels))?,
+            rows: self.slice.rows.clone(),
+            attachments: Attachments::of(pass, numbers, &textures, (&self.output, &self.slice))?,
             coverage,
             order: settings.order,
         })

@@ -2,22 +2,21 @@
 
 use glam::{Quat, Vec3};
 
-use super::row::Row;
+use super::row::{Objects, Row};
 use crate::Object;
 
 pub(super) const ROW: Row =
     Row { name: "cubes", summary: "three translucent cubes, each intersecting the next", parameters: &[], generate };
 
-fn generate(_: &[u32]) -> Vec<Object> {
+fn generate(_: &[u32]) -> Objects {
     let cubes = [
         ("red", Vec3::new(-0.7, -0.1, 0.3), 0.3, [0.85, 0.12, 0.1, 0.45]),
         ("green", Vec3::new(0.0, 0.15, -0.2), -0.2, [0.15, 0.7, 0.2, 0.45]),
         ("blue", Vec3::new(0.65, -0.15, 0.35), 0.7, [0.12, 0.25, 0.9, 0.45]),
     ];
-    cubes
-        .into_iter()
-        .map(|(name, centre, turn, color)| cube(name, centre, Quat::from_rotation_y(turn), color))
-        .collect()
+    Box::new(
+        cubes.into_iter().map(|(name, centre, turn, color)| cube(name, centre, Quat::from_rotation_y(turn), color)),
+    )
 }
 
 fn cube(name: &str, centre: Vec3, turn: Quat, color: [f32; 4]) -> Object {

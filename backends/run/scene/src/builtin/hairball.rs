@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -23,9 +23,9 @@ const SIDES: u32 = 3;
 const STEP: f32 = 0.04;
 const RADIUS: f32 = 0.008;
 
-fn generate(values: &[u32]) -> Vec<Object> {
+fn generate(values: &[u32]) -> Objects {
     let mut rng = Rng::seeded(value(values, 1));
-    (0..value(values, 0)).map(|index| strand(index, &mut rng)).collect()
+    Box::new((0..value(values, 0)).map(move |index| strand(index, &mut rng)))
 }
 
 fn strand(index: u32, rng: &mut Rng) -> Object {

@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -18,17 +18,17 @@ pub(super) const ROW: Row = Row {
 const RINGS: u32 = 24;
 const SECTORS: u32 = 48;
 
-fn generate(values: &[u32]) -> Vec<Object> {
+fn generate(values: &[u32]) -> Objects {
     let mut rng = Rng::seeded(value(values, 1));
     let count = value(values, 0);
     // Balls of this size fill about a quarter of the heap, whatever their number.
     let size = (0.25 / count as f32).cbrt();
-    let marble = |index| {
+    let marble = move |index| {
         let centre = rng.in_ball();
         let radius = size * rng.between(0.6, 1.3);
         ball(format!("marble {index}"), centre, radius, hue(rng.unit(), rng.between(0.25, 0.6)))
     };
-    (0..count).map(marble).collect()
+    Box::new((0..count).map(marble))
 }
 
 fn ball(name: String, centre: Vec3, radius: f32, color: [f32; 4]) -> Object {

@@ -10,7 +10,8 @@ mod slabs;
 
 use std::str::FromStr;
 
-use crate::{Error, Scene};
+use crate::limits::Budget;
+use crate::{Error, Limits, Scene};
 pub use row::{Parameter, Row};
 
 /// A generated scene.
@@ -25,9 +26,15 @@ pub struct BuiltinScene {
 pub const BUILTIN_SCENES: [Row; 5] = [cubes::ROW, slabs::ROW, marbles::ROW, hairball::ROW, needles::ROW];
 
 impl BuiltinScene {
-    /// Generates the scene.
-    pub fn generate(&self) -> Scene {
-        Scene { objects: (self.row.generate)(&self.values) }
+    /// Generates the scene. `Err`: it is larger than the limits.
+    pub fn generate(&self, limits: &Limits) -> Result<Scene, Error> {
+        let budget = Budget::new(limits);
+        let mut scene = Scene::default();
+        for object in (self.row.generate)(&self.values) {
+            budget.object(&object).map_err(|error| error.in_file(&format!("builtin:{}", self.row.name)))?;
+            scene.objects.push(object);
+        }
+        Ok(scene)
     }
 }
 

@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::random::Rng;
-use super::row::{Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -24,9 +24,9 @@ const RADIUS: f32 = 0.014;
 /// The greatest random deviation of a direction, along each axis.
 const DEVIATION: f32 = 0.12;
 
-fn generate(values: &[u32]) -> Vec<Object> {
+fn generate(values: &[u32]) -> Objects {
     let mut rng = Rng::seeded(value(values, 1));
-    (0..value(values, 0)).map(|index| needle(index, &mut rng)).collect()
+    Box::new((0..value(values, 0)).map(move |index| needle(index, &mut rng)))
 }
 
 fn needle(index: u32, rng: &mut Rng) -> Object {

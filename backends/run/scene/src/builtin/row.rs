@@ -13,6 +13,9 @@ pub struct Parameter {
     pub range: (u32, u32),
 }
 
+/// The objects of a generated scene, one after the other.
+pub(super) type Objects = Box<dyn Iterator<Item = Object>>;
+
 /// The registry row of a generated scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
@@ -23,7 +26,7 @@ pub struct Row {
     /// The parameters.
     pub parameters: &'static [Parameter],
     /// Generates the objects from the values of the parameters.
-    pub(super) generate: fn(&[u32]) -> Vec<Object>,
+    pub(super) generate: fn(&[u32]) -> Objects,
 }
 
 impl PartialEq for Row {

@@ -2,7 +2,7 @@
 //! them.
 
 use super::random::Rng;
-use super::row::{Parameter, Row, SEED, hue, value};
+use super::row::{Objects, Parameter, Row, SEED, hue, value};
 use crate::Object;
 
 pub(super) const ROW: Row = Row {
@@ -12,9 +12,9 @@ pub(super) const ROW: Row = Row {
     generate,
 };
 
-fn generate(values: &[u32]) -> Vec<Object> {
+fn generate(values: &[u32]) -> Objects {
     let mut rng = Rng::seeded(value(values, 1));
-    (0..value(values, 0)).map(|index| slab(index, &mut rng)).collect()
+    Box::new((0..value(values, 0)).map(move |index| slab(index, &mut rng)))
 }
 
 fn slab(index: u32, rng: &mut Rng) -> Object {

@@ -1,9 +1,10 @@
 //! The numbers of the body of a PLY file, in order, in each of the encodings. One line of an ASCII body is one record.
-
-use std::borrow::Cow;
+//!
+//! Nothing is collected: a number is read where it is in the file, so a body needs no memory beside its file.
 
 use super::header::{Encoding, Header, Kind};
 use crate::error::{FileError, FilePosition};
+use crate::text::quoted;
 
 /// A reader of the body.
 pub(super) struct Body<'a> {
@@ -11,72 +12,80 @@ pub(super) struct Body<'a> {
     bytes: &'a [u8],
     /// The next byte.
     at: usize,
-    /// The line being read, from 1.
+    /// The line of the next byte, from 1; at the end of the file, the last line.
     line: usize,
-    /// The unread words of the line, last first.
-    words: Vec<Cow<'a, str>>,
 }
 
 impl<'a> Body<'a> {
     pub(super) fn new(header: &Header, bytes: &'a [u8]) -> Self {
-        Body { encoding: header.encoding, bytes, at: header.length, line: header.lines, words: Vec::new() }
+        let is_empty = header.length >= bytes.len();
+        let line = if is_empty { header.lines } else { header.lines + 1 };
+        Body { encoding: header.encoding, bytes, at: header.length, line }
     }
 
     /// Returns an error at the current position.
     pub(super) fn error(&self, message: impl Into<String>) -> FileError {
         match self.encoding {
             Encoding::Ascii => FileError::line(self.line, message),
-            Encoding::Little | Encoding::Big => FileError(FilePosition::Byte(self.at), message.into()),
+            Encoding::Little | Encoding::Big => FileError::Malformed(FilePosition::Byte(self.at), message.into()),
         }
     }
 
     /// Starts the next record.
     pub(super) fn record(&mut self) -> Result<(), FileError> {
-        while self.encoding == Encoding::Ascii && self.words.is_empty() {
-            let Some(line) = self.next_line() else {
+        if self.encoding == Encoding::Ascii {
+            self.skip_empty_lines();
+            if self.at >= self.bytes.len() {
                 return Err(self.error("the file ends before its last element"));
-            };
-            self.words = line;
+            }
         }
         Ok(())
     }
 
     /// Checks that the record has no more numbers.
     pub(super) fn end_record(&mut self) -> Result<(), FileError> {
-        match self.words.last() {
-            Some(word) => Err(self.error(format!("`{word}` follows the last number of the element"))),
+        match self.word() {
+            Some(word) => {
+                let word = quoted(&String::from_utf8_lossy(word));
+                Err(self.error(format!("{word} follows the last number of the element")))
+            }
             None => Ok(()),
         }
     }
 
     /// Checks that the file has no more records. Bytes after a binary body are ignored.
     pub(super) fn end(&mut self) -> Result<(), FileError> {
-        while self.encoding == Encoding::Ascii {
-            match self.next_line() {
-                None => break,
-                Some(line) if line.is_empty() => {}
-                Some(_) => return Err(self.error("a line follows the last element")),
+        if self.encoding == Encoding::Ascii {
+            self.skip_empty_lines();
+            if self.at < self.bytes.len() {
+                return Err(self.error("a line follows the last element"));
             }
         }
         Ok(())
     }
 
-    /// Reads the length of a list.
-    pub(super) fn length(&mut self, kind: Kind) -> Result<usize, FileError> {
+    /// Reads the length of a list of numbers of type `item`. A list that the rest of the file cannot hold is an error.
+    pub(super) fn length(&mut self, kind: Kind, item: Kind) -> Result<u64, FileError> {
         let value = self.scalar(kind)?;
-        // No memory is reserved for it: a wrong length reaches the end of the file.
-        if value >= 0.0 { Ok(value as usize) } else { Err(self.error(format!("a list of length {value}"))) }
+        if value < 0.0 {
+            return Err(self.error(format!("a list of length {value}")));
+        }
+        let rest = self.bytes.len().saturating_sub(self.at) as u64;
+        let most = match self.encoding {
+            // A digit and a separator, which the last number does not need.
+            Encoding::Ascii => rest.div_ceil(2),
+            Encoding::Little | Encoding::Big => rest / item.size(),
+        };
+        if value > most as f64 {
+            return Err(self.error(format!("a list of {value} numbers, and {rest} bytes follow")));
+        }
+        Ok(value as u64)
     }
 
     /// Reads the next number.
     pub(super) fn scalar(&mut self, kind: Kind) -> Result<f64, FileError> {
         if self.encoding == Encoding::Ascii {
-            let Some(word) = self.words.pop() else {
-                return Err(self.error("the line has fewer numbers than the element"));
-            };
-            let value: f64 = word.parse().map_err(|_| self.error(format!("`{word}` is not a number")))?;
-            let is_valid = matches!(kind, Kind::F32 | Kind::F64) || value.fract() == 0.0;
-            return if is_valid { Ok(value) } else { Err(self.error(format!("`{word}` is not an integer"))) };
+            return self.ascii_scalar(kind);
         }
         Ok(match kind {
             Kind::I8 => i8::from_le_bytes(self.take()?).into(),
@@ -88,6 +97,16 @@ impl<'a> Body<'a> {
             Kind::F32 => f32::from_le_bytes(self.take()?).into(),
             Kind::F64 => f64::from_le_bytes(self.take()?),
         })
+    }
+
+    fn ascii_scalar(&mut self, kind: Kind) -> Result<f64, FileError> {
+        let Some(word) = self.word() else {
+            return Err(self.error("the line has fewer numbers than the element"));
+        };
+        let word = String::from_utf8_lossy(word);
+        let value: f64 = word.parse().map_err(|_| self.error(format!("{} is not a number", quoted(&word))))?;
+        let is_valid = matches!(kind, Kind::F32 | Kind::F64) || value.fract() == 0.0;
+        if is_valid { Ok(value) } else { Err(self.error(format!("{} is not an integer", quoted(&word)))) }
     }
 
     /// Reads the next bytes, the least significant first.
@@ -103,14 +122,26 @@ impl<'a> Body<'a> {
         Ok(bytes)
     }
 
-    fn next_line(&mut self) -> Option<Vec<Cow<'a, str>>> {
-        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
-        let length = rest.iter().position(|byte| *byte == b'\n').map_or(rest.len(), |end| end + 1);
-        self.at += length;
-        self.line += 1;
-        let words = rest.get(..length)?.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        let mut words: Vec<Cow<'a, str>> = words.map(String::from_utf8_lossy).collect();
-        words.reverse();
-        Some(words)
+    /// Returns the next word of the line; `None` at its end.
+    fn word(&mut self) -> Option<&'a [u8]> {
+        if self.encoding != Encoding::Ascii {
+            return None;
+        }
+        let rest = self.bytes.get(self.at..)?;
+        let space = rest.iter().take_while(|byte| byte.is_ascii_whitespace() && **byte != b'\n').count();
+        let rest = rest.get(space..)?;
+        let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
+        self.at += space + length;
+        rest.get(..length).filter(|word| !word.is_empty())
+    }
+
+    /// Moves to the next word, at the end of the present line and of empty lines.
+    fn skip_empty_lines(&mut self) {
+        while let Some(byte) = self.bytes.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
+            self.at += 1;
+            if *byte == b'\n' && self.at < self.bytes.len() {
+                self.line += 1;
+            }
+        }
     }
 }

@@ -1,6 +1,10 @@
 //! The header of a PLY file: its encoding, and the elements with their properties in the order of the body.
 
 use crate::error::FileError;
+use crate::text::quoted;
+
+/// The greatest length of a header in bytes.
+const MAX_HEADER: usize = 1 << 20;
 
 /// The header of a PLY file.
 pub(super) struct Header {
@@ -61,6 +65,16 @@ impl Kind {
         })
     }
 
+    /// Returns its size in bytes in a binary file.
+    pub(super) fn size(self) -> u64 {
+        match self {
+            Kind::I8 | Kind::U8 => 1,
+            Kind::I16 | Kind::U16 => 2,
+            Kind::I32 | Kind::U32 | Kind::F32 => 4,
+            Kind::F64 => 8,
+        }
+    }
+
     /// Returns the value of a colour at full intensity.
     pub(super) fn greatest(self) -> f64 {
         match self {
@@ -78,7 +92,8 @@ impl Kind {
 impl Header {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileError> {
         let (mut encoding, mut elements, mut length) = (None, Vec::<Element>::new(), 0);
-        for (line, text) in (1..).zip(bytes.split_inclusive(|byte| *byte == b'\n')) {
+        let head = head(bytes);
+        for (line, text) in (1..).zip(head.split_inclusive(|byte| *byte == b'\n')) {
             length += text.len();
             let text = std::str::from_utf8(text).map_err(|_| FileError::line(line, "the header is not UTF-8"))?;
             let words: Vec<&str> = text.split_whitespace().collect();
@@ -88,8 +103,9 @@ impl Header {
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, "1.0"] => encoding = Some(encoding_of(name, line)?),
                 ["element", name, count] => {
-                    let count =
-                        count.parse().map_err(|_| FileError::line(line, format!("`{count}` is not a count")))?;
+                    let count = count
+                        .parse()
+                        .map_err(|_| FileError::line(line, format!("{} is not a count", quoted(count))))?;
                     elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new(), line });
                 }
                 ["property", rest @ ..] => {
@@ -102,12 +118,23 @@ impl Header {
                     let encoding = encoding.ok_or_else(|| FileError::line(line, "the header has no `format`"))?;
                     return Ok(Header { encoding, elements, length, lines: line });
                 }
-                _ => return Err(FileError::line(line, format!("unknown header line `{}`", text.trim()))),
+                _ => return Err(FileError::line(line, format!("unknown header line {}", quoted(text.trim())))),
             }
         }
-        let lines = bytes.split(|byte| *byte == b'\n').count();
-        Err(FileError::line(lines, "`end_header` is missing"))
+        let lines = head.split(|byte| *byte == b'\n').count();
+        let message = match head.len() == bytes.len() {
+            true => "`end_header` is missing".to_owned(),
+            false => format!("`end_header` is missing in the first {MAX_HEADER} bytes"),
+        };
+        Err(FileError::line(lines, message))
     }
+}
+
+/// Returns the lines that may belong to a header.
+fn head(bytes: &[u8]) -> &[u8] {
+    let Some(head) = bytes.get(..MAX_HEADER) else { return bytes };
+    let end = head.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    bytes.get(..end).unwrap_or(bytes)
 }
 
 fn encoding_of(name: &str, line: usize) -> Result<Encoding, FileError> {
@@ -117,13 +144,14 @@ fn encoding_of(name: &str, line: usize) -> Result<Encoding, FileError> {
         "binary_big_endian" => Ok(Encoding::Big),
         _ => Err(FileError::line(
             line,
-            format!("unknown format `{name}`: use ascii, binary_little_endian or binary_big_endian"),
+            format!("unknown format {}: use ascii, binary_little_endian or binary_big_endian", quoted(name)),
         )),
     }
 }
 
 fn property(words: &[&str], line: usize) -> Result<Property, FileError> {
-    let kind = |name: &str| Kind::named(name).ok_or_else(|| FileError::line(line, format!("unknown type `{name}`")));
+    let kind =
+        |name: &str| Kind::named(name).ok_or_else(|| FileError::line(line, format!("unknown type {}", quoted(name))));
     match words {
         ["list", length, item, name] => {
             let length = kind(length)?;

@@ -8,19 +8,21 @@ mod body;
 mod header;
 
 use crate::error::FileError;
+use crate::limits::{Budget, OBJECT};
 use crate::{Object, Scene};
 use body::Body;
 use header::{Element, Header, Property};
 
 /// Reads a model. `color` is the colour of vertices without one.
-pub(crate) fn parse(bytes: &[u8], color: [f32; 4]) -> Result<Scene, FileError> {
+pub(crate) fn parse(bytes: &[u8], color: [f32; 4], budget: &Budget) -> Result<Scene, FileError> {
     let header = Header::parse(bytes)?;
+    budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
     let mut object = Object::default();
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => vertices(element, &mut body, color, &mut object)?,
-            "face" => faces(element, &mut body, &mut object)?,
+            "vertex" => vertices(element, &mut body, color, (&mut object, budget))?,
+            "face" => faces(element, &mut body, (&mut object, budget))?,
             "tristrips" => return Err(FileError::line(element.line, "triangle strips are not supported: use faces")),
             _ => skip(element, &mut body)?,
         }
@@ -32,7 +34,12 @@ pub(crate) fn parse(bytes: &[u8], color: [f32; 4]) -> Result<Scene, FileError> {
 /// The names of the properties of a vertex.
 const PROPERTIES: [&str; 10] = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "alpha"];
 
-fn vertices(element: &Element, body: &mut Body<'_>, color: [f32; 4], object: &mut Object) -> Result<(), FileError> {
+fn vertices(
+    element: &Element,
+    body: &mut Body<'_>,
+    color: [f32; 4],
+    (object, budget): (&mut Object, &Budget),
+) -> Result<(), FileError> {
     let slots: Vec<Option<usize>> = element
         .properties
         .iter()
@@ -64,13 +71,14 @@ fn vertices(element: &Element, body: &mut Body<'_>, color: [f32; 4], object: &mu
             }
         }
         body.end_record()?;
+        budget.vertices(object, 1)?;
         let [x, y, z, nx, ny, nz, r, g, b, a] = values;
         object.vertex([x, y, z], [nx, ny, nz], [r, g, b, a]);
     }
     Ok(())
 }
 
-fn faces(element: &Element, body: &mut Body<'_>, object: &mut Object) -> Result<(), FileError> {
+fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object, &Budget)) -> Result<(), FileError> {
     let indices = |property: &Property| ["vertex_indices", "vertex_index"].contains(&property.name.as_str());
     if !element.properties.iter().any(|property| indices(property) && property.list.is_some()) {
         return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
@@ -85,10 +93,12 @@ fn faces(element: &Element, body: &mut Body<'_>, object: &mut Object) -> Result<
                 continue;
             };
             corners.clear();
-            let length = body.length(length)?;
+            let length = body.length(length, property.kind)?;
             if length < 3 {
                 return Err(body.error(format!("a face with {length} vertices: it needs 3 or more")));
             }
+            let _corners = budget.hold(length, size_of::<u32>() as u64, "the corners of a face")?;
+            budget.triangles(length - 2)?;
             for _ in 0..length {
                 let index = body.scalar(property.kind)?;
                 if index.fract() != 0.0 || index < 0.0 || index >= count as f64 {
@@ -104,6 +114,10 @@ fn faces(element: &Element, body: &mut Body<'_>, object: &mut Object) -> Result<
 }
 
 fn skip(element: &Element, body: &mut Body<'_>) -> Result<(), FileError> {
+    // Records without properties are nothing in the file, however many there are.
+    if element.properties.is_empty() {
+        return Ok(());
+    }
     for _ in 0..element.count {
         body.record()?;
         for property in &element.properties {
@@ -115,7 +129,7 @@ fn skip(element: &Element, body: &mut Body<'_>) -> Result<(), FileError> {
 }
 
 fn skip_property(property: &Property, body: &mut Body<'_>) -> Result<(), FileError> {
-    let count = property.list.map_or(Ok(1), |length| body.length(length))?;
+    let count = property.list.map_or(Ok(1), |length| body.length(length, property.kind))?;
     for _ in 0..count {
         body.scalar(property.kind)?;
     }

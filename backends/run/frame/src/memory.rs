@@ -1,0 +1,130 @@
+//! The memory of a frame: the bytes of every resource, and the rows of a slice that fit.
+//!
+//! Input: a plan, the values of its symbols and the limits of a device. Output: bytes and rows, or an error with the numbers.
+//! Every device asks here before it allocates; this module allocates nothing.
+
+use fragbuf_codegen::{Plan, PlannedResource, SymbolId};
+use fragbuf_templates::vocabulary::Element;
+
+use crate::pool_size::is_set_by_host;
+use crate::{Error, MemoryNeed, Values};
+
+/// The default budget of a device: 2 GiB.
+pub const DEFAULT_MEMORY: u64 = 2 << 30;
+
+/// The limits of a device, and the memory that it allocates for a frame beside the plan's resources.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryLimits {
+    /// The bytes that the device may allocate for a frame at one time.
+    pub budget: u64,
+    /// The greatest size of a buffer in bytes, and the name of the limit.
+    pub buffer: (u64, &'static str),
+    /// Whether the device has its own copy of external textures.
+    pub copies_external: bool,
+    /// The bytes per pixel of the frame: its image.
+    pub per_pixel: u64,
+    /// The bytes per pixel of a slice.
+    pub per_slice_pixel: u64,
+    /// The bytes per slice.
+    pub per_slice: u64,
+}
+
+impl MemoryLimits {
+    /// Returns the rows of a slice: those that the caller requests, or the most that fit. `Err`: one row does not fit.
+    pub fn rows(&self, plan: &Plan, values: &Values, requested: Option<u32>) -> Result<u32, Error> {
+        if let Some(rows) = requested {
+            return Ok(rows.clamp(1, values.height().max(1)));
+        }
+        // Lower slices have smaller buffers, but there are more of them. The memory of all slices is that of a former attempt,
+        // until it is enough.
+        let mut all_slices = 0;
+        loop {
+            let attempt = |rows: u32| self.check(plan, &values.with_rows(rows), all_slices);
+            // If one row does not fit, the error has its numbers.
+            attempt(1)?;
+            let rows = greatest(values.height(), |rows| rows == 0 || attempt(rows).is_ok()).max(1);
+            let needed = self.all_slices(&values.with_rows(rows));
+            if needed <= all_slices {
+                return Ok(rows);
+            }
+            all_slices = needed;
+        }
+    }
+
+    /// Returns the bytes of every resource, for slices of the rows of `values`. `Err`: a buffer exceeds its limit, or all together
+    /// exceed the budget.
+    pub fn sizes(&self, plan: &Plan, values: &Values) -> Result<Vec<u64>, Error> {
+        self.check(plan, values, self.all_slices(values))
+    }
+
+    fn all_slices(&self, values: &Values) -> u64 {
+        self.per_slice.saturating_mul(values.slices().into())
+    }
+
+    fn check(&self, plan: &Plan, values: &Values, all_slices: u64) -> Result<Vec<u64>, Error> {
+        let size = (values.width(), values.height());
+        let image = self.per_pixel.saturating_mul(u64::from(size.0) * u64::from(size.1));
+        let slices = self.per_slice_pixel.saturating_mul(values.pixels()).saturating_add(all_slices);
+        let budget = self.budget;
+        let mut need = MemoryNeed { size, rows: values.rows(), image, textures: 0, buffers: slices, budget };
+        let mut sizes = resource_bytes(plan, values)?.into_iter().map(|(_, bytes)| bytes).collect::<Vec<_>>();
+        for (bytes, planned) in sizes.iter_mut().zip(&plan.resources) {
+            if !is_texture(planned) {
+                self.check_buffer(&planned.resource.name, *bytes)?;
+                need.buffers = need.buffers.saturating_add(*bytes);
+                continue;
+            }
+            if planned.is_external() && !self.copies_external {
+                *bytes = 0;
+            }
+            need.textures = need.textures.saturating_add(*bytes);
+        }
+        if need.total() <= budget { Ok(sizes) } else { Err(Error::OverBudget(need)) }
+    }
+
+    fn check_buffer(&self, name: &str, needed: u64) -> Result<(), Error> {
+        let (limit, limit_name) = self.buffer;
+        if needed <= limit {
+            return Ok(());
+        }
+        Err(Error::TooLarge {
+            what: format!("`{name}`"),
+            needed,
+            limit,
+            limit_name,
+            help: "use a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
+        })
+    }
+}
+
+/// Returns name and bytes of every resource: a buffer for one slice, a texture for the whole frame. Counted symbols are 0 until
+/// fragments are counted. Where a host step sets k, the sizes are those for the greatest k, so that words written before the step
+/// keep their positions.
+pub fn resource_bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a str, u64)>, Error> {
+    let for_any_k = is_set_by_host(plan, SymbolId::K).then(|| values.with(SymbolId::K, plan.capacity().into()));
+    let slice = for_any_k.as_ref().unwrap_or(values);
+    let whole = slice.with_rows(slice.height());
+    let sizes = plan.resources.iter().map(|planned| {
+        let name = &planned.resource.name;
+        let values = if is_texture(planned) { &whole } else { slice };
+        Ok((name.as_str(), values.evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4)))
+    });
+    sizes.collect()
+}
+
+fn is_texture(planned: &PlannedResource) -> bool {
+    matches!(planned.resource.element, Element::Texture(_))
+}
+
+/// Returns the greatest number up to `end` that holds. 0 must hold, and no number may hold after one that does not.
+fn greatest(end: u32, holds: impl Fn(u32) -> bool) -> u32 {
+    if holds(end) {
+        return end;
+    }
+    let (mut yes, mut no) = (0, end);
+    while no - yes > 1 {
+        let middle = yes + (no - yes) / 2;
+        if holds(middle) { yes = middle } else { no = middle }
+    }
+    yes
+}

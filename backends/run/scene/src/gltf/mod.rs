@@ -1,0 +1,83 @@
+//! glTF 2.0, as JSON or GLB: the triangles of the default scene, with the transforms of nodes, normals, vertex colours and base
+//! colour factors of materials. Alpha is used in every alpha mode. Textures, skins and animations are ignored.
+//!
+//! Everything is checked before it is used: the memory of the JSON, the length of every buffer, the type and range of every
+//! accessor that is read, and that the nodes are a forest.
+
+mod accessor;
+mod buffers;
+mod json;
+mod nodes;
+mod primitive;
+
+use std::path::Path;
+
+use glam::Mat4;
+use gltf::{Gltf, Node};
+
+use crate::error::{Error, FileError, FilePosition};
+use crate::limits::{Budget, OBJECT};
+use crate::{Object, Scene};
+use primitive::Reader;
+
+/// The greatest number of errors that a message lists.
+const MAX_LISTED: usize = 5;
+
+/// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
+pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget) -> Result<Scene, Error> {
+    let file = path.display().to_string();
+    let mut model = document(bytes, budget).map_err(|error| error.in_file(&file))?;
+    let blob = model.blob.take();
+    let buffers = buffers::read(&model, blob, path, budget)?;
+    let reader = Reader { buffers: &buffers, color, budget };
+    scene(&model, &reader).map_err(|error| error.in_file(&file))
+}
+
+/// Parses the JSON.
+fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
+    json::take(bytes, budget)?;
+    Gltf::from_slice(bytes).map_err(|error| match error {
+        gltf::Error::Deserialize(error) => FileError::Malformed(FilePosition::Line(error.line()), error.to_string()),
+        gltf::Error::Validation(errors) => {
+            let listed = errors.iter().take(MAX_LISTED).map(|(path, error)| format!("{path}: {error}"));
+            let mut listed: Vec<String> = listed.collect();
+            if errors.len() > MAX_LISTED {
+                listed.push(format!("{} more errors", errors.len() - MAX_LISTED));
+            }
+            FileError::whole(listed.join("; "))
+        }
+        other => FileError::whole(other.to_string()),
+    })
+}
+
+/// Returns the objects of the default scene: one per node with a mesh.
+fn scene(model: &Gltf, reader: &Reader<'_>) -> Result<Scene, FileError> {
+    nodes::check(model)?;
+    let roots = model.default_scene().or_else(|| model.scenes().next());
+    let roots = roots.ok_or_else(|| FileError::whole("the file has no scene"))?;
+    let mut scene = Scene::default();
+    let mut visited = vec![false; model.nodes().len()];
+    let mut pending: Vec<(Node<'_>, Mat4)> = roots.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+    pending.reverse();
+    while let Some((node, outer)) = pending.pop() {
+        if visited.get_mut(node.index()).is_some_and(|visited| std::mem::replace(visited, true)) {
+            return Err(FileError::whole(format!("node {} occurs twice in scene {}", node.index(), roots.index())));
+        }
+        let transform = outer * Mat4::from_cols_array_2d(&node.transform().matrix());
+        if let Some(mesh) = node.mesh() {
+            let name = node.name().or(mesh.name()).unwrap_or_default().to_owned();
+            reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
+            let mut object = Object { name, ..Object::default() };
+            for primitive in mesh.primitives() {
+                reader.primitive(&primitive, &transform, &mut object)?;
+            }
+            scene.objects.push(object);
+        }
+        let first = pending.len();
+        pending.extend(node.children().map(|child| (child, transform)));
+        if let Some(children) = pending.get_mut(first..) {
+            children.reverse();
+        }
+    }
+    Ok(scene)
+}

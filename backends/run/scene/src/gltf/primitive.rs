@@ -1,0 +1,120 @@
+//! The vertices and triangles of a primitive.
+
+use glam::{Mat3, Mat4, Vec3};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::Mode;
+use gltf::{Primitive, Semantic};
+
+use super::accessor::{Elements, Types};
+use crate::Object;
+use crate::error::FileError;
+use crate::limits::Budget;
+
+const POSITIONS: Types = Types {
+    dimensions: &[Dimensions::Vec3],
+    // Integers: KHR_mesh_quantization.
+    components: &[DataType::F32, DataType::I8, DataType::U8, DataType::I16, DataType::U16],
+};
+
+const NORMALS: Types =
+    Types { dimensions: &[Dimensions::Vec3], components: &[DataType::F32, DataType::I8, DataType::I16] };
+
+const COLORS: Types = Types {
+    dimensions: &[Dimensions::Vec3, Dimensions::Vec4],
+    components: &[DataType::F32, DataType::U8, DataType::U16],
+};
+
+const INDICES: Types =
+    Types { dimensions: &[Dimensions::Scalar], components: &[DataType::U8, DataType::U16, DataType::U32] };
+
+/// The buffers of a model and the settings for its primitives.
+pub(super) struct Reader<'a> {
+    pub(super) buffers: &'a [Vec<u8>],
+    pub(super) color: [f32; 4],
+    pub(super) budget: &'a Budget,
+}
+
+impl Reader<'_> {
+    /// Adds a primitive to an object.
+    pub(super) fn primitive(
+        &self,
+        primitive: &Primitive<'_>,
+        transform: &Mat4,
+        object: &mut Object,
+    ) -> Result<(), FileError> {
+        let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
+        let corners_of = match primitive.mode() {
+            Mode::Triangles => |turn: usize| [3 * turn, 3 * turn + 1, 3 * turn + 2],
+            // Every second triangle of a strip is turned, so that all have the same front.
+            Mode::TriangleStrip => |turn: usize| [turn + turn % 2, turn + 1 - turn % 2, turn + 2],
+            Mode::TriangleFan => |turn: usize| [0, turn + 1, turn + 2],
+            other => return Err(error(format!("{other:?}: only triangles are supported"))),
+        };
+        let first = object.positions.len() as u32;
+        let vertices = self.vertices(primitive, transform, object)?;
+        let indices =
+            primitive.indices().map(|accessor| Elements::of(&accessor, &INDICES, self.buffers)).transpose()?;
+        let count = indices.as_ref().map_or(vertices, |indices| indices.count);
+        let triangles = match primitive.mode() {
+            Mode::Triangles => count / 3,
+            _ => count.saturating_sub(2),
+        };
+        self.budget.triangles(triangles as u64)?;
+        object.triangles.reserve(triangles);
+        for turn in 0..triangles {
+            let mut triangle = [0; 3];
+            for (corner, number) in triangle.iter_mut().zip(corners_of(turn)) {
+                let index = indices.as_ref().map_or(number as u32, |indices| indices.index(number));
+                if index as usize >= vertices {
+                    return Err(error(format!("no vertex {index}: it has {vertices}")));
+                }
+                *corner = first + index;
+            }
+            object.triangles.push(triangle);
+        }
+        Ok(())
+    }
+
+    /// Adds the vertices of a primitive to an object; returns their number.
+    fn vertices(&self, primitive: &Primitive<'_>, transform: &Mat4, object: &mut Object) -> Result<usize, FileError> {
+        let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
+        let read = |semantic: Semantic, types: &Types| {
+            let accessor = primitive.get(&semantic);
+            accessor.map(|accessor| Elements::of(&accessor, types, self.buffers)).transpose()
+        };
+        let positions = read(Semantic::Positions, &POSITIONS)?.ok_or_else(|| error("it has no POSITION".to_owned()))?;
+        let normals = read(Semantic::Normals, &NORMALS)?;
+        let colors = read(Semantic::Colors(0), &COLORS)?;
+        for (name, elements) in [("NORMAL", &normals), ("COLOR_0", &colors)] {
+            if let Some(elements) = elements.as_ref().filter(|elements| elements.count != positions.count) {
+                return Err(error(format!("{} of {name}, and {} of POSITION", elements.count, positions.count)));
+            }
+        }
+        self.budget.vertices(object, positions.count as u64)?;
+        let material = primitive.material();
+        // A primitive without a material has the default material of the format, white and opaque; `color` replaces it.
+        let factor = material.index().map_or(self.color, |_| material.pbr_metallic_roughness().base_color_factor());
+        let directions = Mat3::from_mat4(*transform).inverse().transpose();
+        for index in 0..positions.count {
+            let position = transform.transform_point3(vector(&positions, index));
+            if !position.is_finite() {
+                return Err(error(format!("position {index} is not finite")));
+            }
+            let normal = normals.as_ref().map_or(Vec3::ZERO, |normals| directions * vector(normals, index));
+            let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
+            let color = colors.as_ref().map_or([1.0; 4], |colors| rgba(colors, index));
+            let color = std::array::from_fn(|channel| factor[channel] * color[channel]);
+            object.vertex(position.to_array(), normal.to_array(), color);
+        }
+        Ok(positions.count)
+    }
+}
+
+fn vector(elements: &Elements<'_>, index: usize) -> Vec3 {
+    Vec3::new(elements.float(index, 0), elements.float(index, 1), elements.float(index, 2))
+}
+
+fn rgba(elements: &Elements<'_>, index: usize) -> [f32; 4] {
+    let alpha = if elements.components == 4 { elements.float(index, 3) } else { 1.0 };
+    [elements.float(index, 0), elements.float(index, 1), elements.float(index, 2), alpha]
+}
