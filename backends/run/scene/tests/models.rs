@@ -264,7 +264,7 @@ fn malformed_gltf_is_an_error() {
         (gltf(3, &uri(&buffer(2)[..40])), "it has 40 bytes, but declares 48"),
         (gltf(3, ""), "no binary chunk"),
         (gltf(3, r#", "uri": "data:;base64,!!""#), "its data is invalid"),
-        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"mesh\": 7"), "nodes[0].mesh"),
+        (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"mesh\": 7"), "node 0: its mesh is number 7"),
         (gltf(3, &uri(&buffer(2))).replace("\"mesh\": 0", "\"children\": [0]"), "node 0 is its own child"),
     ];
     for (text, part) in cases {

@@ -22,6 +22,9 @@ pub(super) fn take(bytes: &[u8], budget: &Budget) -> Result<(), FileError> {
     };
     // The version, the length of the file, the length of the JSON, and its type.
     let word = |at: usize| rest.get(at..)?.first_chunk().map(|word| u32::from_le_bytes(*word));
+    if let Some(version) = word(0).filter(|version| *version != 2) {
+        return Err(FileError::whole(format!("GLB version {version}: version 2 is read")));
+    }
     let (Some(length), Some(json)) = (word(4), word(8)) else {
         return Err(FileError::whole(format!("the header is incomplete: {} of {GLB_HEADER} bytes", bytes.len())));
     };

@@ -9,6 +9,7 @@ mod buffers;
 mod json;
 mod nodes;
 mod primitive;
+mod validate;
 
 use std::path::Path;
 
@@ -20,9 +21,6 @@ use crate::limits::{Budget, OBJECT};
 use crate::{Object, Scene};
 use primitive::Reader;
 
-/// The greatest number of errors that a message lists.
-const MAX_LISTED: usize = 5;
-
 /// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
 pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget) -> Result<Scene, Error> {
     let file = path.display().to_string();
@@ -33,21 +31,15 @@ pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget)
     scene(&model, &reader).map_err(|error| error.in_file(&file))
 }
 
-/// Parses the JSON.
+/// Parses and validates the JSON.
 fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
     json::take(bytes, budget)?;
-    Gltf::from_slice(bytes).map_err(|error| match error {
+    let model = Gltf::from_slice_without_validation(bytes).map_err(|error| match error {
         gltf::Error::Deserialize(error) => FileError::Malformed(FilePosition::Line(error.line()), error.to_string()),
-        gltf::Error::Validation(errors) => {
-            let listed = errors.iter().take(MAX_LISTED).map(|(path, error)| format!("{path}: {error}"));
-            let mut listed: Vec<String> = listed.collect();
-            if errors.len() > MAX_LISTED {
-                listed.push(format!("{} more errors", errors.len() - MAX_LISTED));
-            }
-            FileError::whole(listed.join("; "))
-        }
         other => FileError::whole(other.to_string()),
-    })
+    })?;
+    validate::validate(model.as_json())?;
+    Ok(model)
 }
 
 /// Returns the objects of the default scene: one per node with a mesh.
