@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::error::FileError;
 use crate::limits::Budget;
-use crate::text::{lines, numbers, quoted};
+use crate::text::{lines, numbers, quoted, without_comment};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +62,12 @@ impl Materials {
             return Err(FileError::line(line, "`newmtl` without a name"));
         }
         budget.take(1, MATERIAL + name.len() as u64, "the materials")?;
+        // A comment may follow the name; a `#` may also be a part of it.
+        let short = single_spaces(without_comment(&name));
+        if short != name && !short.is_empty() {
+            budget.take(1, MATERIAL + short.len() as u64, "the materials")?;
+            self.by_name.entry(short).or_insert(self.materials.len());
+        }
         self.by_name.insert(name, self.materials.len());
         self.materials.push(Material { color: None, alpha: 1.0 });
         Ok(())
@@ -70,7 +76,8 @@ impl Materials {
     /// Returns the index of the material `name`.
     pub(crate) fn find(&self, name: &str, line: usize) -> Result<usize, FileError> {
         let name = single_spaces(name);
-        self.by_name.get(&name).copied().ok_or_else(|| {
+        let found = self.by_name.get(&name).or_else(|| self.by_name.get(&single_spaces(without_comment(&name))));
+        found.copied().ok_or_else(|| {
             let mut names: Vec<&str> = self.by_name.keys().map(String::as_str).collect();
             names.sort_unstable();
             let more = names.len().saturating_sub(MAX_LISTED);

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: `v` (with colours, if present), `vn`, `f`, `o` and `g`, `mtllib` and `usemtl`. Polygons become fans.
+//! Wavefront OBJ: `v` (with a colour and alpha, if present), `vn`, `f`, `o` and `g`, `mtllib` and `usemtl`. Polygons become fans.
 //!
 //! The reader is our own because every error needs its line: `tobj` reports no lines, ignores unknown statements and materials,
 //! and panics on a short `Kd`. Curves, surfaces and display statements are ignored; an unknown statement is an error.
@@ -56,7 +56,7 @@ const IGNORED: [&str; 37] = [
 type Library<'a> = dyn Fn(&str) -> Result<(String, Vec<u8>), Error> + 'a;
 
 /// The bytes of a `v` or a `vn` in the lists of the reader, at most.
-const LISTED: u64 = 12 + 16;
+const LISTED: u64 = 12 + 20;
 
 /// The bytes of an entry of [`Reader::known`].
 const KNOWN: u64 = 64;
@@ -92,7 +92,7 @@ struct Reader<'a> {
     budget: &'a Budget,
     positions: Vec<[f32; 3]>,
     /// Per position, if the model gives one.
-    colors: Vec<Option<[f32; 3]>>,
+    colors: Vec<Option<[f32; 4]>>,
     normals: Vec<[f32; 3]>,
     materials: Materials,
     material: Option<usize>,
@@ -125,11 +125,12 @@ impl<'a> Reader<'a> {
     fn statement(&mut self, keyword: &str, words: &str, line: usize) -> Result<(), FileError> {
         match keyword {
             "v" => {
-                let ([x, y, z, rest @ ..], count): ([f32; 7], usize) = numbers(words, &[3, 4, 6, 7], line)?;
+                let ([x, y, z, r, g, b, a], count) = numbers(words, &[3, 4, 6, 7], line)?;
                 self.budget.take(1, LISTED, "the list of positions")?;
                 self.positions.push([x, y, z]);
-                let [r, g, b, _] = rest;
-                self.colors.push((count >= 6).then_some([r, g, b]));
+                // A single number after the position is its weight in curves, which are ignored.
+                let alpha = if count == 7 { a } else { 1.0 };
+                self.colors.push((count >= 6).then_some([r, g, b, alpha]));
             }
             "vn" => {
                 self.budget.take(1, LISTED, "the list of normals")?;
@@ -203,9 +204,9 @@ impl<'a> Reader<'a> {
         let [r, g, b, a] = self.color;
         let material = self.material.and_then(|index| self.materials.get(index));
         let vertex_color = self.colors.get(position).copied().flatten();
-        let [r, g, b] = material.and_then(|material| material.color).or(vertex_color).unwrap_or([r, g, b]);
-        let opaque_or_default = if vertex_color.is_some() { 1.0 } else { a };
-        [r, g, b, material.map_or(opaque_or_default, |material| material.alpha)]
+        let [r, g, b, a] = vertex_color.unwrap_or([r, g, b, a]);
+        let [r, g, b] = material.and_then(|material| material.color).unwrap_or([r, g, b]);
+        [r, g, b, material.map_or(a, |material| material.alpha)]
     }
 
     fn end_object(&mut self) {

@@ -10,18 +10,47 @@ const MAX_LINE: usize = 16 << 20;
 /// The greatest length of a part of a file that a message quotes, in characters.
 const MAX_QUOTED: usize = 60;
 
+/// The statements whose rest is a name. A `#` in it is part of the name, as 3ds Max writes `Material #1`.
+const NAMED: [&str; 6] = ["newmtl", "usemtl", "mtllib", "o", "g", "map_Kd"];
+
+/// Returns the first line without its end, and the rest of the bytes after it. A line ends with a line feed, a carriage return, or
+/// both. `None`: there is no line.
+pub(crate) fn first_line(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    if bytes.is_empty() {
+        return None;
+    }
+    let end = bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(bytes.len());
+    let (line, rest) = bytes.split_at(end);
+    let rest = rest.strip_prefix(b"\r\n").or_else(|| rest.get(1..)).unwrap_or_default();
+    Some((line, rest))
+}
+
+/// Returns a text without its byte order mark.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// Returns the lines with their numbers, from 1, without comments after `#` and empty lines. A line that ends in a backslash
-/// continues in the next; it has the number of its first part. Invalid UTF-8 becomes U+FFFD.
+/// continues in the next, unless the backslash is in a comment; it has the number of its first part. Invalid UTF-8 becomes U+FFFD.
 pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = Result<(usize, Cow<'_, str>), FileError>> {
-    let mut rest = bytes.split(|byte| *byte == b'\n').zip(1..);
+    let (mut rest, mut next) = (without_mark(bytes), 1);
     std::iter::from_fn(move || {
-        let (first, number) = rest.next()?;
+        let number = next;
+        let mut line = || {
+            let (line, after) = first_line(rest)?;
+            (rest, next) = (after, next + 1);
+            Some(line)
+        };
+        let first = line()?;
         let (mut whole, mut last) = (Cow::Borrowed(first), first);
-        while let Some(part) = last.trim_ascii_end().strip_suffix(b"\\") {
+        let is_named = is_named(first);
+        // Only the last part is searched: a comment in an earlier one has ended the statement.
+        let continues = |part: &[u8]| is_named || !part.contains(&b'#');
+        while let Some(part) = last.trim_ascii_end().strip_suffix(b"\\").filter(|part| continues(part)) {
             let joined = whole.to_mut();
             joined.truncate(joined.len() - (last.len() - part.len()));
             joined.push(b' ');
-            last = rest.next().map_or(&b""[..], |(line, _)| line);
+            last = line().unwrap_or_default();
             joined.extend_from_slice(last);
             if joined.len() > MAX_LINE {
                 break;
@@ -35,20 +64,34 @@ pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = Result<(usize, Cow<'_,
     .filter(|line| !matches!(line, Ok((_, statement)) if statement.is_empty()))
 }
 
+/// Whether a `#` begins a comment in a line.
+fn has_comment(line: &[u8]) -> bool {
+    line.contains(&b'#') && !is_named(line)
+}
+
+/// Whether the rest of a statement is a name.
+fn is_named(line: &[u8]) -> bool {
+    let keyword = line.trim_ascii_start().split(u8::is_ascii_whitespace).next().unwrap_or_default();
+    NAMED.iter().any(|name| name.as_bytes() == keyword)
+}
+
 /// Returns a line as text, without its comment and the space around it.
 fn statement(line: Cow<'_, [u8]>) -> Cow<'_, str> {
+    let has_comment = has_comment(&line);
     let text = match line {
         Cow::Borrowed(bytes) => String::from_utf8_lossy(bytes),
         Cow::Owned(bytes) => Cow::Owned(String::from_utf8_lossy(&bytes).into_owned()),
     };
+    let trimmed = |text: &str| if has_comment { without_comment(text).len() } else { text.trim_end().len() };
     match text {
-        Cow::Borrowed(text) => Cow::Borrowed(without_comment(text)),
-        Cow::Owned(text) => Cow::Owned(without_comment(&text).to_owned()),
+        Cow::Borrowed(text) => Cow::Borrowed(text.get(..trimmed(text)).unwrap_or_default().trim()),
+        Cow::Owned(text) => Cow::Owned(text.get(..trimmed(&text)).unwrap_or_default().trim().to_owned()),
     }
 }
 
-fn without_comment(line: &str) -> &str {
-    line.split('#').next().unwrap_or("").trim()
+/// Returns the text before a comment.
+pub(crate) fn without_comment(line: &str) -> &str {
+    line.split('#').next().unwrap_or("").trim_end()
 }
 
 /// Returns a part of a file for a message: in backquotes, and shortened if it is long.

@@ -107,6 +107,49 @@ fn mtl_errors_have_their_file_and_line() {
     assert!(matches!(loaded(&[("m.obj", b"mtllib none.mtl\n")]), Err(Error::Unreadable { .. })));
 }
 
+#[test]
+fn comments_end_with_their_line_and_names_have_any_letter() {
+    let model = b"\xef\xbb\xbf# from C:\\models\\\nmtllib a.mtl\nv 0 0 0 # b\\\nv 1 0 0\nv 0 1 0\nusemtl Material #1\nf 1 2 3\n\
+        usemtl Material #2\nf 1 3 2\nusemtl plain # a comment\nf 2 1 3\n";
+    let library =
+        b"\xef\xbb\xbfnewmtl Material #1\nKd 1 0 0\nnewmtl Material #2\nKd 0 1 0\nnewmtl plain # another\nKd 0 0 1\n";
+    let scene = loaded(&[("m.obj", model), ("a.mtl", library)]).unwrap();
+    let object = &scene.objects[0];
+    let colors: Vec<[f32; 4]> = object.triangles.iter().map(|triangle| object.colors[triangle[0] as usize]).collect();
+    assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]);
+}
+
+#[test]
+fn colours_of_positions_have_an_alpha() {
+    let scene = loaded(&[("m.obj", b"v 0 0 0 1 0 0 0.5\nv 1 0 0 0 1 0\nv 0 1 0 1.0\nf 1 2 3\n")]).unwrap();
+    assert_eq!(scene.objects[0].colors, [[1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 1.0], COLOR]);
+}
+
+#[test]
+fn lines_end_in_three_ways() {
+    let text = "v 0 0 0\n\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let (_, position, message) = malformed(&[("m.obj", text.replace('\n', end).as_bytes())]);
+        assert_eq!(position, FilePosition::Line(6), "{message}");
+    }
+    let text =
+        String::from_utf8(ply("ascii", b"0 0 0 255 255 255\n1 0 0 0 0 0\n\n0 1 0.5 51 51 51\n3 0 1 2\n7\n")).unwrap();
+    let expected = loaded(&[("m.ply", text.as_bytes())]).unwrap();
+    let wrong = text.replace("3 0 1 2", "3 0 1 3");
+    let line = 1 + wrong.lines().position(|line| line == "3 0 1 3").unwrap();
+    for end in ["\r\n", "\r"] {
+        assert_eq!(loaded(&[("m.ply", text.replace('\n', end).as_bytes())]).unwrap(), expected);
+        let (_, position, message) = malformed(&[("m.ply", wrong.replace('\n', end).as_bytes())]);
+        assert_eq!(position, FilePosition::Line(line), "{message}");
+    }
+    // Lines have no meaning in the body; a comment has any encoding.
+    let body = text.find("end_header\n").unwrap() + "end_header\n".len();
+    let one_line = format!("{}{}", &text[..body], text[body..].replace('\n', " "));
+    assert_eq!(loaded(&[("m.ply", one_line.as_bytes())]).unwrap(), expected);
+    let latin = [&text.as_bytes()[..body - 11], b"comment caf\xe9\n", &text.as_bytes()[body - 11..]].concat();
+    assert_eq!(loaded(&[("m.ply", &latin)]).unwrap(), expected);
+}
+
 fn ply(format: &str, body: &[u8]) -> Vec<u8> {
     let header = format!(
         "ply\nformat {format} 1.0\ncomment made here\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
@@ -174,8 +217,8 @@ fn ply_errors_have_lines() {
         ("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n".to_owned(), 3, "no `x`"),
         ("ply\nend_header\n".to_owned(), 2, "no `format`"),
         ("ply\nformat ascii 1.0\nelement face 0\nend_header\n".to_owned(), 3, "no list `vertex_indices`"),
-        (body("0 0 0\n1 0\n"), 11, "fewer numbers"),
-        (body("0 0 0\n1 0 0 4\n"), 11, "`4` follows"),
+        (body("0 0 0\n1 0\n"), 11, "ends before its last"),
+        (body("0 0 0\n1 0 0 4\n"), 11, "ends before its last"),
         (body("0 0 0\n1 0 zero\n"), 11, "`zero` is not a number"),
         (body("0 0 0\n1 0 inf\n"), 11, "`z` is not finite"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), 13, "no vertex 3"),
@@ -183,7 +226,7 @@ fn ply_errors_have_lines() {
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), 13, "not an integer"),
         (body("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), 13, "a face with 2"),
         (body("0 0 0\n1 0 0\n0 1 0\n"), 12, "ends before its last"),
-        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "follows the last"),
+        (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "`9` follows the last"),
     ];
     let cases: Vec<(&str, usize, &str)> =
         cases.iter().map(|(text, line, part)| (text.as_str(), *line, *part)).collect();

@@ -18,12 +18,13 @@ use gltf::{Gltf, Node};
 
 use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
+use crate::text::without_mark;
 use crate::{Object, Scene};
 use primitive::Reader;
 
 /// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
 pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget) -> Result<Scene, Error> {
-    let file = path.display().to_string();
+    let (file, bytes) = (path.display().to_string(), without_mark(bytes));
     let mut model = document(bytes, budget).map_err(|error| error.in_file(&file))?;
     let blob = model.blob.take();
     let buffers = buffers::read(&model, blob, path, budget)?;

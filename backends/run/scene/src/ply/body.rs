@@ -1,4 +1,5 @@
-//! The numbers of the body of a PLY file, in order, in each of the encodings. One line of an ASCII body is one record.
+//! The numbers of the body of a PLY file, in order, in each of the encodings. In an ASCII body they are separated by space or line
+//! ends; lines have no other meaning.
 //!
 //! Nothing is collected: a number is read where it is in the file, so a body needs no memory beside its file.
 
@@ -31,37 +32,18 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Starts the next record.
-    pub(super) fn record(&mut self) -> Result<(), FileError> {
-        if self.encoding == Encoding::Ascii {
-            self.skip_empty_lines();
-            if self.at >= self.bytes.len() {
-                return Err(self.error("the file ends before its last element"));
-            }
+    /// Checks that the file has no more records. Bytes after a binary body are ignored.
+    pub(super) fn end(&mut self) -> Result<(), FileError> {
+        if self.encoding != Encoding::Ascii {
+            return Ok(());
         }
-        Ok(())
-    }
-
-    /// Checks that the record has no more numbers.
-    pub(super) fn end_record(&mut self) -> Result<(), FileError> {
         match self.word() {
             Some(word) => {
                 let word = quoted(&String::from_utf8_lossy(word));
-                Err(self.error(format!("{word} follows the last number of the element")))
+                Err(self.error(format!("{word} follows the last element")))
             }
             None => Ok(()),
         }
-    }
-
-    /// Checks that the file has no more records. Bytes after a binary body are ignored.
-    pub(super) fn end(&mut self) -> Result<(), FileError> {
-        if self.encoding == Encoding::Ascii {
-            self.skip_empty_lines();
-            if self.at < self.bytes.len() {
-                return Err(self.error("a line follows the last element"));
-            }
-        }
-        Ok(())
     }
 
     /// Reads the length of a list of numbers of type `item`. A list that the rest of the file cannot hold is an error.
@@ -101,7 +83,7 @@ impl<'a> Body<'a> {
 
     fn ascii_scalar(&mut self, kind: Kind) -> Result<f64, FileError> {
         let Some(word) = self.word() else {
-            return Err(self.error("the line has fewer numbers than the element"));
+            return Err(self.error("the file ends before its last element"));
         };
         let word = String::from_utf8_lossy(word);
         let value: f64 = word.parse().map_err(|_| self.error(format!("{} is not a number", quoted(&word))))?;
@@ -122,26 +104,20 @@ impl<'a> Body<'a> {
         Ok(bytes)
     }
 
-    /// Returns the next word of the line; `None` at its end.
+    /// Returns the next word; `None` at the end of the file.
     fn word(&mut self) -> Option<&'a [u8]> {
-        if self.encoding != Encoding::Ascii {
-            return None;
-        }
-        let rest = self.bytes.get(self.at..)?;
-        let space = rest.iter().take_while(|byte| byte.is_ascii_whitespace() && **byte != b'\n').count();
-        let rest = rest.get(space..)?;
-        let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
-        self.at += space + length;
-        rest.get(..length).filter(|word| !word.is_empty())
-    }
-
-    /// Moves to the next word, at the end of the present line and of empty lines.
-    fn skip_empty_lines(&mut self) {
         while let Some(byte) = self.bytes.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
             self.at += 1;
-            if *byte == b'\n' && self.at < self.bytes.len() {
+            // A carriage return and a line feed are one line end.
+            let next = self.bytes.get(self.at);
+            let is_end = *byte == b'\n' || (*byte == b'\r' && next != Some(&b'\n'));
+            if is_end && next.is_some() {
                 self.line += 1;
             }
         }
+        let rest = self.bytes.get(self.at..)?;
+        let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
+        self.at += length;
+        rest.get(..length).filter(|word| !word.is_empty())
     }
 }

@@ -1,7 +1,7 @@
 //! The header of a PLY file: its encoding, and the elements with their properties in the order of the body.
 
 use crate::error::FileError;
-use crate::text::quoted;
+use crate::text::{first_line, quoted};
 
 /// The greatest length of a header in bytes.
 const MAX_HEADER: usize = 1 << 20;
@@ -93,9 +93,13 @@ impl Header {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileError> {
         let (mut encoding, mut elements, mut length) = (None, Vec::<Element>::new(), 0);
         let head = head(bytes);
-        for (line, text) in (1..).zip(head.split_inclusive(|byte| *byte == b'\n')) {
-            length += text.len();
-            let text = std::str::from_utf8(text).map_err(|_| FileError::line(line, "the header is not UTF-8"))?;
+        let (mut rest, mut line) = (head, 0);
+        while let Some((text, after)) = first_line(rest) {
+            line += 1;
+            length += rest.len() - after.len();
+            rest = after;
+            // Comments may be in any encoding.
+            let text = String::from_utf8_lossy(text);
             let words: Vec<&str> = text.split_whitespace().collect();
             match words.as_slice() {
                 ["ply"] if line == 1 => {}
@@ -121,12 +125,11 @@ impl Header {
                 _ => return Err(FileError::line(line, format!("unknown header line {}", quoted(text.trim())))),
             }
         }
-        let lines = head.split(|byte| *byte == b'\n').count();
         let message = match head.len() == bytes.len() {
             true => "`end_header` is missing".to_owned(),
             false => format!("`end_header` is missing in the first {MAX_HEADER} bytes"),
         };
-        Err(FileError::line(lines, message))
+        Err(FileError::line(line.max(1), message))
     }
 }
 

@@ -55,7 +55,6 @@ fn vertices(
     // A colour without alpha is opaque.
     let defaults = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, r, g, b, if has_colors { 1.0 } else { a }];
     for _ in 0..element.count {
-        body.record()?;
         let mut values: [f32; 10] = defaults;
         for (property, slot) in element.properties.iter().zip(&slots) {
             if let (None, Some(slot)) = (property.list, slot) {
@@ -70,7 +69,6 @@ fn vertices(
                 skip_property(property, body)?;
             }
         }
-        body.end_record()?;
         budget.vertices(object, 1)?;
         let [x, y, z, nx, ny, nz, r, g, b, a] = values;
         object.vertex([x, y, z], [nx, ny, nz], [r, g, b, a]);
@@ -86,7 +84,6 @@ fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object,
     let count = object.positions.len();
     let mut corners = Vec::new();
     for _ in 0..element.count {
-        body.record()?;
         for property in &element.properties {
             let Some(length) = property.list.filter(|_| indices(property)) else {
                 skip_property(property, body)?;
@@ -108,7 +105,6 @@ fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object,
             }
             object.polygon(&corners);
         }
-        body.end_record()?;
     }
     Ok(())
 }
@@ -119,11 +115,9 @@ fn skip(element: &Element, body: &mut Body<'_>) -> Result<(), FileError> {
         return Ok(());
     }
     for _ in 0..element.count {
-        body.record()?;
         for property in &element.properties {
             skip_property(property, body)?;
         }
-        body.end_record()?;
     }
     Ok(())
 }
