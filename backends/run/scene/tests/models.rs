@@ -296,6 +296,74 @@ fn gltf_buffers_in_all_three_storages() {
     }
 }
 
+/// Returns the first colour of a model in which this text replaces the alpha mode.
+fn gltf_color(from: &str, to: &str) -> [f32; 4] {
+    let model = gltf(3, &uri(&buffer(2)));
+    assert!(model.contains(from), "{from}");
+    loaded(&[("m.gltf", model.replace(from, to).as_bytes())]).unwrap().objects[0].colors[0]
+}
+
+#[test]
+fn alpha_modes_decide_on_alpha() {
+    let mode = |mode: &str| gltf_color(r#", "alphaMode": "BLEND""#, mode)[3];
+    assert_eq!((mode(r#", "alphaMode": "BLEND""#), mode(r#", "alphaMode": "OPAQUE""#), mode("")), (0.5, 1.0, 1.0));
+    let mask = |cutoff: &str| mode(&format!(r#", "alphaMode": "MASK", "alphaCutoff": {cutoff}"#));
+    assert_eq!((mask("0.5"), mask("0.51"), mode(r#", "alphaMode": "MASK""#)), (1.0, 0.0, 1.0));
+    // The colour of an extension.
+    let factor = r#""extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0, 0.5, 0, 0.25]}}"#;
+    let metallic = r#""pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 0.5]}"#;
+    assert_eq!(gltf_color(metallic, factor), [0.0, 0.5, 0.0, 0.25]);
+}
+
+#[test]
+fn vertex_colours_need_no_material() {
+    // The positions are the colours, too.
+    let with_colors = r#""POSITION": 0, "COLOR_0": 0"#;
+    let model = gltf(3, &uri(&buffer(2))).replace(r#""POSITION": 0"#, with_colors).replace(r#", "material": 0"#, "");
+    let scene = loaded(&[("m.gltf", model.as_bytes())]).unwrap();
+    assert_eq!(scene.objects[0].colors[1], [1.0, 0.0, 0.0, 1.0]);
+    let mut infinite = buffer(2);
+    infinite[12..16].copy_from_slice(&f32::NAN.to_le_bytes());
+    let model = gltf(3, &uri(&infinite)).replace(r#""POSITION": 0"#, r#""POSITION": 2, "COLOR_0": 0"#);
+    let zeros =
+        r#"{"bufferView": 0, "byteOffset": 0, "componentType": 5121, "count": 3, "type": "VEC3"}], "bufferViews""#;
+    let model = model.replace("}],\n        \"bufferViews\"", &format!("}}, {zeros}"));
+    let (_, _, message) = malformed(&[("m.gltf", model.as_bytes())]);
+    assert_eq!(message, "primitive 0: colour 1 is not finite");
+}
+
+#[test]
+fn skins_morphs_and_lines() {
+    let model = gltf(3, &uri(&buffer(2)));
+    let first = |model: String| loaded(&[("m.gltf", model.as_bytes())]).unwrap().objects[0].positions[1];
+    assert_eq!(first(model.clone()), [2.0, 2.0, 3.0]);
+    // The node does not move a mesh with a skin.
+    let skinned = model.replace(r#""mesh": 0"#, r#""mesh": 0, "skin": 0"#);
+    let skinned = skinned.replace(r#""meshes""#, r#""skins": [{"joints": [0]}], "meshes""#);
+    assert_eq!(first(skinned), [1.0, 0.0, 0.0]);
+    // The target adds the positions once more; the weights of the node replace those of the mesh.
+    let morphed = model.replace(r#""indices": 1"#, r#""indices": 1, "targets": [{"POSITION": 0}]"#);
+    let morphed = morphed.replace("\"material\": 0}]", "\"material\": 0}], \"weights\": [0.5]");
+    assert_eq!(first(morphed.clone()), [2.5, 2.0, 3.0]);
+    assert_eq!(first(morphed.replace(r#""mesh": 0"#, r#""mesh": 0, "weights": [2]"#)), [4.0, 2.0, 3.0]);
+    // Lines have no effect.
+    let lines = r#""primitives": [{"attributes": {"POSITION": 0}, "mode": 1}, "#;
+    let scene = loaded(&[("m.gltf", model.replace(r#""primitives": ["#, lines).as_bytes())]).unwrap();
+    assert_eq!((scene.vertices(), scene.triangles()), (3, 1));
+}
+
+#[test]
+fn uris_are_decoded() {
+    let beside = gltf(3, r#", "uri": "b%C3%A9%20%2B.bin""#);
+    assert!(loaded(&[("m.gltf", beside.as_bytes()), ("b\u{e9} +.bin", &buffer(2))]).is_ok());
+    let text = base64::engine::general_purpose::STANDARD_NO_PAD.encode([buffer(2), vec![0]].concat());
+    assert!(!text.len().is_multiple_of(4));
+    assert!(loaded(&[("m.gltf", gltf(3, &format!(r#", "uri": "data:;base64,{text}""#)).as_bytes())]).is_ok());
+    let percent: String = buffer(2).iter().map(|byte| format!("%{byte:02x}")).collect();
+    let model = gltf(3, &format!(r#", "uri": "data:application/octet-stream,{percent}""#));
+    assert_eq!(loaded(&[("m.gltf", model.as_bytes())]).unwrap().objects[0].positions[1], [2.0, 2.0, 3.0]);
+}
+
 #[test]
 fn malformed_gltf_is_an_error() {
     let (_, position, message) = malformed(&[("m.gltf", b"{\n\"asset\": {\"version\": }\n}")]);

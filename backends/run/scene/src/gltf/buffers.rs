@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::Gltf;
 
 use crate::error::{Error, FileError};
@@ -31,13 +31,16 @@ pub(super) fn read(
             },
             gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
                 Some(data) => {
-                    let (_, text) =
-                        data.split_once(";base64,").ok_or_else(|| error_at("its data is not base64".to_owned()))?;
-                    let length = base64::decoded_len_estimate(text.len()) as u64;
+                    // Decoded data is not longer than its text.
+                    let length = data.len() as u64;
                     budget.take(length, 1, &format!("buffer {index}")).map_err(|error| error.in_file(&file))?;
-                    STANDARD.decode(text).map_err(|error| error_at(format!("its data is invalid: {error}")))?
+                    data_of(data).map_err(error_at)?
                 }
-                None => file::read(&folder.join(uri.replace("%20", " ")), budget)?,
+                None => {
+                    let name = String::from_utf8(percent_decoded(uri));
+                    let name = name.map_err(|_| error_at("its URI is not UTF-8 after decoding".to_owned()))?;
+                    file::read(&folder.join(name), budget)?
+                }
             },
         };
         if bytes.len() < buffer.length() {
@@ -46,4 +49,40 @@ pub(super) fn read(
         buffers.push(bytes);
     }
     Ok(buffers)
+}
+
+/// Base64 with or without its padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Returns the bytes of a data URI without its scheme: `[TYPE][;base64],DATA`.
+fn data_of(data: &str) -> Result<Vec<u8>, String> {
+    let (kind, text) = data.split_once(',').ok_or("its data URI has no comma")?;
+    if kind.ends_with(";base64") {
+        return BASE64.decode(text).map_err(|error| format!("its data is invalid: {error}"));
+    }
+    Ok(percent_decoded(text))
+}
+
+/// Replaces `%` and two hexadecimal digits by the byte. A `%` without them stays.
+fn percent_decoded(text: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((byte, after)) = rest.split_first() {
+        let digits = after.first_chunk::<2>().filter(|_| *byte == b'%');
+        let digit = |digit: u8| char::from(digit).to_digit(16);
+        match digits.and_then(|[high, low]| Some(16 * digit(*high)? + digit(*low)?)) {
+            Some(decoded) => {
+                bytes.push(decoded as u8);
+                rest = after.get(2..).unwrap_or_default();
+            }
+            None => {
+                bytes.push(*byte);
+                rest = after;
+            }
+        }
+    }
+    bytes
 }

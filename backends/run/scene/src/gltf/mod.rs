@@ -1,5 +1,6 @@
 //! glTF 2.0, as JSON or GLB: the triangles of the default scene, with the transforms of nodes, normals, vertex colours and base
-//! colour factors of materials. Alpha is used in every alpha mode. Textures, skins and animations are ignored.
+//! colour factors of materials in their alpha modes, and the default weights of morph targets. Textures, the pose of a skin and
+//! animations are ignored.
 //!
 //! Everything is checked before it is used: the memory of the JSON, the length of every buffer, the type and range of every
 //! accessor that is read, and that the nodes are a forest.
@@ -7,6 +8,7 @@
 mod accessor;
 mod buffers;
 mod json;
+mod material;
 mod nodes;
 mod primitive;
 mod validate;
@@ -61,8 +63,11 @@ fn scene(model: &Gltf, reader: &Reader<'_>) -> Result<Scene, FileError> {
             let name = node.name().or(mesh.name()).unwrap_or_default().to_owned();
             reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
             let mut object = Object { name, ..Object::default() };
+            // The joints of a skin place its mesh, and not the node.
+            let placed = if node.skin().is_some() { Mat4::IDENTITY } else { transform };
+            let weights = node.weights().or(mesh.weights()).unwrap_or_default();
             for primitive in mesh.primitives() {
-                reader.primitive(&primitive, &transform, &mut object)?;
+                reader.primitive(&primitive, (&placed, weights), &mut object)?;
             }
             scene.objects.push(object);
         }

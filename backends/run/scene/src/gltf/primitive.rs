@@ -6,6 +6,7 @@ use gltf::mesh::Mode;
 use gltf::{Primitive, Semantic};
 
 use super::accessor::{Elements, Types};
+use super::material::{factor, visible};
 use crate::Object;
 use crate::error::FileError;
 use crate::limits::Budget;
@@ -39,7 +40,7 @@ impl Reader<'_> {
     pub(super) fn primitive(
         &self,
         primitive: &Primitive<'_>,
-        transform: &Mat4,
+        (transform, weights): (&Mat4, &[f32]),
         object: &mut Object,
     ) -> Result<(), FileError> {
         let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
@@ -48,10 +49,11 @@ impl Reader<'_> {
             // Every second triangle of a strip is turned, so that all have the same front.
             Mode::TriangleStrip => |turn: usize| [turn + turn % 2, turn + 1 - turn % 2, turn + 2],
             Mode::TriangleFan => |turn: usize| [0, turn + 1, turn + 2],
-            other => return Err(error(format!("{other:?}: only triangles are supported"))),
+            // Points and lines beside the triangles have no effect, as `p` and `l` in an OBJ.
+            _ => return Ok(()),
         };
         let first = object.positions.len() as u32;
-        let vertices = self.vertices(primitive, transform, object)?;
+        let vertices = self.vertices(primitive, (transform, weights), object)?;
         let indices =
             primitive.indices().map(|accessor| Elements::of(&accessor, &INDICES, self.buffers)).transpose()?;
         let count = indices.as_ref().map_or(vertices, |indices| indices.count);
@@ -75,8 +77,34 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Returns the offsets of the morph targets of a primitive, each with its weight.
+    fn morphs(
+        &self,
+        primitive: &Primitive<'_>,
+        weights: &[f32],
+        count: usize,
+    ) -> Result<Vec<(f32, Elements<'_>)>, FileError> {
+        let mut morphs = Vec::new();
+        for (target, weight) in primitive.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let Some(accessor) = target.positions() else { continue };
+            let offsets = Elements::of(&accessor, &POSITIONS, self.buffers)?;
+            if offsets.count != count {
+                let (number, found) = (primitive.index(), offsets.count);
+                let message = format!("primitive {number}: a morph target of {found} of {count} positions");
+                return Err(FileError::whole(message));
+            }
+            morphs.push((*weight, offsets));
+        }
+        Ok(morphs)
+    }
+
     /// Adds the vertices of a primitive to an object; returns their number.
-    fn vertices(&self, primitive: &Primitive<'_>, transform: &Mat4, object: &mut Object) -> Result<usize, FileError> {
+    fn vertices(
+        &self,
+        primitive: &Primitive<'_>,
+        (transform, weights): (&Mat4, &[f32]),
+        object: &mut Object,
+    ) -> Result<usize, FileError> {
         let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
         let read = |semantic: Semantic, types: &Types| {
             let accessor = primitive.get(&semantic);
@@ -92,18 +120,23 @@ impl Reader<'_> {
         }
         self.budget.vertices(object, positions.count as u64)?;
         let material = primitive.material();
-        // A primitive without a material has the default material of the format, white and opaque; `color` replaces it.
-        let factor = material.index().map_or(self.color, |_| material.pbr_metallic_roughness().base_color_factor());
+        let factor = factor(&material, colors.is_some(), self.color);
+        let morphs = self.morphs(primitive, weights, positions.count)?;
         let directions = Mat3::from_mat4(*transform).inverse().transpose();
         for index in 0..positions.count {
-            let position = transform.transform_point3(vector(&positions, index));
+            let moved = morphs.iter().map(|(weight, offsets)| *weight * vector(offsets, index)).sum::<Vec3>();
+            let position = transform.transform_point3(vector(&positions, index) + moved);
             if !position.is_finite() {
                 return Err(error(format!("position {index} is not finite")));
             }
             let normal = normals.as_ref().map_or(Vec3::ZERO, |normals| directions * vector(normals, index));
             let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
             let color = colors.as_ref().map_or([1.0; 4], |colors| rgba(colors, index));
-            let color = std::array::from_fn(|channel| factor[channel] * color[channel]);
+            let color: [f32; 4] = std::array::from_fn(|channel| factor[channel] * color[channel]);
+            if !color.iter().all(|channel| channel.is_finite()) {
+                return Err(error(format!("colour {index} is not finite")));
+            }
+            let color = visible(&material, color);
             object.vertex(position.to_array(), normal.to_array(), color);
         }
         Ok(positions.count)

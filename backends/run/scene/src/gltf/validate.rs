@@ -44,6 +44,7 @@ pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     for (number, node) in root.nodes.iter().enumerate() {
         in_range(node.children.iter().flatten(), root.nodes.len(), &format!("node {number}: its child"))?;
         in_range(&node.mesh, root.meshes.len(), &format!("node {number}: its mesh"))?;
+        in_range(&node.skin, root.skins.len(), &format!("node {number}: its skin"))?;
     }
     for (number, mesh) in root.meshes.iter().enumerate() {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
@@ -52,6 +53,9 @@ pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     }
     for (number, accessor) in root.accessors.iter().enumerate() {
         validate_accessor(root, accessor, &format!("accessor {number}"))?;
+    }
+    for (number, material) in root.materials.iter().enumerate() {
+        known(&material.alpha_mode, &format!("material {number}: its alpha mode"))?;
     }
     for (number, view) in root.buffer_views.iter().enumerate() {
         in_range([&view.buffer], root.buffers.len(), &format!("buffer view {number}: its buffer"))?;
