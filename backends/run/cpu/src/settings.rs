@@ -17,7 +17,7 @@ pub struct Settings {
     /// `memory` allows.
     pub slice: Option<u32>,
     /// The bytes that a frame may allocate: the plan's buffers and textures, and the image. The mesh, and the lists of one batch
-    /// of its triangles, are not part of them. Default: [`DEFAULT_MEMORY`], 2 GiB.
+    /// of its triangles, are not part of them; with a shuffled order, a batch is the whole mesh and may not exceed them. Default: [`DEFAULT_MEMORY`], 2 GiB.
     pub memory: u64,
 }
 

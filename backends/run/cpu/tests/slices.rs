@@ -90,6 +90,25 @@ fn shuffled_slices_keep_the_order_of_each_pixel() {
     }
 }
 
+/// A shuffled pixel needs all triangles at once.
+#[test]
+fn shuffled_triangles_beyond_the_budget_are_an_error() {
+    let code = code(&Registry::builtin(), "kplus_array");
+    let (_, indices) = scene();
+    let many = indices.repeat(1000);
+    let draw = |order: FragmentOrder| {
+        let settings = Settings { order, memory: 1 << 20, ..Settings::new(1, 1) };
+        let mut device = Device::new(code.clone(), settings).unwrap();
+        device.render(&Mesh { vertices: &scene().0, indices: &many }, &|_| {})
+    };
+    assert!(draw(FragmentOrder::Submission).is_ok());
+    let Err(Error::Frame(FrameError::TooLarge { what, needed, limit, .. })) = draw(FragmentOrder::Shuffled(1)) else {
+        panic!("it fits");
+    };
+    assert_eq!((what, limit), (format!("a shuffled order of {} triangles", many.len() / 3), 1 << 20));
+    assert!(needed > 1 << 20);
+}
+
 /// Returns the bytes of a frame in slices of `rows` rows: resources, the image and the output of a slice, four floats per pixel.
 fn needed(device: &Device, rows: u32) -> u64 {
     let values = fragbuf_frame::initial_values(device.plan(), (WIDTH, HEIGHT), Sizing::Auto).unwrap().0;
@@ -139,7 +158,10 @@ fn a_budget_below_one_row_is_an_error_with_its_numbers() {
     assert_eq!(refused(0).total(), least);
     let text = Error::Frame(FrameError::OverBudget(need)).to_string();
     assert!(text.contains(&format!("a frame of 19 x 23 pixels in slices of 1 rows needs {least} bytes")), "{text}");
-    assert!(text.contains(&format!("the memory budget is {} bytes", least - 1)) && text.contains("--memory"), "{text}");
+    assert!(
+        text.contains(&format!("the memory budget for it is {} bytes", least - 1)) && text.contains("--memory"),
+        "{text}"
+    );
     // The rows that the caller requests are not changed.
     let whole = needed(&device, HEIGHT);
     let settings = Settings { slice: Some(HEIGHT), memory: whole - 1, ..Settings::new(WIDTH, HEIGHT) };

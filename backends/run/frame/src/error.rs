@@ -91,7 +91,7 @@ impl fmt::Display for MemoryNeed {
         write!(
             f,
             "a frame of {width} x {height} pixels in slices of {rows} rows needs {} bytes (image {image}, textures {textures}, \
-             buffers of a slice {buffers}), and the memory budget is {budget} bytes: use a smaller frame, keep fewer fragments, or \
+             buffers of a slice {buffers}), and the memory budget for it is {budget} bytes: use a smaller frame, keep fewer fragments, or \
              raise the budget (`--memory`, `Settings::memory`)",
             self.total()
         )

@@ -16,6 +16,7 @@ mod materials;
 mod normals;
 mod obj;
 mod ply;
+mod polygon;
 mod scene;
 mod shading;
 mod text;

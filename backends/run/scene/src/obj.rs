@@ -1,4 +1,4 @@
-//! Wavefront OBJ: `v` (with a colour and alpha, if present), `vn`, `f`, `o` and `g`, `mtllib` and `usemtl`. Polygons become fans.
+//! Wavefront OBJ: `v` (with a colour and alpha, if present), `vn`, `f`, `o` and `g`, `mtllib` and `usemtl`.
 //!
 //! The reader is our own because every error needs its line: `tobj` reports no lines, ignores unknown statements and materials,
 //! and panics on a short `Kd`. Curves, surfaces and display statements are ignored; an unknown statement is an error.
@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 use crate::error::{Error, FileError};
 use crate::limits::{Budget, OBJECT};
 use crate::materials::{Materials, single_spaces};
+use crate::polygon::Triangulator;
 use crate::text::{lines, numbers, quoted};
 use crate::{Object, Scene};
 
@@ -101,6 +102,7 @@ struct Reader<'a> {
     object: Object,
     /// The corners of the current face.
     corners: Vec<u32>,
+    triangulator: Triangulator,
     /// The vertices of the object, by position, normal and material.
     known: HashMap<(usize, Option<usize>, Option<usize>), u32>,
 }
@@ -118,6 +120,7 @@ impl<'a> Reader<'a> {
             scene: Scene::default(),
             object: Object::default(),
             corners: Vec::new(),
+            triangulator: Triangulator::new(),
             known: HashMap::new(),
         }
     }
@@ -162,9 +165,9 @@ impl<'a> Reader<'a> {
         for word in words.split_whitespace() {
             corners.push(self.corner(word, line)?);
         }
-        self.object.polygon(&corners);
+        let added = self.triangulator.add(&corners, &mut self.object);
         self.corners = corners;
-        Ok(())
+        added.map_err(|message| FileError::line(line, message))
     }
 
     /// Returns the vertex of a corner, `position/texture/normal`.

@@ -119,6 +119,62 @@ fn comments_end_with_their_line_and_names_have_any_letter() {
     assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]);
 }
 
+/// Returns how many triangles cover a point of the xy plane.
+fn layers(scene: &Scene, [x, y]: [f32; 2]) -> usize {
+    let object = &scene.objects[0];
+    let covers = |triangle: &&[u32; 3]| {
+        let [a, b, c] = triangle.map(|index| object.positions[index as usize]);
+        let edge = |from: [f32; 3], to: [f32; 3]| (to[0] - from[0]) * (y - from[1]) - (to[1] - from[1]) * (x - from[0]);
+        // All faces run counter-clockwise.
+        edge(a, b) > 0.0 && edge(b, c) > 0.0 && edge(c, a) > 0.0
+    };
+    object.triangles.iter().filter(covers).count()
+}
+
+#[test]
+fn concave_faces_keep_their_notches() {
+    // An arrowhead with its notch at the bottom, from each of its corners on; and a comb of five teeth.
+    let arrow = [[-1.0, -1.0], [0.0, 0.0], [1.0, -1.0], [0.0, 1.0]];
+    let mut comb = vec![[0.0, -1.0], [10.0, -1.0]];
+    comb.extend((0..5).flat_map(|tooth| {
+        let right = 10.0 - 2.0 * tooth as f32;
+        [[right, 1.0], [right - 1.0, 1.0], [right - 1.0, 0.0], [right - 2.0, 0.0]]
+    }));
+    for scale in [1.0, 1.0e-12, 1.0e15] {
+        for first in 1..=4 {
+            let face: Vec<String> = (0..4).map(|corner| ((first + corner - 1) % 4 + 1).to_string()).collect();
+            let lines: String = arrow.map(|[x, y]| format!("v {} {} 0\n", x * scale, y * scale)).concat();
+            let scene = loaded(&[("m.obj", format!("{lines}f {}\n", face.join(" ")).as_bytes())]).unwrap();
+            assert_eq!(scene.triangles(), 2);
+            let at = |point: [f32; 2]| layers(&scene, point.map(|axis| axis * scale));
+            assert_eq!([at([0.05, -0.5]), at([0.1, 0.5]), at([-0.6, -0.5]), at([0.6, -0.5])], [0, 1, 1, 1], "{first}");
+        }
+    }
+    let lines: String = comb.iter().map(|[x, y]| format!("{x} {y} 0\n")).collect();
+    let header = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+         property list uchar int vertex_indices\nend_header\n",
+        comb.len()
+    );
+    let face: Vec<String> = (0..comb.len()).map(|corner| corner.to_string()).collect();
+    let scene = loaded(&[("m.ply", format!("{header}{lines}{} {}\n", comb.len(), face.join(" ")).as_bytes())]).unwrap();
+    for column in 0..10 {
+        let x = column as f32 + 0.43;
+        assert_eq!([layers(&scene, [x, 0.61]), layers(&scene, [x, -0.33])], [column % 2, 1], "{x}");
+    }
+    // Without area a face is a fan; too many corners of a concave one are an error.
+    let line = b"v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n";
+    assert_eq!(loaded(&[("m.obj", line)]).unwrap().triangles(), 2);
+    let zigzag: String = (0..5000).map(|at| format!("v {at} {} 0\n", at % 2)).collect();
+    let face: Vec<String> = (1..=5000).map(|corner| corner.to_string()).collect();
+    let text = format!("{zigzag}v 2500 -9 0\nf {} 5001\n", face.join(" "));
+    let (_, position, message) = malformed(&[("m.obj", text.as_bytes())]);
+    assert_eq!(
+        (position, message.as_str()),
+        (FilePosition::Line(5002), "a concave face with 5001 corners: it can have 4096")
+    );
+}
+
 #[test]
 fn colours_of_positions_have_an_alpha() {
     let scene = loaded(&[("m.obj", b"v 0 0 0 1 0 0 0.5\nv 1 0 0 0 1 0\nv 0 1 0 1.0\nf 1 2 3\n")]).unwrap();

@@ -22,6 +22,8 @@ use crate::draw_call::{DrawArguments, DrawCall};
 use crate::interface::VertexOutputLayout;
 use crate::memory::{Words, words};
 use crate::picture::PassProgress;
+use crate::settings::FragmentOrder;
+use crate::triangle::Triangle;
 use crate::vertices;
 use crate::view::View;
 
@@ -85,6 +87,7 @@ impl Frame<'_> {
             arguments: draw_arguments(self, pass)?,
             ..self.empty_draw(pass, values, stages, uniforms)?
         };
+        self.check_shuffled(&call)?;
         // In millionths, so that threads can add atomically.
         let done = AtomicU64::new(0);
         let report = |part: f64| {
@@ -92,6 +95,23 @@ impl Frame<'_> {
             (self.progress)(PassProgress { pass: &pass.name, share: 1.0e-6 * before as f64 + part });
         };
         draw(&call, &report).map_err(|what| shader_error(pass, what))
+    }
+
+    /// Checks that the triangles of a draw call fit into the memory of the settings where all of them are set up at once.
+    fn check_shuffled(&self, call: &DrawCall<'_>) -> Result<(), Error> {
+        let count: u64 = call.arguments.triangles.iter().map(|range| range.len() as u64).sum();
+        let (needed, limit) = (count.saturating_mul(size_of::<Triangle>() as u64), self.device.settings.memory);
+        if call.order == FragmentOrder::Submission || needed <= limit {
+            return Ok(());
+        }
+        Err(fragbuf_frame::Error::TooLarge {
+            what: format!("a shuffled order of {count} triangles"),
+            needed,
+            limit,
+            limit_name: "the memory budget, in bytes",
+            help: "use the order of submission, a smaller scene or a larger budget",
+        }
+        .into())
     }
 
     /// Draws the box of every object that is not dropped, and keeps the result per object for the cursor.

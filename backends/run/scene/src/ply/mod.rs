@@ -9,6 +9,7 @@ mod header;
 
 use crate::error::FileError;
 use crate::limits::{Budget, OBJECT};
+use crate::polygon::Triangulator;
 use crate::{Object, Scene};
 use body::Body;
 use header::{Element, Header, Property};
@@ -82,7 +83,7 @@ fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object,
         return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
     }
     let count = object.positions.len();
-    let mut corners = Vec::new();
+    let (mut corners, mut triangulator) = (Vec::new(), Triangulator::new());
     for _ in 0..element.count {
         for property in &element.properties {
             let Some(length) = property.list.filter(|_| indices(property)) else {
@@ -103,7 +104,7 @@ fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object,
                 }
                 corners.push(index as u32);
             }
-            object.polygon(&corners);
+            triangulator.add(&corners, object).map_err(|message| body.error(message))?;
         }
     }
     Ok(())
