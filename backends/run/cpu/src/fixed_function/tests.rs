@@ -78,6 +78,7 @@ impl TestDraw<'_> {
             indices: Some(&indices),
             arguments: DrawArguments::once(indices.len() as u32 / 3),
             size: (SIZE, SIZE),
+            rows: 0..SIZE,
             attachments: self.attachments.clone(),
             coverage: self.coverage,
             order: FragmentOrder::Submission,
@@ -162,10 +163,10 @@ fn depth_is_compared_and_written() {
 #[test]
 fn several_attachments_get_separate_colours() {
     let (a, b, list) = (zeros(PIXELS), zeros(2 * PIXELS), zeros(64));
-    let whole = target(&a, Blend::Replace);
-    let bytes = ColorAttachment { texel: Texel::Format(TextureFormat::Rgba8Unorm), ..whole };
-    let whole = target(&b, Blend::Max);
-    let pairs = ColorAttachment { texel: Texel::Format(TextureFormat::Rg32Float), ..whole };
+    let replaced = target(&a, Blend::Replace);
+    let bytes = ColorAttachment { texel: Texel::Format(TextureFormat::Rgba8Unorm), ..replaced };
+    let greatest = target(&b, Blend::Max);
+    let pairs = ColorAttachment { texel: Texel::Format(TextureFormat::Rg32Float), ..greatest };
     let shader = "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec2<f32> }
         @fragment fn main(in: VertexOutput) -> Out { return Out(in.color, vec2<f32>(-in.position.z, in.position.z)); }";
     let attachments = Attachments { targets: vec![bytes, pairs], ..none(1) };

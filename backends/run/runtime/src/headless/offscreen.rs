@@ -12,6 +12,9 @@ pub const BLENDED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The bytes of a band: the rows that are read back at one time. At least one row is.
 const BAND: u64 = 8 << 20;
 
+/// A function from the words of a texel to its red, green, blue and alpha.
+type DecodeTexel = fn(&[u32]) -> [f32; 4];
+
 /// An image of one format and size on the device.
 pub struct Offscreen {
     texture: wgpu::Texture,
@@ -81,7 +84,7 @@ impl Offscreen {
     /// Reads red, green, blue and alpha of every pixel, row by row from the top, for the formats `Rgba8Unorm`, `Rgba16Float`
     /// and `Rgba32Float`. Needs little memory beside the result. Submits and blocks.
     pub fn colors(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<[f32; 4]>, Error> {
-        let (words, decode): (usize, fn(&[u32]) -> [f32; 4]) = match self.texture.format() {
+        let (words, decode): (usize, DecodeTexel) = match self.texture.format() {
             wgpu::TextureFormat::Rgba8Unorm => (1, |texel| {
                 texel.first().map_or([0.0; 4], |word| word.to_le_bytes().map(|byte| f32::from(byte) / 255.0))
             }),

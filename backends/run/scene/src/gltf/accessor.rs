@@ -98,12 +98,11 @@ impl<'a> Elements<'a> {
     }
 
     fn bytes(&self, element: usize) -> Option<&'a [u8]> {
-        if let Some((indices, values)) = &self.sparse {
-            if let Some(number) = indices.find(element) {
-                return values.get(number);
-            }
+        let replaced = self.sparse.as_ref().and_then(|(indices, values)| Some((indices.find(element)?, values)));
+        match replaced {
+            Some((number, values)) => values.get(number),
+            None => self.base?.get(element),
         }
-        self.base?.get(element)
     }
 }
 
