@@ -164,16 +164,52 @@ mod tests {
 
     fn counts(triangles: &[Triangle], samples: u32) -> Vec<Vec<u32>> {
         let mut counts = vec![vec![0; samples as usize]; (SIZE.0 * SIZE.1) as usize];
-        let bins = Bins::of(triangles, SIZE, &(0..SIZE.1), usize::MAX);
-        for bin in &bins.tiles {
-            for number in bins.triangles(bin) {
-                cover(&triangles[*number as usize], bin.rectangle, SIZE, (samples, Coverage::PerSample), |covered| {
-                    let pixel = &mut counts[(covered.y * SIZE.0 + covered.x) as usize];
-                    pixel.iter_mut().enumerate().for_each(|(sample, count)| *count += covered.mask >> sample & 1);
+        count(triangles, &(0..SIZE.1), usize::MAX, &mut counts);
+        counts
+    }
+
+    /// Counts the covered samples in a slice, in batches of at most `limit` entries. Returns the number of batches.
+    fn count(triangles: &[Triangle], slice: &Range<u32>, limit: usize, counts: &mut [Vec<u32>]) -> usize {
+        let (mut rest, mut batches, samples) = (triangles, 0, counts[0].len() as u32);
+        while !rest.is_empty() {
+            let bins = Bins::of(rest, SIZE, slice, limit);
+            for bin in &bins.tiles {
+                for number in bins.triangles(bin) {
+                    cover(&rest[*number as usize], bin.rectangle, SIZE, (samples, Coverage::PerSample), |covered| {
+                        assert!(slice.contains(&covered.y), "row {} is outside of {slice:?}", covered.y);
+                        let pixel = &mut counts[(covered.y * SIZE.0 + covered.x) as usize];
+                        pixel.iter_mut().enumerate().for_each(|(sample, count)| *count += covered.mask >> sample & 1);
+                    });
+                }
+            }
+            rest = &rest[bins.sorted..];
+            batches += 1;
+        }
+        batches
+    }
+
+    #[test]
+    fn slices_and_divided_batches_cover_the_same_samples() {
+        let corners = |seed: u64| {
+            let mut number = numbers(seed);
+            let mut corner = || (80.0 * number() - 20.0, 48.0 * number() - 12.0);
+            [corner(), corner(), corner()]
+        };
+        let triangles: Vec<Triangle> = (0..60).filter_map(|seed| triangle(corners(seed))).collect();
+        for samples in [1, 4] {
+            let whole = counts(&triangles, samples);
+            for (rows, limit) in [(24, 1), (24, 5), (1, usize::MAX), (7, 3), (16, 50)] {
+                let mut sliced = vec![vec![0; samples as usize]; (SIZE.0 * SIZE.1) as usize];
+                let slices = (0..SIZE.1).step_by(rows);
+                let batches = slices.map(|first| {
+                    let slice = first..SIZE.1.min(first + rows as u32);
+                    count(&triangles, &slice, limit, &mut sliced)
                 });
+                let batches: Vec<usize> = batches.collect();
+                assert!(sliced == whole, "slices of {rows} rows, batches of {limit} entries");
+                assert_eq!(batches.iter().all(|count| *count == 1), limit == usize::MAX, "{batches:?}");
             }
         }
-        counts
     }
 
     /// Returns a seeded generator of numbers from 0 to 1.
