@@ -180,7 +180,11 @@ impl<'a> Reader<'a> {
                 .parse::<i64>()
                 .map_err(|_| FileError::line(line, format!("{} is not an index", quoted(texture))))?;
         }
-        let normal = parts.next().map(|part| index(part, self.normals.len(), "normal", line)).transpose()?;
+        let normal = parts
+            .next()
+            .filter(|part| !part.is_empty())
+            .map(|part| index(part, self.normals.len(), "normal", line))
+            .transpose()?;
         if parts.next().is_some() {
             return Err(FileError::line(line, format!("{} has more than position/texture/normal", quoted(word))));
         }

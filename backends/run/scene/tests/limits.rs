@@ -335,6 +335,10 @@ fn accessors_beyond_their_buffers_are_errors() {
     assert!(changed(r#""byteLength": 36"#, r#""byteLength": 49"#).starts_with(beyond));
     let stride = changed(r#""byteLength": 36"#, r#""byteLength": 36, "byteStride": 4"#);
     assert_eq!(stride, "accessor 0: its elements have 12 bytes, and its view a stride of 4");
+    for stride in [0, 3, 253] {
+        let message = changed(r#""byteLength": 36"#, &format!(r#""byteLength": 36, "byteStride": {stride}"#));
+        assert_eq!(message, format!("buffer view 0: a stride of {stride} bytes is not from 4 to 252"));
+    }
     assert_eq!(changed(r#""count": 3"#, r#""count": 0"#), "accessor 0: it is empty");
     assert!(changed("\"byteLength\": 48", "\"byteLength\": 18446744073709551615").contains("declares"));
 }

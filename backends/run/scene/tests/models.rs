@@ -65,6 +65,13 @@ fn obj_without_materials() {
 }
 
 #[test]
+fn corners_may_end_in_slashes() {
+    let expected = loaded(&[("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")]).unwrap();
+    let scene = loaded(&[("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1// 2/1/ 3/\n")]).unwrap();
+    assert_eq!(scene, expected);
+}
+
+#[test]
 fn obj_errors_have_lines() {
     malformed_lines(
         "m.obj",

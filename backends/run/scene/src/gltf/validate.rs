@@ -4,7 +4,10 @@
 //! The validation of the `gltf` crate is not used: it panics where POSITION names an accessor that does not exist, and rejects
 //! models with parts that are not read here.
 
+use std::ops::RangeInclusive;
+
 use gltf::json::accessor::Accessor;
+use gltf::json::buffer::Stride;
 use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
@@ -25,6 +28,9 @@ const SUPPORTED: [&str; 8] = [
 
 /// The prefix of the names of extensions of materials.
 const MATERIALS: &str = "KHR_materials_";
+
+/// The strides that the format allows.
+const STRIDES: RangeInclusive<usize> = 4..=252;
 
 /// Checks a model.
 pub(super) fn validate(root: &Root) -> Result<(), FileError> {
@@ -59,6 +65,10 @@ pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     }
     for (number, view) in root.buffer_views.iter().enumerate() {
         in_range([&view.buffer], root.buffers.len(), &format!("buffer view {number}: its buffer"))?;
+        if let Some(Stride(stride)) = view.byte_stride.filter(|Stride(stride)| !STRIDES.contains(stride)) {
+            let message = format!("buffer view {number}: a stride of {stride} bytes is not from 4 to 252");
+            return Err(FileError::whole(message));
+        }
     }
     Ok(())
 }
