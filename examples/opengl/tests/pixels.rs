@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use fragbuf_codegen::Form;
-use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh, Settings};
-use fragbuf_frame::Sizing;
+use fragbuf_cpu::{Code, Device, Mesh, Settings};
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_opengl_host::{Context, Error, Host, Object, Scene};
 use fragbuf_targets::{Request, generate, manifest, target};
@@ -73,7 +72,7 @@ fn render(host: &mut Host<'_>, quads: &[Quad], size: [u32; 2]) -> Result<Vec<[f3
 
 fn cpu_device(variant: &Variant, [width, height]: [u32; 2]) -> Device {
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
-    let settings = Settings { width, height, sizing: Sizing::Auto, order: FragmentOrder::Submission };
+    let settings = Settings::new(width, height);
     Device::new(Arc::new(code), settings).unwrap()
 }
 

@@ -7,10 +7,10 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-use fragbuf_cpu::{Code, Device, FragmentOrder, Mesh};
+use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_model::Variant;
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Output, Renderer, Settings, Sizing};
+use fragbuf_runtime::{Error, Output, Renderer, Settings};
 use fragbuf_targets::target;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, KeepDefault};
@@ -63,8 +63,7 @@ fn compare(stage: &Headless, key: &str, variant: &Variant, k: Option<u32>) -> Re
         let [width, height] = size;
         let settings = Settings { slice, ..Settings::new(FORMAT, width, height) };
         let mut renderer = renderer(stage, &shaders, &settings)?;
-        let order = FragmentOrder::Submission;
-        let settings = fragbuf_cpu::Settings { width, height, sizing: Sizing::Auto, order };
+        let settings = fragbuf_cpu::Settings::new(width, height);
         let mut cpu = Device::new(code.clone(), settings).unwrap();
         let storage = &renderer.plan().selection.row("storage").unwrap().row;
         let keeps_best = [Capability::KeepsAll, Capability::KeepsBest].iter().any(|kept| storage.may_provide(*kept));
