@@ -8,6 +8,7 @@ use std::ops::Range;
 use naga::{Binding, Span};
 
 use crate::operation::Op;
+use crate::retry::RetryLoop;
 
 /// The operation of a function that stands for a construct that WGSL lacks. The interpreter does not run its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +125,8 @@ pub struct Bytecode {
     pub(crate) live: BTreeMap<u32, Vec<Range<u32>>>,
     /// Per instruction, whether it is part of a loop.
     pub(crate) in_loop: Vec<bool>,
+    /// The loops that count their attempts.
+    pub(crate) retry_loops: Vec<RetryLoop>,
     /// The arguments, flattened to members.
     pub inputs: Vec<InterfaceVariable>,
     /// The words of the result after the program has ended.
@@ -162,6 +165,19 @@ impl Bytecode {
     /// Returns whether the instruction at `at` is part of a loop of its function.
     pub fn is_in_loop(&self, at: u32) -> bool {
         self.in_loop.get(at as usize).copied().unwrap_or(false)
+    }
+
+    /// Returns whether two states, as [`Machine::save`](crate::Machine::save) appends them, are equal but for the number of
+    /// attempts of the loops around them. Such a number only limits how often its loop is repeated.
+    pub fn is_same_attempt(&self, one: &[u32], other: &[u32]) -> bool {
+        let ([at, one @ ..], [other_at, other @ ..]) = (one, other) else { return false };
+        if at != other_at || one.len() != other.len() {
+            return false;
+        }
+        let around = self.retry_loops.iter().filter(|retry| retry.instructions.contains(at));
+        let counters: Vec<u32> = around.flat_map(|retry| &retry.counters).copied().collect();
+        let live = self.live.get(at).into_iter().flatten().cloned().flatten();
+        one.iter().zip(other).zip(live).all(|((one, other), word)| one == other || counters.contains(&word))
     }
 
     /// Returns whether the program has workgroup barriers.

@@ -26,6 +26,7 @@ mod machine;
 mod memory;
 mod operation;
 mod packing;
+mod retry;
 mod scalar;
 mod wide;
 mod workgroup;
@@ -34,4 +35,5 @@ pub use bytecode::{Buffer, Bytecode, InterfaceVariable, Marker, Options, Space, 
 pub use half::{from_half, to_half};
 pub use machine::{Exit, Machine, OutOfBoundsAccess};
 pub use memory::{Access, Atomic, Event, Operation, Reply, Sequential, SharedMemory, WordAddress};
+pub use retry::LEAST_RETRY_LIMIT;
 pub use workgroup::{DispatchEnd, dispatch, workgroup};

@@ -58,6 +58,15 @@ pub(crate) struct Liveness {
     pub(crate) at_stops: BTreeMap<u32, Vec<Range<u32>>>,
     /// The atomic operations whose result is dead.
     pub(crate) unread: Vec<usize>,
+    /// The live words before every instruction, constants excluded.
+    before: Vec<WordSet>,
+}
+
+impl Liveness {
+    /// Returns whether a word that is no constant is live before an instruction.
+    pub(crate) fn is_live(&self, at: usize, word: u32) -> bool {
+        self.before.get(at).is_some_and(|live| live.contains(word))
+    }
 }
 
 /// Computes liveness. `words` is the number of words before the constants; `result` is live at the end.
@@ -81,7 +90,8 @@ pub(crate) fn liveness(ops: &[Op], words: u32, result: &Range<usize>) -> Livenes
             !exchanges && (to..to + u32::from(width)).all(|word| !live.contains(word))
         }
     });
-    Liveness { unread: unread.collect(), at_stops: stops.map(|at| (at as u32, before[at].ranges(words))).collect() }
+    let unread = unread.collect();
+    Liveness { unread, at_stops: stops.map(|at| (at as u32, before[at].ranges(words))).collect(), before }
 }
 
 fn live_after(ops: &[Op], at: usize, before: &[WordSet], words: u32, result: &Range<usize>) -> WordSet {

@@ -224,7 +224,7 @@ impl<'p> Machine<'p> {
                                 expected: 0,
                             };
                             match shared.event(&Event::Access(access)) {
-                                Reply::Done(value) => value,
+                                Reply::Done(value) | Reply::Failed(value) => value,
                                 Reply::Stop => return Exit::Stopped(Event::Access(access)),
                             }
                         }
@@ -273,6 +273,7 @@ impl<'p> Machine<'p> {
                             };
                             match shared.event(&Event::Access(access)) {
                                 Reply::Done(old) => (old, old == expected_value),
+                                Reply::Failed(old) => (old, false),
                                 Reply::Stop => return Exit::Stopped(Event::Access(access)),
                             }
                         }

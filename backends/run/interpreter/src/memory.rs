@@ -108,6 +108,8 @@ pub enum Event {
 pub enum Reply {
     /// The operation has taken effect. A load or an atomic operation returns the old value.
     Done(u64),
+    /// A weak compare-exchange has failed although the word holds the expected value, which is given.
+    Failed(u64),
     /// The machine stops before the operation.
     Stop,
 }

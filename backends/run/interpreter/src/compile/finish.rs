@@ -4,6 +4,7 @@ use crate::bytecode::{Bytecode, InterfaceVariable};
 use crate::live::{in_loops, liveness};
 use crate::memory::Atomic;
 use crate::operation::{CONSTANT, Op, Word};
+use crate::retry::retry_loops;
 
 use super::compiler::Compiler;
 
@@ -49,6 +50,7 @@ impl Compiler<'_> {
         let result =
             outputs.first().map_or(0, |first| first.words.start)..outputs.last().map_or(0, |last| last.words.end);
         let live = liveness(&self.ops, first_constant, &result);
+        let retry_loops = retry_loops(&self.ops, &live, first_constant, &self.constants);
         self.classify(&live.unread);
         let mut initial_words = self.privates;
         let privates = initial_words.len();
@@ -56,6 +58,7 @@ impl Compiler<'_> {
         initial_words.extend(self.constants);
         Bytecode {
             in_loop: in_loops(&self.ops),
+            retry_loops,
             ops: self.ops,
             site_of: self.site_of,
             sites: self.sites,
