@@ -60,7 +60,7 @@ pub(crate) struct Check {
 enum ModelArgument {
     /// Sequential consistency: every access takes effect at once, in the order of the schedule
     Sc,
-    /// Relaxed memory: a store may become visible later, and stores to different words may be reordered; fences, interlock and
+    /// Relaxed memory: a store may become visible later, and accesses of different words may be reordered; fences, interlock and
     /// pass boundaries order them
     #[value(alias = "late")]
     Relaxed,

@@ -17,6 +17,8 @@ pub struct Target {
     pub profile: Profile,
     /// Its features.
     pub provides: &'static [Feature],
+    /// Whether a compare-exchange may fail although it finds the expected value.
+    pub has_weak_exchange: bool,
     pub(crate) emit: fn(&Emission<'_>) -> Result<Vec<File>, String>,
 }
 
@@ -43,6 +45,7 @@ pub const TARGETS: &[Target] = &[
         summary: "the WGSL standard: browsers and every wgpu back end",
         profile: Profile::Portable,
         provides: &[Feature::FragmentAtomics, Feature::SampleMask, Feature::Coverage, Feature::Linkable],
+        has_weak_exchange: true,
         emit: wgsl::emit,
     },
     Target {
@@ -60,6 +63,7 @@ pub const TARGETS: &[Target] = &[
             Feature::SampleCounts,
             Feature::BindGroups,
         ],
+        has_weak_exchange: true,
         emit: wgsl::emit,
     },
     Target {
@@ -67,6 +71,7 @@ pub const TARGETS: &[Target] = &[
         summary: "GLSL 4.50 for OpenGL 4.5, explicit locations and bindings",
         profile: Profile::Native,
         provides: GLSL_FEATURES,
+        has_weak_exchange: false,
         emit: glsl::emit_opengl,
     },
     Target {
@@ -74,6 +79,7 @@ pub const TARGETS: &[Target] = &[
         summary: "GLSL 4.50 for Vulkan 1.1",
         profile: Profile::Native,
         provides: GLSL_FEATURES,
+        has_weak_exchange: false,
         emit: glsl::emit_vulkan,
     },
     Target {
@@ -87,6 +93,7 @@ pub const TARGETS: &[Target] = &[
             Feature::Linkable,
             Feature::BindGroups,
         ],
+        has_weak_exchange: false,
         emit: glsl::emit_es,
     },
     Target {
@@ -106,6 +113,7 @@ pub const TARGETS: &[Target] = &[
             Feature::SampleCounts,
             Feature::BindGroups,
         ],
+        has_weak_exchange: false,
         emit: spirv::emit,
     },
     Target {
@@ -122,6 +130,7 @@ pub const TARGETS: &[Target] = &[
             Feature::SampleCounts,
             Feature::BindGroups,
         ],
+        has_weak_exchange: false,
         emit: hlsl::emit,
     },
     Target {
@@ -129,6 +138,7 @@ pub const TARGETS: &[Target] = &[
         summary: "Metal Shading Language 2.4",
         profile: Profile::Portable,
         provides: &[Feature::FragmentAtomics, Feature::Coverage, Feature::SampleCounts, Feature::BindGroups],
+        has_weak_exchange: true,
         emit: msl::emit,
     },
 ];

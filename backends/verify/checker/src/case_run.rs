@@ -12,7 +12,9 @@ use crate::final_state::FinalStateProperty;
 use crate::fragments::at_pixel;
 use crate::frame::Frame;
 use crate::memory::Memory;
+use crate::model::Model;
 use crate::random_walk::walk;
+use crate::reduced::explore_reduced;
 use crate::search::{Failure, FailureKind, SearchResult, Step};
 use crate::sequential::machine_with;
 use crate::state::{State, StepError};
@@ -68,6 +70,8 @@ impl<'s> CaseRun<'s> {
         context.has_fences &= subject.has_fences;
         context.by_submission = subject.has_ordered_interlock;
         context.one_by_one = options.one_by_one;
+        context.is_reduced = options.is_reduced;
+        context.has_weak_exchange = subject.has_weak_exchange && options.model == Model::Relaxed;
         context.counts_samples = runnable.is_awaited;
         context.helper = case.has_helper.then(|| case.new.len() - 1);
         let new = case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, case.pixel));
@@ -115,7 +119,9 @@ impl<'s> CaseRun<'s> {
         let mut property = FinalStateProperty::new(&self.setup, context, iteration.frame.clone());
         let result = match options.random_schedules {
             Some(count) => walk(context, first, &mut property, count),
-            None => explore(context, first.clone(), &mut property, options.limit),
+            // Declared hazards that need a race occur in many interleavings, so the shortest is found soon.
+            None if self.setup.subject.is_racy() => explore(context, first.clone(), &mut property, options.limit),
+            None => explore_reduced(context, first.clone(), &mut property, options.limit),
         };
         (result, property.next_iterations)
     }

@@ -27,6 +27,8 @@ pub(crate) struct SearchOptions {
     pub(crate) may_time_out: bool,
     /// Whether fragments run one after the other, in every order, so that no hazard that needs a race is permitted.
     pub(crate) one_by_one: bool,
+    /// Whether steps that do not affect each other are followed in one order only.
+    pub(crate) is_reduced: bool,
 }
 
 impl SearchOptions {

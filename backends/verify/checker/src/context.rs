@@ -7,6 +7,7 @@ use fragbuf_interpreter::{Buffer, Bytecode, WordAddress};
 
 use crate::memory::memory_index;
 use crate::model::Model;
+use crate::search::Property;
 
 /// What every state of a search shares.
 #[derive(Debug)]
@@ -19,8 +20,14 @@ pub(crate) struct SearchContext<'p> {
     /// How many words of a state have an order that matters. They come first.
     pub(crate) ordered: usize,
     pub(crate) model: Model,
+    /// Per ordered word, whether it is neither atomic nor coherent: no fence makes it visible to another fragment.
+    pub(crate) private: Vec<bool>,
     /// Whether fences are events: the target supports them and the model uses them.
     pub(crate) has_fences: bool,
+    /// Whether a compare-exchange may fail for no reason.
+    pub(crate) has_weak_exchange: bool,
+    /// Whether steps that do not affect each other are followed in one order only.
+    pub(crate) is_reduced: bool,
     /// The fragment that is a helper invocation: its writes have no effect, and its atomic operations return any value.
     pub(crate) helper: Option<usize>,
     /// Whether the interlock admits fragments by number, in submission order.
@@ -45,18 +52,22 @@ impl<'p> SearchContext<'p> {
     /// relaxed model, and every option that a caller may set is off.
     pub(crate) fn new(program: &'p Bytecode, memory: &[Vec<u32>], model: Model) -> (Self, Vec<u32>) {
         let (locations, words, ordered) = SearchContext::lay_out(program, memory);
-        let context = SearchContext {
+        let mut context = SearchContext {
             program,
             locations,
             read_only: memory.to_vec(),
             ordered,
             model,
+            private: Vec::new(),
             has_fences: model == Model::Relaxed,
+            has_weak_exchange: false,
+            is_reduced: false,
             helper: None,
             by_submission: false,
             one_by_one: false,
             counts_samples: false,
         };
+        context.private = context.each_ordered(|buffer| !buffer.is_coherent);
         (context, words)
     }
 
@@ -85,7 +96,7 @@ impl<'p> SearchContext<'p> {
     }
 
     /// Returns a property of its buffer for each ordered word.
-    pub(crate) fn each_ordered(&self, property: impl Fn(&Buffer) -> bool) -> Vec<bool> {
+    fn each_ordered(&self, property: impl Fn(&Buffer) -> bool) -> Vec<bool> {
         let mut all = vec![false; self.ordered];
         for (buffer, location) in self.program.buffers.iter().zip(&self.locations) {
             if let BufferLocation::State { first, words, commutes: false } = location {
@@ -101,6 +112,15 @@ impl<'p> SearchContext<'p> {
             BufferLocation::State { first, .. } => Some(first + address.word as usize),
             BufferLocation::ReadOnly(_) => None,
         }
+    }
+
+    /// Returns, per ordered word, whether a property observes it at every instant.
+    pub(crate) fn watched(&self, property: &dyn Property) -> Vec<bool> {
+        let mut watched = vec![false; self.ordered];
+        for range in property.watched() {
+            watched[range.start.min(self.ordered)..range.end.min(self.ordered)].fill(true);
+        }
+        watched
     }
 
     /// Returns index in memory, first word in a state and number of words of every buffer that states hold.

@@ -1,7 +1,8 @@
 //! Explores every interleaving of events, breadth first, so that the first failure has the shortest schedule.
 //!
 //! Input: a first state and a property. Output: the number of states, or the schedule of the first failure. A state is
-//! recognised by its fingerprint, and is kept in memory only until its steps have been followed.
+//! recognised by its fingerprint, and is kept in memory only until its steps have been followed. A reduced search follows one
+//! order of steps that do not affect each other (`reduction.rs`).
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
@@ -11,8 +12,10 @@ use fragbuf_interpreter::Machine;
 
 use crate::context::SearchContext;
 use crate::fingerprint::{Identity, fingerprint};
-use crate::search::{Failure, FailureKind, Property, SearchResult, Step};
-use crate::state::{State, racing};
+use crate::graph::StateGraph;
+use crate::reduction::independent;
+use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, Step};
+use crate::state::State;
 
 /// Searches from `first`, up to `limit` states.
 pub(crate) fn explore(
@@ -24,20 +27,15 @@ pub(crate) fn explore(
     let mut exploration = Exploration {
         context,
         machine: Machine::new(context.program),
+        first: first.clone(),
         numbers: HashMap::default(),
-        parents: Vec::new(),
-        edges: Vec::new(),
-        final_states: Vec::new(),
+        graph: StateGraph::default(),
         queue: VecDeque::new(),
         result: SearchResult::default(),
     };
-    let running = (0..first.fragments.len()).filter(|fragment| !first.fragments[*fragment].has_ended()).collect();
+    let running = context.running(&first);
     exploration.visit(first, None);
-    let mut failure = exploration.run(property, limit);
-    if failure.is_none() && exploration.queue.is_empty() {
-        let livelock = exploration.livelock();
-        failure = livelock.map(|steps| Failure { steps, kind: FailureKind::Livelock(running) });
-    }
+    let failure = exploration.run(property, limit, &running);
     let is_exhaustive = exploration.queue.is_empty() || failure.is_some();
     SearchResult { is_exhaustive, failure, ..exploration.result }
 }
@@ -45,125 +43,168 @@ pub(crate) fn explore(
 struct Exploration<'a, 'p> {
     context: &'a SearchContext<'p>,
     machine: Machine<'p>,
+    first: State,
     /// The number of each visited state, by its fingerprint.
     numbers: HashMap<u128, u32, BuildHasherDefault<Identity>>,
-    /// Per state, the state before it and the step from there.
-    parents: Vec<(u32, u8, u8)>,
-    /// Every step, from state to state.
-    edges: Vec<(u32, u32)>,
-    final_states: Vec<u32>,
+    graph: StateGraph,
     /// States whose steps have not been followed.
     queue: VecDeque<(State, u32)>,
     result: SearchResult,
 }
 
+/// What the steps of some fragments lead to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moves {
+    /// Another state.
+    other: bool,
+    /// A state that had not been visited.
+    new: bool,
+}
+
 impl Exploration<'_, '_> {
-    fn visit(&mut self, state: State, from: Option<(u32, Step)>) {
-        let number = self.parents.len() as u32;
-        let known = match self.numbers.entry(fingerprint(&state)) {
-            Entry::Occupied(known) => *known.get(),
+    /// Records a state and the step that leads to it; returns its number and whether it is new.
+    fn visit(&mut self, state: State, from: Option<(u32, Step, bool)>) -> (u32, bool) {
+        let number = self.graph.count();
+        let (number, is_new) = match self.numbers.entry(fingerprint(&state)) {
+            Entry::Occupied(known) => (*known.get(), false),
             Entry::Vacant(entry) => {
                 entry.insert(number);
-                let (parent, (fragment, choice)) = from.unwrap_or((u32::MAX, (0, 0)));
-                self.parents.push((parent, fragment as u8, choice as u8));
+                self.graph.push(from.map(|(parent, step, _)| (parent, step)));
                 self.queue.push_back((state, number));
                 self.result.states += 1;
-                number
+                (number, true)
             }
         };
-        if let Some((parent, _)) = from {
-            self.edges.push((parent, known));
+        if let Some((parent, _, has_effect)) = from {
+            self.graph.connect(parent, number, has_effect);
         }
+        (number, is_new)
     }
 
-    fn run(&mut self, property: &mut dyn Property, limit: usize) -> Option<Failure> {
-        while let Some((state, number)) = self.queue.pop_front() {
-            if let Some(failure) = self.follow(&state, number, property) {
-                return Some(failure);
+    /// Follows every state. Where no final state can be reached, loops run on to their limits.
+    fn run(&mut self, property: &mut dyn Property, limit: usize, running: &[usize]) -> Option<Failure> {
+        loop {
+            while let Some((state, number)) = self.queue.pop_front() {
+                if let Some(failure) = self.follow(&state, number, property) {
+                    return Some(failure);
+                }
+                if self.result.states >= limit {
+                    return None;
+                }
             }
-            if self.result.states >= limit {
-                return None;
+            let endless = self.graph.endless()?;
+            if endless.idle.iter().any(|number| self.run_on_from(*number)) {
+                continue;
             }
+            let (number, kind) = match endless.idle.first() {
+                Some(idle) => (*idle, FailureKind::Deadlock(self.running_in(*idle))),
+                None => (endless.first, FailureKind::Livelock(running.to_vec())),
+            };
+            return self.failure(number, None, kind);
         }
-        None
     }
 
     /// Takes every step from a state.
     fn follow(&mut self, state: &State, number: u32, property: &mut dyn Property) -> Option<Failure> {
-        if let Some((one, other)) = racing(self.context, state) {
-            return self.failure(number, None, FailureKind::DataRace(one, other));
-        }
         let running = self.context.running(state);
         if running.is_empty() {
-            self.final_states.push(number);
-            let parents = &self.parents;
+            self.graph.end(number);
             let words = state.final_words(self.context);
-            return self.result.record(property.final_state(&words), &words, || path(parents, number));
+            let verdict = property.final_state(&words);
+            return self.result.record(verdict, &words, || self.graph.path(number));
         }
-        let mut is_stuck = true;
-        for &fragment in &running {
-            if self.context.waits(&mut self.machine, state, fragment) {
-                if self.context.helper == Some(fragment) {
-                    return self.failure(number, None, FailureKind::Deadlock(vec![fragment]));
-                }
-                continue;
+        if let Some(helper) = self.context.helper.filter(|helper| running.contains(helper))
+            && self.context.helper_waits(&mut self.machine, state, helper)
+        {
+            return self.failure(number, None, FailureKind::Deadlock(vec![helper]));
+        }
+        if let Some((fragment, is_in_loop)) = independent(self.context, state, &running) {
+            match self.take(state, number, &[fragment], property) {
+                Err(failure) => return Some(failure),
+                // A loop of independent steps alone would keep the other fragments from running.
+                Ok(moves) if moves.new || moves.other && !is_in_loop => return None,
+                Ok(_) => {}
             }
+        }
+        match self.take(state, number, &running, property) {
+            Err(failure) => return Some(failure),
+            Ok(moves) if moves.other => return None,
+            Ok(_) => {}
+        }
+        let continues = self.run_on(state, number, &running);
+        if continues { None } else { self.failure(number, None, FailureKind::Deadlock(running)) }
+    }
+
+    /// Takes every step of some fragments.
+    fn take(
+        &mut self,
+        state: &State,
+        number: u32,
+        fragments: &[usize],
+        property: &mut dyn Property,
+    ) -> Result<Moves, Failure> {
+        let mut moves = Moves::default();
+        for &fragment in fragments {
             for choice in 0..self.context.choices(state, fragment) {
-                is_stuck = false;
                 let step = (fragment, choice);
-                match self.context.step(&mut self.machine, state, fragment, choice) {
-                    Err(error) => return self.failure(number, Some(step), FailureKind::Step(fragment, error)),
-                    Ok((next, _)) if self.context.is_idle(state, &next, fragment) => {}
-                    Ok((next, _)) => {
-                        if next.words != state.words
-                            && let Some(text) = property.instant(&next.words)
-                        {
-                            return self.failure(number, Some(step), FailureKind::Instant(text));
-                        }
-                        self.visit(next, Some((number, step)));
+                let stepped = match self.context.step(&mut self.machine, state, fragment, choice) {
+                    Ok(stepped) => stepped,
+                    Err(error) => {
+                        return Err(self.failed(number, Some(step), FailureKind::of(error, fragment)));
                     }
+                };
+                if stepped.state.words != state.words
+                    && let Some(text) = property.instant(&stepped.state.words)
+                {
+                    return Err(self.failed(number, Some(step), FailureKind::Instant(text)));
                 }
+                let (next, is_new) = self.visit(stepped.state, Some((number, step, stepped.has_effect)));
+                moves = Moves { other: moves.other || next != number, new: moves.new || is_new };
             }
         }
-        if is_stuck { self.failure(number, None, FailureKind::Deadlock(running)) } else { None }
+        Ok(moves)
+    }
+
+    /// Runs each fragment on to the limit of its loop; returns whether one comes to another state.
+    fn run_on(&mut self, state: &State, number: u32, running: &[usize]) -> bool {
+        let mut moves = Moves::default();
+        for &fragment in running {
+            if let Some(next) = self.context.run_on(&mut self.machine, state, fragment) {
+                let (next, is_new) = self.visit(next, Some((number, (fragment, RUN_ON), true)));
+                moves = Moves { other: moves.other || next != number, new: moves.new || is_new };
+            }
+        }
+        moves.other
+    }
+
+    /// The same for a state that is no longer in memory; returns whether one comes to a new state.
+    fn run_on_from(&mut self, number: u32) -> bool {
+        let Some(state) = self.replay(number) else { return false };
+        let before = self.graph.count();
+        let running = self.context.running(&state);
+        self.run_on(&state, number, &running);
+        self.graph.count() > before
+    }
+
+    fn running_in(&mut self, number: u32) -> Vec<usize> {
+        self.replay(number).map_or_else(Vec::new, |state| self.context.running(&state))
+    }
+
+    fn replay(&mut self, number: u32) -> Option<State> {
+        let steps = self.graph.path(number);
+        steps
+            .into_iter()
+            .try_fold(self.first.clone(), |state, step| self.context.replay(&mut self.machine, &state, step))
     }
 
     /// Returns a failure in a state, or in one more step from it.
     fn failure(&self, number: u32, step: Option<Step>, kind: FailureKind) -> Option<Failure> {
-        let mut steps = path(&self.parents, number);
+        Some(self.failed(number, step, kind))
+    }
+
+    fn failed(&self, number: u32, step: Option<Step>, kind: FailureKind) -> Failure {
+        let mut steps = self.graph.path(number);
         steps.extend(step);
-        Some(Failure { steps, kind })
+        Failure { steps, kind }
     }
-
-    /// Returns the steps to the first state from which no steps lead to a final state.
-    fn livelock(&mut self) -> Option<Vec<Step>> {
-        let count = self.parents.len();
-        self.edges.sort_unstable_by_key(|(_, to)| *to);
-        let mut terminates = vec![false; count];
-        let mut queue = std::mem::take(&mut self.final_states);
-        queue.iter().for_each(|state| terminates[*state as usize] = true);
-        while let Some(state) = queue.pop() {
-            let first = self.edges.partition_point(|(_, to)| *to < state);
-            for (from, _) in self.edges[first..].iter().take_while(|(_, to)| *to == state) {
-                if !std::mem::replace(&mut terminates[*from as usize], true) {
-                    queue.push(*from);
-                }
-            }
-        }
-        terminates.iter().position(|terminates| !terminates).map(|state| path(&self.parents, state as u32))
-    }
-}
-
-/// Returns the steps that lead to a state.
-fn path(parents: &[(u32, u8, u8)], mut number: u32) -> Vec<Step> {
-    let mut steps = Vec::new();
-    while let Some(&(parent, fragment, choice)) = parents.get(number as usize) {
-        if parent == u32::MAX {
-            break;
-        }
-        steps.push((usize::from(fragment), u32::from(choice)));
-        number = parent;
-    }
-    steps.reverse();
-    steps
 }

@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::ops::Range;
 
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
@@ -14,7 +15,7 @@ use fragbuf_templates::COUNTERS;
 use crate::case_setup::CaseSetup;
 use crate::context::SearchContext;
 use crate::frame::Frame;
-use crate::memory::WIDTH;
+use crate::memory::{WIDTH, memory_index};
 use crate::search::{Property, StateVerdict};
 use crate::sequential::{machine_with, run_alone};
 use crate::specification::Specification;
@@ -126,6 +127,13 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
 }
 
 impl Property for FinalStateProperty<'_, '_> {
+    fn watched(&self) -> Vec<Range<usize>> {
+        let Some(bound) = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy) else { return Vec::new() };
+        let is_read = |index: usize| bound.buffers.iter().any(|buffer| memory_index(buffer.binding) == index);
+        let buffers = self.buffers.iter().filter(|(index, ..)| is_read(*index));
+        buffers.map(|(_, first, count)| *first..first + count).collect()
+    }
+
     fn instant(&mut self, words: &[u32]) -> Option<String> {
         let bound = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy)?;
         for (index, first, count) in &self.buffers {

@@ -12,7 +12,7 @@ use crate::memory::{WIDTH, memory_index, texel};
 /// their order.
 pub(crate) struct Pausing<'a, 'p> {
     pub(crate) context: &'a SearchContext<'p>,
-    pub(crate) reply: Option<u64>,
+    pub(crate) reply: Option<Reply>,
     pub(crate) words: &'a mut [u32],
     /// Whether accesses that commute have no effect, as those of a helper invocation.
     pub(crate) is_helper: bool,
@@ -57,7 +57,7 @@ impl SharedMemory for Pausing<'_, '_> {
             Event::Fence if !self.context.has_fences => return Reply::Done(0),
             _ => {}
         }
-        self.reply.take().map_or(Reply::Stop, Reply::Done)
+        self.reply.take().unwrap_or(Reply::Stop)
     }
 }
 

@@ -7,8 +7,8 @@
 use fragbuf_interpreter::Machine;
 
 use crate::context::SearchContext;
-use crate::search::{Failure, FailureKind, Property, SearchResult, StateVerdict, Step};
-use crate::state::{State, racing};
+use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, StateVerdict, Step};
+use crate::state::State;
 
 /// The most steps of a schedule.
 const LONGEST: usize = 100_000;
@@ -54,39 +54,47 @@ impl<'p> RandomWalk<'_, 'p> {
         property: &mut dyn Property,
     ) -> Result<Option<(StateVerdict, Vec<u32>)>, FailureKind> {
         let mut priorities: Vec<u32> = state.fragments.iter().map(|_| self.rng.below(1 << 20)).collect();
+        // The fragments that have come back to an earlier status since another fragment changed something.
+        let mut waits = vec![false; state.fragments.len()];
         while self.steps.len() < LONGEST {
-            if let Some((one, other)) = racing(self.context, &state) {
-                return Err(FailureKind::DataRace(one, other));
-            }
             let running = self.context.running(&state);
             if running.is_empty() {
                 let words = state.final_words(self.context);
                 return Ok(Some((property.final_state(&words), words)));
             }
-            let able: Vec<usize> = running
-                .iter()
-                .copied()
-                .filter(|at| self.context.choices(&state, *at) > 0 && !self.context.waits(machine, &state, *at))
-                .collect();
+            let able = |at: &usize| self.context.choices(&state, *at) > 0 && !waits[*at];
+            let able: Vec<usize> = running.iter().copied().filter(able).collect();
             if able.is_empty() {
-                return Err(FailureKind::Deadlock(running));
+                let (fragment, next) = self.run_on(machine, &state, &running).ok_or(FailureKind::Deadlock(running))?;
+                self.steps.push((fragment, RUN_ON));
+                state = next;
+                waits.fill(false);
+                continue;
             }
             let fragment = self.pick(&able, &mut priorities);
             let choice = self.rng.below(self.context.choices(&state, fragment));
             self.steps.push((fragment, choice));
-            match self.context.step(machine, &state, fragment, choice) {
-                Err(error) => return Err(FailureKind::Step(fragment, error)),
-                Ok((next, _)) => {
-                    if next.words != state.words
-                        && let Some(text) = property.instant(&next.words)
-                    {
-                        return Err(FailureKind::Instant(text));
-                    }
-                    state = next;
-                }
+            let stepped = match self.context.step(machine, &state, fragment, choice) {
+                Err(error) => return Err(FailureKind::of(error, fragment)),
+                Ok(stepped) => stepped,
+            };
+            if stepped.state.words != state.words
+                && let Some(text) = property.instant(&stepped.state.words)
+            {
+                return Err(FailureKind::Instant(text));
             }
+            match stepped.has_effect {
+                true => waits.fill(false),
+                false => waits[fragment] = stepped.recurs,
+            }
+            state = stepped.state;
         }
         Ok(None)
+    }
+
+    /// Runs the first fragment on that is not kept in its loop for ever.
+    fn run_on(&self, machine: &mut Machine<'p>, state: &State, running: &[usize]) -> Option<(usize, State)> {
+        running.iter().find_map(|&fragment| Some((fragment, self.context.run_on(machine, state, fragment)?)))
     }
 
     fn pick(&mut self, able: &[usize], priorities: &mut [u32]) -> usize {

@@ -5,7 +5,7 @@
 
 use fragbuf_codegen::{FIRST_BINDING, LineSource};
 use fragbuf_frame::COUNTERS_RESOURCE;
-use fragbuf_interpreter::{Atomic, Bytecode, Event, Machine, Operation};
+use fragbuf_interpreter::{Atomic, Bytecode, Event, Machine, Operation, Reply};
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Element;
 
@@ -14,7 +14,7 @@ use crate::case_setup::CaseSetup;
 use crate::context::SearchContext;
 use crate::memory::memory_index;
 use crate::programs::CheckedSource;
-use crate::search::{Failure, FailureKind};
+use crate::search::{Failure, FailureKind, RUN_ON};
 use crate::state::{State, Status, StepError};
 
 /// A failure, step by step.
@@ -62,16 +62,23 @@ pub(crate) fn steps(
     let mut steps = Vec::new();
     for (fragment, choice) in &failure.steps {
         let Status::Before { event, at, .. } = state.fragments[*fragment].clone() else { break };
-        let (observed, next) = match context.step(&mut machine, &state, *fragment, *choice) {
-            Ok((next, observed)) => (observed, Some(next)),
-            Err(_) => (0, None),
+        let location = location(context.program, at, source);
+        if *choice == RUN_ON {
+            let action = "repeats its loop up to the limit, because nothing changes any more".to_owned();
+            steps.push(ScheduleStep { fragment: letter(*fragment), action, location });
+            let Some(next) = context.run_on(&mut machine, &state, *fragment) else { break };
+            state = next;
+            continue;
+        }
+        let (reply, next) = match context.step(&mut machine, &state, *fragment, *choice) {
+            Ok(stepped) => (stepped.reply, Some(stepped.state)),
+            Err(_) => (Reply::Stop, None),
         };
         let is_helper = context.helper == Some(*fragment);
-        let mut action = action(&event, observed, *choice, context.program, names);
+        let mut action = action(&event, reply, *choice, context.program, names);
         if is_helper && !matches!(event, Event::Access(access) if !access.writes()) {
             action.push_str(", without effect: a helper invocation");
         }
-        let location = location(context.program, at, source);
         steps.push(ScheduleStep { fragment: letter(*fragment), action, location });
         match next {
             Some(next) => state = next,
@@ -86,8 +93,8 @@ pub(crate) fn letter(fragment: usize) -> String {
     char::from_u32('A' as u32 + fragment as u32).map_or_else(|| fragment.to_string(), String::from)
 }
 
-/// Describes an event and the value that it observed.
-fn action(event: &Event, observed: u64, choice: u32, program: &Bytecode, names: &Names<'_>) -> String {
+/// Describes an event and the value that it observed; [`Reply::Stop`] if it is a failure.
+fn action(event: &Event, reply: Reply, choice: u32, program: &Bytecode, names: &Names<'_>) -> String {
     let access = match event {
         Event::Access(access) => access,
         Event::Fence => return "fence".to_owned(),
@@ -98,6 +105,11 @@ fn action(event: &Event, observed: u64, choice: u32, program: &Bytecode, names: 
     let memory = memory_index(program.buffers[usize::from(access.address.buffer)].binding);
     let word = (names.resource)(memory, access.address.word);
     let value = |value: u64| (names.value)(value);
+    let observed = match reply {
+        Reply::Done(observed) | Reply::Failed(observed) => observed,
+        Reply::Stop if access.writes() => return format!("accesses {word}"),
+        Reply::Stop => return format!("reads {word}"),
+    };
     match access.operation {
         Operation::Load if choice > 0 => format!("reads {word}: still {}", value(observed)),
         Operation::Load => format!("reads {word}: {}", value(observed)),
@@ -113,7 +125,10 @@ fn action(event: &Event, observed: u64, choice: u32, program: &Bytecode, names: 
                 }
                 other => format!("atomic {} of {} on {word}", function_name(other), value(access.value)),
             };
-            format!("{action}: it was {}", value(observed))
+            match reply {
+                Reply::Failed(_) => format!("{action}: it is, but the weak exchange fails"),
+                _ => format!("{action}: it was {}", value(observed)),
+            }
         }
     }
 }
@@ -144,7 +159,7 @@ pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source:
         FailureKind::FinalState(text) => text.clone(),
         FailureKind::Instant(text) => format!("at this instant, {text}"),
         FailureKind::DataRace(one, other) => format!(
-            "data race: {} and {} access the same word, at least one writes, and at least one access is not atomic",
+            "data race: {} and {} access the same word, at least one writes, at least one access is not atomic, and nothing orders them",
             letter(*one),
             letter(*other)
         ),
@@ -161,6 +176,7 @@ pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source:
                 }
                 StepError::Endless => "loops without end and without accessing memory".to_owned(),
                 StepError::Barrier => "reaches a barrier".to_owned(),
+                StepError::DataRace(other) => format!("and {} are a data race", letter(*other)),
             };
             format!("{} {action}", letter(*fragment))
         }

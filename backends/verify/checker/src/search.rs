@@ -1,11 +1,17 @@
 //! The parts that every search shares: the property that it checks, its steps, and what it finds.
 
+use std::ops::Range;
+
 use crate::state::StepError;
 
 /// A property of states that a search checks.
 pub(crate) trait Property {
     /// Returns what is wrong with memory at an instant.
     fn instant(&mut self, words: &[u32]) -> Option<String>;
+    /// Returns the words that `instant` observes.
+    fn watched(&self) -> Vec<Range<usize>> {
+        Vec::new()
+    }
     /// Returns the verdict on memory in a final state.
     fn final_state(&mut self, words: &[u32]) -> StateVerdict;
 }
@@ -21,8 +27,11 @@ pub(crate) enum StateVerdict {
     NextIteration,
 }
 
-/// One step: the fragment, and the number of the way in which its event is performed.
+/// One step: the fragment, and the number of the way in which its event is performed, or [`RUN_ON`].
 pub(crate) type Step = (usize, u32);
+
+/// A step in which a fragment repeats its loop up to the loop's limit, because no other fragment changes what it reads.
+pub(crate) const RUN_ON: u32 = u32::MAX;
 
 /// What a search found.
 #[derive(Debug, Default)]
@@ -69,6 +78,16 @@ pub(crate) struct Failure {
     pub(crate) kind: FailureKind,
 }
 
+impl FailureKind {
+    /// Returns what is wrong if a step of a fragment has this error.
+    pub(crate) fn of(error: StepError, fragment: usize) -> Self {
+        match error {
+            StepError::DataRace(other) => FailureKind::DataRace(other, fragment),
+            error => FailureKind::Step(fragment, error),
+        }
+    }
+}
+
 /// What went wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum FailureKind {
@@ -76,7 +95,7 @@ pub(crate) enum FailureKind {
     FinalState(String),
     /// Memory is wrong at an instant, as the property describes.
     Instant(String),
-    /// The next accesses of two fragments are a data race.
+    /// Two accesses of these fragments are a data race.
     DataRace(usize, usize),
     /// No fragment can run, and these wait.
     Deadlock(Vec<usize>),

@@ -11,10 +11,10 @@ use fragbuf_targets::{Checked, check};
 use naga::{Binding, BuiltIn, ScalarKind};
 
 use crate::context::SearchContext;
-use crate::explore::explore;
 use crate::memory::{Memory, memory_index};
 use crate::programs::{CheckedSource, MARKERS};
 use crate::random_walk::walk;
+use crate::reduced::explore_reduced;
 use crate::report::{Names, Schedule, letter, steps, violation};
 use crate::search::{Property, StateVerdict};
 use crate::sequential::run_alone;
@@ -54,7 +54,9 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
         CheckedSource { text: shader.source.to_owned(), lines: SourceMap::default(), file: shader.file.to_owned() };
     let mut report = Report::new(limits);
     for &count in &limits.fragments {
-        let (context, words) = SearchContext::new(&program, &memory, limits.model);
+        let (mut context, words) = SearchContext::new(&program, &memory, limits.model);
+        context.has_weak_exchange = true;
+        context.is_reduced = limits.reduce;
         let machines = (0..count).map(|number| invocation(&program, number)).collect();
         let first = context
             .start(words, machines)
@@ -62,7 +64,7 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
         let mut property = HoldsProperty { holds: holds.as_ref(), memory: memory.clone(), context: &context };
         let result = match limits.random_schedules {
             Some(seeds) => walk(&context, &first, &mut property, seeds),
-            None => explore(&context, first.clone(), &mut property, limits.states),
+            None => explore_reduced(&context, first.clone(), &mut property, limits.states),
         };
         report.cases += 1;
         report.states += result.states;

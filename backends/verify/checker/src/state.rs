@@ -4,12 +4,15 @@
 //! shared access, fence or interlock event is performed.
 
 use std::hash::{Hash, Hasher};
+use std::rc::Rc;
 
-use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation};
+use fragbuf_interpreter::{Access, Atomic, Event, Exit, Machine, Operation, Reply};
 
 use crate::context::SearchContext;
-use crate::model::{Model, RelaxedMemory};
+use crate::model::Model;
 use crate::pausing::{Pausing, perform, value};
+use crate::progress::Anchor;
+use crate::relaxed::{Observed, RelaxedMemory};
 
 /// One state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -23,7 +26,8 @@ pub(crate) struct State {
     left_interlock: u32,
     /// The fragment that has started and not ended, where fragments run one by one.
     started: Option<usize>,
-    relaxed: Option<Box<RelaxedMemory>>,
+    /// What each fragment has observed. Under sequential consistency it serves to find data races.
+    order: Rc<RelaxedMemory>,
 }
 
 /// The status of a fragment.
@@ -34,13 +38,15 @@ pub(crate) enum Status {
         event: Event,
         at: u32,
         /// The words from which a machine is restored.
-        saved: Vec<u32>,
+        saved: Rc<[u32]>,
+        /// An earlier status since which it has changed nothing.
+        anchor: Option<Anchor>,
     },
     /// It has ended; whether its sample passes.
     Ended(bool),
 }
 
-// The saved words determine the event.
+// The saved words determine the event. The anchor is about the past, and does not change what can follow.
 impl PartialEq for Status {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -81,6 +87,11 @@ impl State {
         }
         words
     }
+
+    /// Returns whether memory, the interlock and what fragments may observe are those of another state.
+    pub(crate) fn has_memory_of(&self, other: &State) -> bool {
+        self.words == other.words && self.order == other.order && self.in_interlock == other.in_interlock
+    }
 }
 
 /// What can go wrong in one step.
@@ -92,19 +103,16 @@ pub(crate) enum StepError {
     Endless,
     /// A fragment reaches a barrier, which only workgroups have.
     Barrier,
+    /// The access and an earlier one of this fragment are a data race.
+    DataRace(usize),
 }
 
 impl SearchContext<'_> {
     /// Returns the state in which each machine has stopped before its first event.
     pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, StepError> {
-        let relaxed = (self.model == Model::Relaxed).then(|| {
-            // A word that is neither atomic nor coherent is private.
-            let private = self.each_ordered(|buffer| !buffer.is_coherent);
-            let wide = self.each_ordered(|buffer| buffer.is_wide);
-            Box::new(RelaxedMemory::new(&words[..self.ordered], machines.len(), private, &wide))
-        });
+        let order = Rc::new(RelaxedMemory::new(machines.len()));
         let mut state =
-            State { words, fragments: Vec::new(), in_interlock: None, left_interlock: 0, started: None, relaxed };
+            State { words, fragments: Vec::new(), in_interlock: None, left_interlock: 0, started: None, order };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
             let status = self.run(&mut machine, fragment, None, &mut state.words)?;
             state.fragments.push(status);
@@ -117,7 +125,7 @@ impl SearchContext<'_> {
         &self,
         machine: &mut Machine<'_>,
         fragment: usize,
-        reply: Option<u64>,
+        reply: Option<Reply>,
         words: &mut [u32],
     ) -> Result<Status, StepError> {
         machine.is_helper = self.helper == Some(fragment);
@@ -134,7 +142,7 @@ impl SearchContext<'_> {
             Exit::Stopped(event) => {
                 let mut saved = Vec::new();
                 machine.save(&mut saved);
-                Ok(Status::Before { event, at: machine.at(), saved })
+                Ok(Status::Before { event, at: machine.at(), saved: saved.into(), anchor: None })
             }
         }
     }
@@ -151,14 +159,20 @@ impl SearchContext<'_> {
     /// Returns in how many ways a fragment's event can be performed. 0: it has ended, or must wait for the interlock.
     pub(crate) fn choices(&self, state: &State, fragment: usize) -> u32 {
         let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
-        match (event, &state.relaxed) {
-            (Event::Access(access), _) if self.helper == Some(fragment) && access.writes() => 2,
+        match event {
+            Event::Access(access) if self.helper == Some(fragment) && access.writes() => 2,
             // A helper invocation passes the interlock, and its loads return what memory holds.
             _ if self.helper == Some(fragment) => 1,
-            (Event::CriticalBegin, _) => u32::from(state.in_interlock.is_none() && self.is_next(state, fragment)),
-            (Event::Access(access), Some(relaxed)) => {
-                self.word(access.address).map_or(1, |word| relaxed.choices(fragment, word, access))
-            }
+            Event::CriticalBegin => u32::from(state.in_interlock.is_none() && self.is_next(state, fragment)),
+            Event::Access(access) => self.word(access.address).map_or(1, |word| {
+                let value = value(&state.words[word..], access.words);
+                match self.model {
+                    Model::Relaxed => {
+                        state.order.ways(fragment, word as u32, access, value, self.has_weak_exchange).len() as u32
+                    }
+                    Model::Sequential => 1 + u32::from(self.has_weak_exchange && exchanges(access, value)),
+                }
+            }),
             _ => 1,
         }
     }
@@ -169,30 +183,32 @@ impl SearchContext<'_> {
         !self.by_submission || (0..fragment).all(has_left)
     }
 
-    /// Performs a fragment's event in the way of this number; returns the next state and the value that the event observed.
-    pub(crate) fn step(
+    /// Performs a fragment's event in the way of this number, and counts every attempt of a retry loop; returns the next state
+    /// and the reply to the event.
+    pub(crate) fn step_exactly(
         &self,
         machine: &mut Machine<'_>,
         state: &State,
         fragment: usize,
         choice: u32,
-    ) -> Result<(State, u64), StepError> {
-        let Status::Before { event, saved, .. } = &state.fragments[fragment] else { return Ok((state.clone(), 0)) };
+    ) -> Result<(State, Reply), StepError> {
+        let Status::Before { event, saved, .. } = &state.fragments[fragment] else {
+            return Ok((state.clone(), Reply::Stop));
+        };
         let mut next = state.clone();
-        let old = self.perform(&mut next, fragment, event, choice);
+        let reply = self.perform(&mut next, fragment, event, choice)?;
         machine.load(saved);
-        next.fragments[fragment] = self.run(machine, fragment, Some(old), &mut next.words)?;
+        next.fragments[fragment] = self.run(machine, fragment, Some(reply), &mut next.words)?;
         next.started = Some(fragment).filter(|at| self.one_by_one && !next.fragments[*at].has_ended());
-        if let Some(relaxed) = &mut next.relaxed {
-            let running: Vec<bool> = next.fragments.iter().map(|status| !status.has_ended()).collect();
-            relaxed.forget(&running);
+        if !next.order.is_trivial() {
+            Rc::make_mut(&mut next.order).forget(|fragment| !next.fragments[fragment].has_ended());
         }
-        Ok((next, old))
+        Ok((next, reply))
     }
 
-    fn perform(&self, state: &mut State, fragment: usize, event: &Event, choice: u32) -> u64 {
+    fn perform(&self, state: &mut State, fragment: usize, event: &Event, choice: u32) -> Result<Reply, StepError> {
         if self.helper == Some(fragment) {
-            return self.observed_by_helper(state, event, choice);
+            return Ok(Reply::Done(self.observed_by_helper(state, event, choice)));
         }
         match event {
             Event::CriticalBegin => state.in_interlock = Some(fragment),
@@ -203,26 +219,44 @@ impl SearchContext<'_> {
             _ => {}
         }
         let Event::Access(access) = event else {
-            if let Some(relaxed) = &mut state.relaxed {
-                relaxed.order(fragment, event);
-            }
-            return 0;
+            Rc::make_mut(&mut state.order).order(fragment, event, |word| self.is_private(word));
+            return Ok(Reply::Done(0));
         };
-        let Some(word) = self.word(access.address) else { return 0 };
-        match &mut state.relaxed {
-            None => perform(access, &mut state.words[word..]),
-            Some(relaxed) => {
-                let old = relaxed.perform(fragment, word, access, choice);
-                if access.writes() {
-                    let last = relaxed.last(word);
-                    state.words[word] = last as u32;
-                    if access.words == 2 {
-                        state.words[word + 1] = (last >> 32) as u32;
-                    }
-                }
-                old
+        let Some(word) = self.word(access.address) else { return Ok(Reply::Done(0)) };
+        let old = value(&state.words[word..], access.words);
+        if self.model == Model::Sequential {
+            let is_done = choice == 0;
+            let matters = !access.is_atomic || !state.order.is_trivial();
+            if matters
+                && let Some(other) =
+                    Rc::make_mut(&mut state.order).perform_at_once(fragment, word as u32, access, old, is_done)
+            {
+                return Err(StepError::DataRace(other));
+            }
+            return Ok(match is_done {
+                true => Reply::Done(perform(access, &mut state.words[word..])),
+                false => Reply::Failed(old),
+            });
+        }
+        let ways = state.order.ways(fragment, word as u32, access, old, self.has_weak_exchange);
+        let way = ways[(choice as usize).min(ways.len() - 1)];
+        let observed = Rc::make_mut(&mut state.order).perform(fragment, word as u32, access, old, way);
+        if let Some(last) = state.order.last(word as u32).filter(|_| access.writes()) {
+            state.words[word] = last as u32;
+            if access.words == 2 {
+                state.words[word + 1] = (last >> 32) as u32;
             }
         }
+        match observed {
+            Observed::Value(value) => Ok(Reply::Done(value)),
+            Observed::Spurious(value) => Ok(Reply::Failed(value)),
+            Observed::Race(other) => Err(StepError::DataRace(other)),
+        }
+    }
+
+    /// Returns whether no fence makes a word visible to another fragment. Sequential memory has no such word.
+    fn is_private(&self, word: usize) -> bool {
+        self.model == Model::Relaxed && self.private[word]
     }
 
     /// Returns the value that a helper invocation observes: what memory holds or, for an operation that writes, any other.
@@ -234,83 +268,10 @@ impl SearchContext<'_> {
             _ => u64::from(u32::MAX),
         }
     }
-
-    /// Returns whether a step has returned a fragment to its earlier status and changed nothing else. It has observed an
-    /// old value once more, so the step can be left out.
-    pub(crate) fn is_idle(&self, before: &State, after: &State, fragment: usize) -> bool {
-        before.words == after.words
-            && before.relaxed == after.relaxed
-            && is_same_but_one(&before.fragments[fragment], &after.fragments[fragment])
-    }
-
-    /// Returns whether a fragment waits for another: running alone, it would return to its status without having changed
-    /// anything. One word of the status may differ, the number of its attempts.
-    pub(crate) fn waits(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> bool {
-        let Status::Before { at, .. } = &state.fragments[fragment] else { return false };
-        if !self.program.is_in_loop(*at) {
-            return false;
-        }
-        let mut words = state.words.clone();
-        let mut now = state.fragments[fragment].clone();
-        // One iteration of a wait loop reads no more words than this.
-        for _ in 0..32 {
-            let Status::Before { event: Event::Access(access), saved, .. } = &now else { return false };
-            let Some(word) = self.word(access.address) else { return false };
-            let before = value(&words[word..], access.words);
-            let is_helper = self.helper == Some(fragment);
-            if access.new_value(before) != before && !is_helper {
-                return false;
-            }
-            // The worst case of a helper invocation: it never observes the value that would end its wait.
-            let reply = if is_helper && access.writes() { u64::from(u32::MAX) } else { before };
-            machine.load(saved);
-            let Ok(next) = self.run(machine, fragment, Some(reply), &mut words) else { return false };
-            if words != state.words {
-                return false;
-            }
-            if is_same_but_one(&state.fragments[fragment], &next) {
-                return true;
-            }
-            now = next;
-        }
-        false
-    }
 }
 
-/// Returns whether both have stopped before the same event, and their saved words differ in one at most.
-fn is_same_but_one(one: &Status, other: &Status) -> bool {
-    match (one, other) {
-        (
-            Status::Before { event, at, saved },
-            Status::Before { event: other_event, at: other_at, saved: other_saved },
-        ) => {
-            let differences = saved.iter().zip(other_saved).filter(|(a, b)| a != b).count();
-            event == other_event && at == other_at && differences <= 1
-        }
-        _ => false,
-    }
-}
-
-/// Returns the first two fragments whose next accesses are a data race. Accesses of a helper invocation are exempt: its
-/// stores and atomic operations have no effect, and its loads no consequence.
-pub(crate) fn racing(context: &SearchContext<'_>, state: &State) -> Option<(usize, usize)> {
-    let access = |fragment: usize| match &state.fragments[fragment] {
-        Status::Before { event: Event::Access(access), .. } if context.helper != Some(fragment) => Some(*access),
-        _ => None,
-    };
-    let count = state.fragments.len();
-    (0..count)
-        .flat_map(|one| (one + 1..count).map(move |other| (one, other)))
-        .find(|(one, other)| matches!((access(*one), access(*other)), (Some(one), Some(other)) if race(&one, &other)))
-}
-
-/// Returns whether two pending accesses are a data race: same word, at least one writes, at least one is not atomic.
-fn race(one: &Access, other: &Access) -> bool {
-    let meets = |a: &Access, b: &Access| {
-        let (a_at, b_at) = (a.address, b.address);
-        a_at.buffer == b_at.buffer && (a_at.word..a_at.word + u32::from(a.words)).contains(&b_at.word)
-    };
-    let same = meets(one, other) || meets(other, one);
-    same && (one.operation != Operation::Load || other.operation != Operation::Load)
-        && !(one.is_atomic && other.is_atomic)
+/// Returns whether an access is a compare-exchange that finds the value that it expects.
+fn exchanges(access: &Access, value: u64) -> bool {
+    let mask = if access.words == 2 { u64::MAX } else { u64::from(u32::MAX) };
+    access.operation == Operation::Atomic(Atomic::CompareExchange) && access.expected & mask == value
 }

@@ -4,7 +4,7 @@
 //! read a storage out.
 
 use fragbuf_codegen::{Action, Form, Linking, LoopUntil, PassId, Plan, link, plan};
-use fragbuf_interpreter::Bytecode;
+use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, SourceSpan, Variant, codes};
 use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
@@ -20,7 +20,7 @@ const READ_STREAM: &str = "read_stream";
 /// How often a fragment retries before it times out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RetryLimit {
-    /// As the description says. A fragment that waits is taken to wait until something changes.
+    /// As the description says. A fragment that waits is taken to wait until something changes, unless the number is low.
     AsDeclared,
     /// The least that the row allows, so that timeouts are checked.
     Minimum,
@@ -39,7 +39,11 @@ pub(crate) struct Subject {
     pub(crate) bound: Option<Bytecode>,
     /// Reads what a pixel has emitted, where the storage emits a stream.
     pub(crate) stream: Option<StreamPrograms>,
+    /// Whether a fragment may time out because the number of its attempts is low.
+    pub(crate) may_time_out: bool,
     pub(crate) has_fences: bool,
+    /// Whether a compare-exchange of the target may fail although it finds the expected value.
+    pub(crate) has_weak_exchange: bool,
     /// Whether an interlock admits fragments in submission order.
     pub(crate) has_ordered_interlock: bool,
     /// The value of every component of every uniform.
@@ -65,6 +69,7 @@ impl Subject {
         if retries == RetryLimit::Minimum && !minimise_retries(&mut selection) {
             return Ok(None);
         }
+        let may_time_out = retries == RetryLimit::Minimum || has_few_retries(&selection);
         let stream_row = probe_row(READ_STREAM, include_str!("read_stream.wgsl"), "checker/read_stream.wgsl");
         let registry = registry.clone().with(stream_row);
         let plan = plan(variant, &selection, &registry)?;
@@ -77,7 +82,9 @@ impl Subject {
             bound: read_out.bound.clone().filter(|_| needs_bound),
             read_out,
             stream,
+            may_time_out,
             has_fences: target.provides.contains(&Feature::Fences),
+            has_weak_exchange: target.has_weak_exchange,
             has_ordered_interlock: plan.requires.contains(&Feature::OrderedInterlock),
             uniform: 1.0,
             plan,
@@ -189,6 +196,12 @@ fn position(plan: &Plan, runnable: &Runnable) -> (usize, u32, usize) {
     let at = command(plan, runnable.id);
     let outermost = loops_around(plan, at).next().map_or(at, |one| one.begin);
     (outermost, runnable.iteration.unwrap_or(0), at)
+}
+
+/// Returns whether a row that locks declares so few attempts that the search counts them.
+fn has_few_retries(selection: &Selection) -> bool {
+    let mut locks = selection.rows.iter().filter(|selected| selected.row.soundness == Soundness::Lock);
+    locks.any(|selected| selected.options.iter().any(|(_, limit)| *limit < LEAST_RETRY_LIMIT))
 }
 
 /// Sets every parameter of rows that lock to its minimum; returns whether there was one.

@@ -34,6 +34,8 @@ pub struct Limits {
     pub random_schedules: Option<u32>,
     /// The most states of one case.
     pub states: usize,
+    /// Whether steps that do not affect each other are explored in one order only. The verdict is the same without.
+    pub reduce: bool,
 }
 
 impl Default for Limits {
@@ -45,6 +47,7 @@ impl Default for Limits {
             model: Model::Sequential,
             random_schedules: None,
             states: 4_000_000,
+            reduce: true,
         }
     }
 }
@@ -138,7 +141,7 @@ pub fn check_variant(
         report.is_kept_set_checked = !KeptSet::new(&subject, None).is_unknown();
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.description.to_string())).collect();
-        check_all(&subject, limits, retries, &mut report, progress).map_err(Error::Unable)?;
+        check_all(&subject, limits, &mut report, progress).map_err(Error::Unable)?;
         if report.failure.is_some() && !report.is_declared {
             break;
         }
@@ -170,7 +173,6 @@ fn choose_uniform(subject: &mut Subject) -> Result<(), String> {
 fn check_all(
     subject: &Subject,
     limits: &Limits,
-    retries: RetryLimit,
     report: &mut Report,
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
@@ -180,8 +182,9 @@ fn check_all(
         model: limits.model,
         random_schedules: limits.random_schedules,
         limit: limits.states,
-        may_time_out: retries == RetryLimit::Minimum,
+        may_time_out: subject.may_time_out,
         one_by_one: false,
+        is_reduced: limits.reduce,
     };
     let has_races = subject.permits().any(|permits| permits.needs_race);
     let searches = [Some(options), has_races.then(|| options.without_races())];

@@ -2,7 +2,7 @@
 
 use fragbuf_checker::{Error, Limits, Model, Report, Shader, check_shader};
 
-fn run(source: &str, invocations: u32, model: Model) -> Report {
+pub(crate) fn run(source: &str, invocations: u32, model: Model) -> Report {
     let shader = Shader { file: "litmus.wgsl", source, entry: "main", fill: &[] };
     let limits = Limits { fragments: vec![invocations], model, ..Limits::default() };
     let report = check_shader(&shader, &limits).unwrap();
@@ -10,7 +10,7 @@ fn run(source: &str, invocations: u32, model: Model) -> Report {
     report
 }
 
-fn holds(source: &str, model: Model) -> bool {
+pub(crate) fn holds(source: &str, model: Model) -> bool {
     run(source, 2, model).failure.is_none()
 }
 
@@ -18,11 +18,14 @@ const HEAD: &str = "
 @group(0) @binding(0) var<storage, read_write> x: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> y: atomic<u32>;
 @group(0) @binding(2) var<storage, read_write> seen: array<u32, 4>;
+@coherent @group(0) @binding(4) var<storage, read_write> data: u32;
 fn memory_fence() {}
+fn critical_begin() {}
+fn critical_end() {}
 ";
 
 /// Returns a program of two invocations, and the property of its final states.
-fn litmus(first: &str, second: &str, holds: &str) -> String {
+pub(crate) fn litmus(first: &str, second: &str, holds: &str) -> String {
     format!(
         "{HEAD}
 @compute @workgroup_size(1)

@@ -236,10 +236,10 @@ pub(crate) enum Outcome {
     Illegal,
 }
 
-/// Returns limits of seven fragments for a heap of six, with a few random schedules. All initial fragments are displaced, so
-/// that an error deep in the heap reaches its root.
+/// Returns limits of seven fragments for heaps of five and six, with a few random schedules. All initial fragments are displaced,
+/// so that an error deep in the heap reaches its root.
 fn deep(model: Model) -> Limits {
-    Limits { fragments: vec![7], entries: vec![6], random_schedules: Some(2), ..limits(2, model) }
+    Limits { fragments: vec![7], entries: vec![5, 6], random_schedules: Some(2), ..limits(2, model) }
 }
 
 /// Checks a mutant; returns its outcome.

@@ -44,7 +44,7 @@ fn without(part: &str, instead: &str) -> Row {
 
 fn checked(row: Row, model: Model, entries: &[u32], fragments: u32) -> Report {
     let limits = Limits { fragments: vec![fragments], entries: entries.to_vec(), ..limits(2, model) };
-    report("kb_multi", &[], "wgsl", &limits, &Registry::builtin().with(row)).unwrap()
+    report("kb_multi", &[], "glsl", &limits, &Registry::builtin().with(row)).unwrap()
 }
 
 /// Returns whether the k nearest distinct depths are kept. No counter counts the others.

@@ -10,10 +10,10 @@ use fragbuf_templates::vocabulary::{Capability, Feature};
 use crate::subjects::{limits, report, target, variant};
 
 /// Technique, changes, target, model, outcome.
-type Verdict = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model, Outcome);
+pub(crate) type Verdict = (&'static str, &'static [(&'static str, &'static str)], &'static str, Model, Outcome);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
+pub(crate) enum Outcome {
     Holds,
     /// Fails with declared hazards only.
     Hazard,
@@ -22,7 +22,7 @@ enum Outcome {
 
 use Outcome::{Fails, Hazard, Holds};
 
-fn outcome(report: &Report) -> Outcome {
+pub(crate) fn outcome(report: &Report) -> Outcome {
     match &report.failure {
         None => Holds,
         Some(_) if report.is_declared => Hazard,
@@ -47,7 +47,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-const VERDICTS: [Verdict; 84] = [
+pub(crate) const VERDICTS: [Verdict; 84] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),

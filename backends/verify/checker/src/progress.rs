@@ -1,0 +1,136 @@
+//! Progress: whether a fragment comes back to a status in which it has been.
+//!
+//! Input: a state and a fragment. Output: the next state, in which an attempt of a retry loop that has changed nothing does not
+//! count. So a fragment that waits in a loop does not reach the loop's limit while another fragment can still change what it
+//! reads. [`SearchContext::run_on`] counts every attempt, for states that no other fragment changes any more.
+
+use std::rc::Rc;
+
+use fragbuf_interpreter::{Machine, Reply};
+
+use crate::context::SearchContext;
+use crate::search::{RUN_ON, Step};
+use crate::state::{State, Status, StepError};
+
+/// An earlier status of a fragment, since which the fragment has changed nothing (Brent's algorithm finds its cycles).
+#[derive(Clone, Debug)]
+pub(crate) struct Anchor {
+    saved: Rc<[u32]>,
+    /// Steps since.
+    steps: u32,
+    /// After so many steps the anchor moves to the present status.
+    limit: u32,
+}
+
+/// The result of a step.
+pub(crate) struct Stepped {
+    pub(crate) state: State,
+    /// The reply to the event.
+    pub(crate) reply: Reply,
+    /// Whether the step has changed anything but the status of its fragment.
+    pub(crate) has_effect: bool,
+    /// Whether the fragment has come back to an earlier status without having changed anything.
+    pub(crate) recurs: bool,
+}
+
+/// The most steps of [`SearchContext::run_on`].
+const LONGEST: u32 = 1 << 17;
+
+impl SearchContext<'_> {
+    /// Performs a fragment's event in the way of this number.
+    pub(crate) fn step(
+        &self,
+        machine: &mut Machine<'_>,
+        before: &State,
+        fragment: usize,
+        choice: u32,
+    ) -> Result<Stepped, StepError> {
+        let (mut state, reply) = self.step_exactly(machine, before, fragment, choice)?;
+        let has_effect = !state.has_memory_of(before);
+        let recurs = self.anchor(before, &mut state, fragment, has_effect);
+        Ok(Stepped { state, reply, has_effect, recurs })
+    }
+
+    /// Sets the anchor of a fragment after a step; returns whether the fragment is back there.
+    fn anchor(&self, before: &State, after: &mut State, fragment: usize, has_effect: bool) -> bool {
+        let Status::Before { at, saved, anchor, .. } = &mut after.fragments[fragment] else { return false };
+        if !self.program.is_in_loop(*at) {
+            return false;
+        }
+        let earlier = match &before.fragments[fragment] {
+            Status::Before { anchor: Some(anchor), .. } => Some(anchor.clone()),
+            Status::Before { saved, .. } => Some(Anchor { saved: Rc::clone(saved), steps: 0, limit: 2 }),
+            Status::Ended(_) => None,
+        };
+        let Some(earlier) = earlier.filter(|_| !has_effect) else { return false };
+        if self.program.is_same_attempt(&earlier.saved, saved) {
+            *saved = Rc::clone(&earlier.saved);
+            *anchor = Some(Anchor { steps: 0, ..earlier });
+            return true;
+        }
+        *anchor = Some(match earlier.steps + 1 >= earlier.limit {
+            true => Anchor { saved: Rc::clone(saved), steps: 0, limit: earlier.limit.saturating_mul(2) },
+            false => Anchor { steps: earlier.steps + 1, ..earlier },
+        });
+        false
+    }
+
+    /// Runs a fragment while no other runs, until it changes something, leaves its loop or ends. `None`: it comes back to a
+    /// status in which it has been, or fails.
+    pub(crate) fn run_on(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> Option<State> {
+        let mut now = state.clone();
+        let (mut earlier, mut limit) = (now.fragments[fragment].clone(), 1);
+        for steps in 0..LONGEST {
+            match &now.fragments[fragment] {
+                Status::Before { at, .. } if steps == 0 || self.program.is_in_loop(*at) => {}
+                _ => return Some(now),
+            }
+            if self.choices(&now, fragment) == 0 {
+                return None;
+            }
+            let (next, _) = self.step_exactly(machine, &now, fragment, 0).ok()?;
+            let has_effect = !next.has_memory_of(&now);
+            now = next;
+            if has_effect {
+                return Some(now);
+            }
+            if now.fragments[fragment] == earlier {
+                return None;
+            }
+            if steps == limit {
+                (earlier, limit) = (now.fragments[fragment].clone(), 2 * limit);
+            }
+        }
+        None
+    }
+
+    /// Performs a step of a schedule again. `None`: it fails.
+    pub(crate) fn replay(&self, machine: &mut Machine<'_>, state: &State, step: Step) -> Option<State> {
+        match step {
+            (fragment, RUN_ON) => self.run_on(machine, state, fragment),
+            (fragment, choice) => self.step(machine, state, fragment, choice).ok().map(|stepped| stepped.state),
+        }
+    }
+
+    /// Returns whether a helper invocation waits in the worst case, in which it never observes the value that would end its wait.
+    pub(crate) fn helper_waits(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> bool {
+        let mut now = state.clone();
+        if let Status::Before { anchor, .. } = &mut now.fragments[fragment] {
+            *anchor = None;
+        }
+        // One attempt of a wait accesses no more words than this.
+        for _ in 0..64 {
+            let Status::Before { at, .. } = &now.fragments[fragment] else { return false };
+            if !self.program.is_in_loop(*at) {
+                return false;
+            }
+            let worst = self.choices(&now, fragment).saturating_sub(1);
+            match self.step(machine, &now, fragment, worst) {
+                Ok(stepped) if stepped.recurs => return true,
+                Ok(stepped) => now = stepped.state,
+                Err(_) => return false,
+            }
+        }
+        false
+    }
+}

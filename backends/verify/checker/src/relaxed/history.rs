@@ -1,0 +1,68 @@
+//! The history of one word: its writes in modification order, and the reads that a later plain write must not race with.
+
+use super::view::View;
+
+/// The history of one word. Position 0 is the oldest write that a running fragment may still observe.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct History {
+    pub(crate) writes: Vec<Write>,
+    /// The plain reads since the last plain write.
+    pub(crate) reads: Vec<PlainRead>,
+}
+
+/// One write.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Write {
+    pub(crate) value: u64,
+    /// Whether it is a read-modify-write of the write before it, so that no write comes between them.
+    pub(crate) follows: bool,
+    /// What a reader has observed after its next fence.
+    pub(crate) view: View,
+    /// For a plain write, its writer.
+    pub(crate) plain: Option<Accessor>,
+}
+
+/// A fragment, and whether it was inside of the interlock's critical section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Accessor {
+    pub(crate) fragment: u8,
+    pub(crate) in_section: bool,
+}
+
+/// A plain read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct PlainRead {
+    pub(crate) accessor: Accessor,
+    /// The epoch of the reader: how many of its fences came before, as far as that matters.
+    pub(crate) epoch: u32,
+}
+
+impl History {
+    /// Returns a history of one write, which every fragment has observed.
+    pub(crate) fn new(value: u64) -> Self {
+        History { writes: vec![Write { value, follows: false, view: View::default(), plain: None }], reads: Vec::new() }
+    }
+
+    /// Returns whether it holds nothing but a value.
+    pub(crate) fn is_trivial(&self) -> bool {
+        matches!(&self.writes[..], [write] if write.view.is_empty()) && self.reads.is_empty()
+    }
+
+    pub(crate) fn last(&self) -> u32 {
+        self.writes.len() as u32 - 1
+    }
+
+    /// Returns whether the write after a position is a read-modify-write of the write there.
+    pub(crate) fn is_followed(&self, at: u32) -> bool {
+        self.writes.get(at as usize + 1).is_some_and(|next| next.follows)
+    }
+
+    /// Removes the writes before a position.
+    pub(crate) fn forget_before(&mut self, at: u32) {
+        self.writes.drain(..at as usize);
+        self.writes[0].follows = false;
+        if self.writes.len() == 1 {
+            self.writes[0].plain = None;
+        }
+    }
+}

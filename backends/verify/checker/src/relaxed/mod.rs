@@ -1,0 +1,313 @@
+//! Relaxed memory: which writes an access may observe, and which accesses are data races.
+//!
+//! Each word that is accessed has a history of writes in modification order, and each fragment has a view: per word, the
+//! oldest write that it may still observe. Nothing but views orders accesses.
+//!
+//! * An atomic load observes any write from its view on.
+//! * An atomic store takes any position after its view, so a store may come before stores that were executed earlier.
+//! * An atomic read-modify-write observes any such write that no other read-modify-write has taken, and comes right after it.
+//! * A compare-exchange that fails is a load. A weak one may also fail although it observes the expected value.
+//! * A fence adds the views of all observed writes to the fragment's view, and passes that view on with all later atomic
+//!   writes. A read-modify-write also passes on the view of the write that it observes (release sequences).
+//! * A plain access must have every write of its word in its view, and a plain write must come after every plain read.
+//!   Otherwise it is a data race. No fence adds words that are not coherent to a view.
+//! * The interlock adds what fragments have accessed inside of their critical sections, until the section ends.
+
+mod history;
+mod order;
+mod view;
+
+use fragbuf_interpreter::{Access, Atomic, Operation};
+
+use history::{Accessor, History, PlainRead, Write};
+use view::{View, clock};
+
+/// The memory of all words whose order matters.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RelaxedMemory {
+    /// The histories that hold more than the value of their word, by word.
+    histories: Vec<(u32, History)>,
+    fragments: Vec<Views>,
+    /// What fragments have accessed inside of critical sections.
+    sections: View,
+}
+
+/// The views of a fragment.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+struct Views {
+    /// The oldest write that the fragment may observe.
+    current: View,
+    /// The views of observed writes, which the next fence adds to `current`.
+    observed: View,
+    /// What the fragment's writes pass on.
+    released: View,
+    /// Inside of a critical section, the view without what the interlock has added.
+    outside: Option<View>,
+    /// The number of the fragment's fences, as far as it distinguishes plain reads.
+    epoch: u32,
+}
+
+impl Views {
+    /// Returns the view that remains after the critical section.
+    fn lasting(&self) -> &View {
+        self.outside.as_ref().unwrap_or(&self.current)
+    }
+}
+
+/// One way to perform an access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// A load of the write at this position.
+    Load(u32),
+    /// A store at this position.
+    Store(u32),
+    /// A read-modify-write of the write at this position.
+    Modify(u32),
+    /// A compare-exchange that observes the write at this position and fails.
+    Fail(u32),
+}
+
+/// What an access has observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Observed {
+    Value(u64),
+    /// A compare-exchange has failed although the word holds this value, which it expects.
+    Spurious(u64),
+    /// The access and one of this fragment are a data race.
+    Race(usize),
+}
+
+impl RelaxedMemory {
+    /// Returns memory that every fragment has observed.
+    pub(crate) fn new(fragments: usize) -> Self {
+        let views = Views { epoch: 1, ..Views::default() };
+        RelaxedMemory { histories: Vec::new(), fragments: vec![views; fragments], sections: View::default() }
+    }
+
+    /// Returns whether no access has left anything that orders, or may race with, another.
+    pub(crate) fn is_trivial(&self) -> bool {
+        self.histories.is_empty() && self.fragments.iter().all(|views| views.epoch == 1 && views.outside.is_none())
+    }
+
+    /// Returns the ways in which an atomic access can be performed, the latest write first; `value` is the last value of the
+    /// word. A plain access can be performed in one way. `is_weak`: a compare-exchange may fail for no reason.
+    pub(crate) fn ways(&self, fragment: usize, word: u32, access: &Access, value: u64, is_weak: bool) -> Vec<Way> {
+        let single = History::new(value);
+        let history = self.history(word).unwrap_or(&single);
+        let oldest = self.fragments[fragment].current.get(word);
+        let observable = (oldest..=history.last()).rev();
+        match access.operation {
+            Operation::Load if access.is_atomic => observable.map(Way::Load).collect(),
+            Operation::Load => vec![Way::Load(history.last())],
+            Operation::Store if !access.is_atomic => vec![Way::Store(history.last() + 1)],
+            Operation::Store => {
+                observable.filter(|at| !history.is_followed(*at)).map(|at| Way::Store(at + 1)).collect()
+            }
+            Operation::Atomic(Atomic::CompareExchange) => {
+                let is_expected = |at: u32| {
+                    truncated(history.writes[at as usize].value, access) == truncated(access.expected, access)
+                };
+                let mut ways: Vec<Way> = Vec::new();
+                for at in observable {
+                    let succeeds = is_expected(at);
+                    ways.extend((succeeds && !history.is_followed(at)).then_some(Way::Modify(at)));
+                    ways.extend((!succeeds || is_weak).then_some(Way::Fail(at)));
+                }
+                ways
+            }
+            Operation::Atomic(_) => observable.filter(|at| !history.is_followed(*at)).map(Way::Modify).collect(),
+        }
+    }
+
+    /// Performs an access in one of its ways.
+    pub(crate) fn perform(&mut self, fragment: usize, word: u32, access: &Access, value: u64, way: Way) -> Observed {
+        let at = self.materialise(word, value);
+        if let Some(other) = self.racing(fragment, word, at, access) {
+            return Observed::Race(other);
+        }
+        match way {
+            Way::Load(position) | Way::Fail(position) => {
+                let write = &self.histories[at].1.writes[position as usize];
+                let value = truncated(write.value, access);
+                if access.is_atomic {
+                    let view = write.view.clone();
+                    self.fragments[fragment].observed.join(&view);
+                } else {
+                    self.record_read(fragment, at);
+                }
+                self.advance(fragment, word, position);
+                let is_spurious = matches!(way, Way::Fail(_)) && value == truncated(access.expected, access);
+                if is_spurious { Observed::Spurious(value) } else { Observed::Value(value) }
+            }
+            Way::Store(position) => {
+                let view = if access.is_atomic { self.fragments[fragment].released.clone() } else { View::default() };
+                let plain = (!access.is_atomic).then(|| self.accessor(fragment));
+                if plain.is_none() || !self.overwrite(fragment, word, at, access.value) {
+                    self.insert(
+                        fragment,
+                        (word, at),
+                        position,
+                        Write { value: access.value, follows: false, view, plain },
+                    );
+                }
+                if plain.is_some() {
+                    self.histories[at].1.reads.clear();
+                }
+                Observed::Value(0)
+            }
+            Way::Modify(position) => {
+                let read = self.histories[at].1.writes[position as usize].clone();
+                let old = truncated(read.value, access);
+                let value = access.new_value(old);
+                let views = &mut self.fragments[fragment];
+                let mut view = views.released.clone();
+                views.observed.join(&read.view);
+                view.join(&read.view);
+                // A write that repeats the value and passes on nothing more cannot be told from the write before it.
+                match value == read.value && read.view.covers_except(&view, word) {
+                    true => self.advance(fragment, word, position),
+                    false => {
+                        let write = Write { value, follows: true, view, plain: None };
+                        self.insert(fragment, (word, at), position + 1, write);
+                    }
+                }
+                Observed::Value(old)
+            }
+        }
+    }
+
+    /// Performs an access at once, where every atomic operation synchronises; `value` is the last value of the word. `is_done`:
+    /// it is no compare-exchange that fails for no reason. Returns a fragment with an access that this one is a data race with.
+    pub(crate) fn perform_at_once(
+        &mut self,
+        fragment: usize,
+        word: u32,
+        access: &Access,
+        value: u64,
+        is_done: bool,
+    ) -> Option<usize> {
+        if !access.is_atomic {
+            let way = self.ways(fragment, word, access, value, false)[0];
+            return match self.perform(fragment, word, access, value, way) {
+                Observed::Race(other) => Some(other),
+                _ => None,
+            };
+        }
+        let at = self.materialise(word, value);
+        if access.operation != Operation::Store {
+            self.acquire(fragment, at);
+        }
+        let exchanges = access.operation == Operation::Atomic(Atomic::CompareExchange);
+        if access.writes() && is_done && (!exchanges || value == truncated(access.expected, access)) {
+            self.release(fragment, at);
+        }
+        None
+    }
+
+    /// Returns the last value of a word that has a history.
+    pub(crate) fn last(&self, word: u32) -> Option<u64> {
+        self.history(word)?.writes.last().map(|write| write.value)
+    }
+
+    fn history(&self, word: u32) -> Option<&History> {
+        let at = self.histories.binary_search_by_key(&word, |entry| entry.0).ok()?;
+        Some(&self.histories[at].1)
+    }
+
+    /// Returns the index of a word's history, which is made if it is not there.
+    fn materialise(&mut self, word: u32, value: u64) -> usize {
+        self.histories.binary_search_by_key(&word, |entry| entry.0).unwrap_or_else(|at| {
+            self.histories.insert(at, (word, History::new(value)));
+            at
+        })
+    }
+
+    fn accessor(&self, fragment: usize) -> Accessor {
+        Accessor { fragment: fragment as u8, in_section: self.fragments[fragment].outside.is_some() }
+    }
+
+    /// Returns a fragment with an earlier access that this one is a data race with.
+    fn racing(&self, fragment: usize, word: u32, at: usize, access: &Access) -> Option<usize> {
+        if access.is_atomic {
+            return None;
+        }
+        let history = &self.histories[at].1;
+        let views = &self.fragments[fragment];
+        let unseen = history.writes.iter().skip(views.current.get(word) as usize + 1);
+        let writer = unseen.filter_map(|write| write.plain).next();
+        let is_ordered = |read: &&PlainRead| {
+            let other = usize::from(read.accessor.fragment);
+            other == fragment
+                || views.current.get(clock(other)) >= read.epoch
+                || (read.accessor.in_section && views.outside.is_some())
+        };
+        let reader = history.reads.iter().find(|read| !is_ordered(read)).filter(|_| access.writes());
+        writer.or(reader.map(|read| read.accessor)).map(|accessor| usize::from(accessor.fragment))
+    }
+
+    fn record_read(&mut self, fragment: usize, at: usize) {
+        let (accessor, epoch) = (self.accessor(fragment), self.fragments[fragment].epoch);
+        let reads = &mut self.histories[at].1.reads;
+        match reads.iter_mut().find(|read| read.accessor == accessor) {
+            Some(read) => read.epoch = epoch,
+            None => {
+                reads.push(PlainRead { accessor, epoch });
+                reads.sort_unstable_by_key(|read| (read.accessor.fragment, read.accessor.in_section));
+            }
+        }
+    }
+
+    /// Records that a fragment has observed or written the write at a position.
+    fn advance(&mut self, fragment: usize, word: u32, position: u32) {
+        let views = &mut self.fragments[fragment];
+        views.current.raise(word, position);
+        if let Some(outside) = &mut views.outside {
+            outside.raise(word, position);
+            self.sections.raise(word, position);
+        }
+    }
+
+    /// Replaces the value of the fragment's own last plain write, if no other fragment can have its position in a view.
+    fn overwrite(&mut self, fragment: usize, word: u32, at: usize, value: u64) -> bool {
+        let (accessor, position) = (self.accessor(fragment), self.histories[at].1.last());
+        let has = |view: &View| view.get(word) >= position;
+        let is_known = has(&self.fragments[fragment].released)
+            || self.fragments.iter().enumerate().any(|(other, views)| {
+                other != fragment && (has(&views.current) || views.outside.as_ref().is_some_and(has))
+            });
+        let last = self.histories[at].1.writes.last_mut();
+        let own = last.filter(|write| write.plain == Some(accessor) && !is_known);
+        own.map(|write| write.value = value).is_some()
+    }
+
+    fn insert(&mut self, fragment: usize, (word, at): (u32, usize), position: u32, mut write: Write) {
+        self.each_view(|view| view.shift(word, position));
+        write.view.shift(word, position);
+        if write.plain.is_none() {
+            write.view.raise(word, position);
+        }
+        self.histories[at].1.writes.insert(position as usize, write);
+        self.advance(fragment, word, position);
+    }
+
+    fn each_view(&mut self, change: impl Fn(&mut View)) {
+        let writes = self.histories.iter_mut().flat_map(|(_, history)| &mut history.writes);
+        writes.for_each(|write| change(&mut write.view));
+        for views in &mut self.fragments {
+            change(&mut views.current);
+            change(&mut views.observed);
+            change(&mut views.released);
+            views.outside.as_mut().map(&change);
+        }
+        change(&mut self.sections);
+    }
+}
+
+/// Returns as much of a value as the access is wide.
+fn truncated(value: u64, access: &Access) -> u64 {
+    if access.words == 2 { value } else { value & u64::from(u32::MAX) }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests;

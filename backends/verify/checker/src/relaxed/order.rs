@@ -1,0 +1,121 @@
+//! Fences and critical sections of relaxed memory, and the removal of what no fragment can observe.
+
+use fragbuf_interpreter::Event;
+
+use super::view::{View, clock};
+use super::{RelaxedMemory, Views};
+
+impl RelaxedMemory {
+    /// Performs an event that is not an access. `is_private`: the word is neither atomic nor coherent.
+    pub(crate) fn order(&mut self, fragment: usize, event: &Event, is_private: impl Fn(usize) -> bool) {
+        let views = &mut self.fragments[fragment];
+        let is_shared = |key: u32| if key < clock(0) { !is_private(key as usize) } else { key != clock(fragment) };
+        match event {
+            Event::Fence => {
+                views.current.join_where(&views.observed, is_shared);
+                if let Some(outside) = &mut views.outside {
+                    outside.join_where(&views.observed, is_shared);
+                }
+                views.observed = View::default();
+                views.released = View::default();
+                views.released.join_where(&views.current, is_shared);
+                views.released.raise(clock(fragment), views.epoch);
+                views.epoch += 1;
+            }
+            Event::CriticalBegin => {
+                views.outside = Some(views.current.clone());
+                views.current.join_where(&self.sections, is_shared);
+            }
+            Event::CriticalEnd => {
+                if let Some(outside) = views.outside.take() {
+                    views.current = outside;
+                }
+            }
+            Event::Access(_) | Event::Barrier => {}
+        }
+    }
+
+    /// Adds the view of the last write of a word to a fragment's view.
+    pub(super) fn acquire(&mut self, fragment: usize, at: usize) {
+        let Some(write) = self.histories[at].1.writes.last() else { return };
+        let views = &mut self.fragments[fragment];
+        for view in std::iter::once(&mut views.current).chain(&mut views.outside) {
+            view.join_where(&write.view, |key| key != clock(fragment));
+        }
+    }
+
+    /// Passes a fragment's view on with the last write of a word.
+    pub(super) fn release(&mut self, fragment: usize, at: usize) {
+        let views = &mut self.fragments[fragment];
+        if let Some(write) = self.histories[at].1.writes.last_mut() {
+            write.view = views.current.clone();
+            write.view.raise(clock(fragment), views.epoch);
+            views.epoch += 1;
+        }
+    }
+
+    /// Removes what no running fragment can observe, so that equal behaviour means equal memory.
+    pub(crate) fn forget(&mut self, is_running: impl Fn(usize) -> bool) {
+        if self.histories.is_empty() {
+            // No word has more than one write, so views are empty.
+            self.fragments.iter_mut().for_each(|views| views.epoch = 1);
+        }
+        for (fragment, views) in self.fragments.iter_mut().enumerate() {
+            if !is_running(fragment) {
+                *views = Views { epoch: 1, ..Views::default() };
+            }
+        }
+        self.forget_reads(&is_running);
+        self.forget_writes(&is_running);
+        for views in &mut self.fragments {
+            let Views { observed, outside, current, .. } = views;
+            observed.keep_above(outside.as_ref().unwrap_or(current));
+        }
+        self.histories.retain(|(_, history)| !history.is_trivial());
+    }
+
+    fn forget_writes(&mut self, is_running: impl Fn(usize) -> bool) {
+        for at in 0..self.histories.len() {
+            let word = self.histories[at].0;
+            let views = self.fragments.iter().enumerate().filter(|(fragment, _)| is_running(*fragment));
+            let oldest = views.map(|(_, views)| views.lasting().get(word)).min();
+            let oldest = oldest.unwrap_or(self.histories[at].1.last());
+            if oldest > 0 {
+                self.histories[at].1.forget_before(oldest);
+                self.each_view(|view| view.map(word, |position| position.saturating_sub(oldest)));
+            }
+        }
+    }
+
+    /// Removes plain reads that every other running fragment is ordered after, and numbers the epochs of the others densely.
+    fn forget_reads(&mut self, is_running: impl Fn(usize) -> bool) {
+        let has_reads = self.histories.iter().any(|(_, history)| !history.reads.is_empty());
+        if !has_reads && self.fragments.iter().all(|views| views.epoch == 1) {
+            return;
+        }
+        for reader in 0..self.fragments.len() {
+            let key = clock(reader);
+            let others = self.fragments.iter().enumerate();
+            let others = others.filter(|(other, _)| *other != reader && is_running(*other));
+            let known = others.map(|(_, views)| views.lasting().get(key)).min();
+            let mut epochs: Vec<u32> = Vec::new();
+            for (_, history) in &mut self.histories {
+                history.reads.retain(|read| {
+                    usize::from(read.accessor.fragment) != reader || known.is_some_and(|known| read.epoch > known)
+                });
+                let own = history.reads.iter().filter(|read| usize::from(read.accessor.fragment) == reader);
+                epochs.extend(own.map(|read| read.epoch));
+            }
+            epochs.sort_unstable();
+            epochs.dedup();
+            let dense = |epoch: u32| epochs.partition_point(|other| *other <= epoch) as u32;
+            self.each_view(|view| view.map(key, dense));
+            let before = epochs.partition_point(|other| *other < self.fragments[reader].epoch) as u32;
+            self.fragments[reader].epoch = before + 1;
+            for (_, history) in &mut self.histories {
+                let own = history.reads.iter_mut().filter(|read| usize::from(read.accessor.fragment) == reader);
+                own.for_each(|read| read.epoch = dense(read.epoch));
+            }
+        }
+    }
+}
