@@ -2,7 +2,7 @@
 //!
 //! Input: the instructions of a program and their liveness. Output: per loop, the words that are incremented and compared with
 //! a constant, where the comparison only leaves the loop. Nothing else in the program depends on such a word, so two machines
-//! that differ in it alone behave alike until the limit is reached.
+//! that differ in it alone behave alike until the limit is reached. The tests `progress` of the checker cover it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -177,52 +177,5 @@ impl LoopAnalysis<'_> {
             }
         }
         false
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-mod tests {
-
-    use crate::bytecode::{Bytecode, Options};
-
-    fn counters(body: &str) -> usize {
-        let source = format!(
-            "@group(0) @binding(0) var<storage, read_write> x: array<atomic<u32>, 4>;\n\
-             fn nested(a: u32) -> u32 {{ let b = a * 3u; return atomicAdd(&x[1], b + 1u); }}\n\
-             @compute @workgroup_size(1) fn main() {{ {body} }}"
-        );
-        let module = naga::front::wgsl::parse_str(&source).unwrap();
-        let flags = naga::valid::ValidationFlags::all();
-        let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::all()).validate(&module).unwrap();
-        let program = Bytecode::entry_point(&module, &info, "main", &Options::default()).unwrap();
-        program.retry_loops.iter().map(|one| one.counters.len()).sum()
-    }
-
-    #[test]
-    fn a_counter_that_only_limits_its_loop_is_found() {
-        for body in [
-            "for (var i = 0u; i < 4096u; i++) { if atomicExchange(&x[0], 1u) == 0u { nested(7u); return; } }",
-            "var i = 0; loop { if i >= 100 { break; } if nested(2u) == 0u { break; } i++; }",
-            "for (var i = 0u; i < 99u && atomicLoad(&x[0]) == 0u; i++) {}",
-        ] {
-            assert_eq!(counters(body), 1, "{body}");
-        }
-    }
-
-    #[test]
-    fn a_counter_that_the_program_uses_is_none() {
-        for body in [
-            // It is an index, a value, a branch, read after the loop, or set from memory; or its limit is low or no constant.
-            "for (var i = 0u; i < 4096u; i++) { if atomicLoad(&x[i % 4u]) == 0u { return; } }",
-            "for (var i = 0u; i < 4096u; i++) { atomicStore(&x[0], i); }",
-            "for (var i = 0u; i < 4096u; i++) { if i == 99u { atomicStore(&x[0], 1u); } }",
-            "var i = 0u; for (; i < 4096u; i++) { if atomicLoad(&x[0]) == 0u { break; } } atomicStore(&x[1], i);",
-            "var i = 0u; loop { i = atomicLoad(&x[0]); if i > 99u { break; } i++; }",
-            "for (var i = 0u; i < 4u; i++) { if atomicLoad(&x[0]) == 0u { return; } }",
-            "let n = atomicLoad(&x[2]); for (var i = 0u; i < n; i++) { if atomicLoad(&x[0]) == 0u { return; } }",
-        ] {
-            assert_eq!(counters(body), 0, "{body}");
-        }
     }
 }
