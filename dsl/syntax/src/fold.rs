@@ -8,7 +8,7 @@ use fragbuf_model::{SourceSpan, codes};
 
 use crate::methods::Spelling;
 use crate::report::Report;
-use crate::tree::{Block, Expr, Function, Kind, Operator, Statement};
+use crate::tree::{Block, Expr, Function, Kind, Operator, Statement, VariableId};
 use crate::types::Type;
 
 /// The value of a constant expression.
@@ -26,28 +26,52 @@ pub(crate) fn reject_overflow(function: &Function, report: &mut Report) {
     let mut error = |span: &SourceSpan, message: &str, help: &str| {
         report.error(codes::OUT_OF_RANGE, span, message, help);
     };
-    Folding { function, error: &mut error }.block(&function.body);
+    Folding::new(function, &mut error).block(&function.body);
 }
 
-/// Returns the value of a constant expression.
+/// Returns the value of an expression whose last part is constant in WGSL. Blocks in it may have statements with effects.
 pub(crate) fn constant(expr: &Expr, function: &Function) -> Option<Value> {
-    let has_statements = matches!(expr.kind, Kind::If(_) | Kind::For(_) | Kind::Block(_));
-    if has_statements { None } else { Folding { function, error: &mut |_, _, _| {} }.expr(expr) }
+    Folding::new(function, &mut |_, _, _| {}).expr(expr)
 }
 
 struct Folding<'a> {
     function: &'a Function,
     error: &'a mut dyn FnMut(&SourceSpan, &str, &str),
+    /// The values of variables that are not mutable, so far. Validators use them for right operands only.
+    variables: Vec<Option<Value>>,
 }
 
-impl Folding<'_> {
+impl<'a> Folding<'a> {
+    fn new(function: &'a Function, error: &'a mut dyn FnMut(&SourceSpan, &str, &str)) -> Self {
+        Folding { function, error, variables: vec![None; function.variables.len()] }
+    }
+
     fn block(&mut self, block: &Block) -> Option<Value> {
         for statement in &block.statements {
-            let (Statement::Let { value, .. } | Statement::Expr(value)) = statement;
-            self.expr(value);
+            match statement {
+                Statement::Let { variable, value, .. } => self.variable(*variable, value),
+                Statement::Expr(value) => drop(self.expr(value)),
+            }
         }
-        let value = block.value.as_deref().and_then(|value| self.expr(value));
-        value.filter(|_| block.statements.is_empty())
+        let value = block.value.as_deref()?;
+        self.expr(value).or_else(|| self.variable_value(value))
+    }
+
+    fn variable(&mut self, variable: Option<VariableId>, value: &Expr) {
+        let found = self.expr(value);
+        let found = found.or_else(|| self.variable_value(value));
+        let Some(id) = variable.filter(|id| !self.function.is_mutable(*id)) else { return };
+        if let Some(slot) = self.variables.get_mut(id) {
+            *slot = found;
+        }
+    }
+
+    /// Returns the value of a name that was declared with a constant.
+    fn variable_value(&self, expr: &Expr) -> Option<Value> {
+        match &expr.kind {
+            Kind::Variable(id) => self.variables.get(*id)?.clone(),
+            _ => None,
+        }
     }
 
     fn expr(&mut self, expr: &Expr) -> Option<Value> {
@@ -65,17 +89,22 @@ impl Folding<'_> {
             }
             Kind::Vector(components) => self.vector(components, ty),
             Kind::Components(inner, names) => components(&self.expr(inner)?, names),
+            Kind::Element(inner, index) => {
+                let (vector, index) = (self.expr(inner), self.expr(index));
+                self.element(vector, &index?, expr)
+            }
             Kind::Assign { operator, value, place } => {
                 self.expr(place);
-                let value = self.expr(value);
-                if let (Some(operator), Some(value)) = (operator, &value) {
-                    self.check_right_operand(*operator, value, expr);
+                let constant = self.expr(value);
+                if let (Some(operator), Some(value)) = (operator, constant.or_else(|| self.variable_value(value))) {
+                    self.check_right_operand(*operator, &value, expr);
                 }
                 None
             }
             Kind::Method(spelling, arguments) => {
                 let values: Vec<Option<Value>> = arguments.iter().map(|argument| self.expr(argument)).collect();
                 self.clamp(*spelling, &values, expr);
+                self.divisor(*spelling, &values, arguments, expr);
                 None
             }
             Kind::Block(block) => self.block(block),
@@ -86,6 +115,18 @@ impl Folding<'_> {
                 other.block().map(|block| self.block(block));
                 None
             }
+        }
+    }
+
+    fn element(&mut self, vector: Option<Value>, index: &Value, expr: &Expr) -> Option<Value> {
+        let Kind::Element(inner, _) = &expr.kind else { return None };
+        let (Type::Vector(size), Some(at)) = (self.function.type_of(inner), integer(index)) else { return None };
+        if at >= i64::from(size) {
+            return self.reject(expr, "this index is out of bounds", "components are numbered from 0");
+        }
+        match vector? {
+            Value::Float(parts) => Some(Value::Float(vec![*parts.get(usize::try_from(at).ok()?)?])),
+            _ => None,
         }
     }
 
@@ -127,12 +168,12 @@ impl Folding<'_> {
     }
 
     fn binary(&mut self, operator: Operator, left: &Expr, right: &Expr, expr: &Expr) -> Option<Value> {
-        let (left, right) = (self.expr(left), self.expr(right));
-        let right = right?;
-        if !self.check_right_operand(operator, &right, expr) {
+        let (left, constant) = (self.expr(left), self.expr(right));
+        let known = constant.clone().or_else(|| self.variable_value(right))?;
+        if !self.check_right_operand(operator, &known, expr) {
             return None;
         }
-        match (left?, right) {
+        match (left?, constant?) {
             (Value::Float(a), Value::Float(b)) => self.floats(operator, &a, &b, expr),
             (Value::Bool(a), Value::Bool(b)) => logical(operator, a, b),
             (left, right) => self.integers(operator, &left, &right, expr),
@@ -209,6 +250,17 @@ impl Folding<'_> {
             (None, true) => {
                 self.reject(expr, "this constant overflows an `i32`", "it goes from -2147483648 to 2147483647")
             }
+        }
+    }
+
+    /// Rejects a zero divisor of a method whose expression divides by its argument.
+    fn divisor(&mut self, spelling: Spelling, values: &[Option<Value>], arguments: &[Expr], expr: &Expr) {
+        let (Spelling::Template(template), [_, value, ..], [_, argument, ..]) = (spelling, values, arguments) else {
+            return;
+        };
+        let value = value.clone().or_else(|| self.variable_value(argument));
+        if let (true, Some(value)) = (template.contains("% $1"), value) {
+            self.check_right_operand(Operator::Remainder, &value, expr);
         }
     }
 

@@ -59,14 +59,18 @@ impl Lowering<'_> {
     pub(super) fn operands(&mut self, exprs: &[&Expr]) -> Vec<ExprSource> {
         let mut sources = Vec::with_capacity(exprs.len());
         for (index, expr) in exprs.iter().enumerate() {
-            let source = self.value(expr);
-            let changed_later = exprs.iter().skip(index + 1).any(|later| assigns(later));
-            sources.push(match changed_later && !self.is_stable(expr) {
-                true => self.bind("value", &source, &expr.span),
-                false => source,
-            });
+            sources.push(self.operand_before(expr, exprs.get(index + 1..).unwrap_or_default()));
         }
         sources
+    }
+
+    /// Writes an expression that is evaluated before others. If one of those changes it, it is bound to a name.
+    pub(super) fn operand_before(&mut self, expr: &Expr, later: &[&Expr]) -> ExprSource {
+        let source = self.value(expr);
+        match later.iter().any(|later| assigns(later)) && !self.is_stable(expr) {
+            true => self.bind("value", &source, &expr.span),
+            false => source,
+        }
     }
 
     fn element(&mut self, base: &Expr, index: &Expr) -> ExprSource {
@@ -86,14 +90,20 @@ impl Lowering<'_> {
 
     fn binary(&mut self, operator: Operator, left: &Expr, right: &Expr, expr: &Expr) -> ExprSource {
         if let Some(folded) = self.lossy_shift(operator, left, right, expr) {
+            // The operands may be blocks with statements.
+            self.operands(&[left, right]);
             return folded;
         }
         // WGSL computes constant expressions in 64 bits unless the literals have the suffix `f`.
         let outer = self.suffixed;
         self.suffixed |= self.is_constant(left) && self.is_constant(right);
-        let shift = operator.is_shift();
-        let sources =
-            if shift { vec![self.value(left), self.shift_count(right)] } else { self.operands(&[left, right]) };
+        let sources = match operator.is_shift() {
+            true => {
+                let left = self.operand_before(left, &[right]);
+                vec![left, self.shift_count(right)]
+            }
+            false => self.operands(&[left, right]),
+        };
         self.suffixed = outer;
         let operator = match operator {
             Operator::BitXor if self.function.type_of(left) == Type::Bool => Operator::NotEqual,

@@ -58,6 +58,8 @@ fn inserted(argument: &ExprSource, before: &str, after: &str) -> String {
     let opens = before.ends_with('(') || before.ends_with(", ");
     let closes = after.starts_with(')') || after.starts_with(", ");
     match opens && closes {
+        // `--` would be one token.
+        false if before.ends_with('-') && argument.source.starts_with('-') => format!("({})", argument.source),
         true => arguments_source(std::slice::from_ref(argument)),
         false => argument.unary(),
     }

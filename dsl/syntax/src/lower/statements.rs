@@ -3,7 +3,7 @@
 //! Input: typed statements, and the destination of the final value. Output: lines. Nothing is written after a diverging
 //! line: some validators reject unreachable code.
 
-use fragbuf_model::SourceSpan;
+use fragbuf_model::{SourceSpan, mangled};
 
 use super::lowering::{Destination, Lowering};
 use super::needs::only_value;
@@ -143,8 +143,8 @@ impl Lowering<'_> {
         }
         // Rust evaluates the value before the place expression.
         let shift = operator.is_some_and(Operator::is_shift);
-        let source = if shift { self.shift_count(value) } else { self.value(value) };
-        let target = self.value(place).source;
+        let source = if shift { self.shift_count(value) } else { self.operand_before(value, &[place]) };
+        let target = self.place(place);
         let line = match operator {
             None => format!("{target} = {};", source.source),
             Some(Operator::BitXor) if self.function.type_of(place) == Type::Bool => {
@@ -153,6 +153,19 @@ impl Lowering<'_> {
             Some(operator) => format!("{target} {}= {};", operator.symbol(), source.source),
         };
         self.emit(line, span);
+    }
+
+    /// Writes the place of an assignment. The statements of an index run once; the variable is not copied.
+    fn place(&mut self, place: &Expr) -> String {
+        match &place.kind {
+            Kind::Element(base, index) => {
+                let index = self.value(index).source;
+                format!("{}[{index}]", self.place(base))
+            }
+            Kind::Components(base, names) => format!("{}.{names}", self.place(base)),
+            Kind::Attribute(base, name) => format!("{}.{}", self.place(base), mangled(name)),
+            _ => self.value(place).source,
+        }
     }
 
     /// Returns whether a value is a branch or block whose arms can contain the assignment.

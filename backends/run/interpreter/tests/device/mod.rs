@@ -7,11 +7,16 @@ use fragbuf_runtime::wgpu::util::DeviceExt;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 /// Parses and validates a shader.
+pub fn validated(source: &str) -> Result<(naga::Module, ModuleInfo), String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
+    let info = info.map_err(|error| error.emit_to_string(source))?;
+    Ok((module, info))
+}
+
+/// Parses and validates a shader that must be valid.
 pub fn parsed(source: &str) -> (naga::Module, ModuleInfo) {
-    let module =
-        naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
-    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
-    (module, info)
+    validated(source).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Runs the shader on a device; returns the words of the buffers in the order of the program.
