@@ -17,6 +17,7 @@ pub fn reference() -> String {
     );
     types(&mut markdown);
     statements(&mut markdown);
+    arithmetic(&mut markdown);
     methods(&mut markdown);
     constants(&mut markdown);
     unsupported(&mut markdown);
@@ -48,11 +49,25 @@ fn statements(markdown: &mut String) {
     );
 }
 
-fn methods(markdown: &mut String) {
+fn arithmetic(markdown: &mut String) {
     markdown.push_str(
-        "\n# Methods\n\nResults are equal to Rust's within the accuracy of WGSL. Devices may replace numbers nearer to 0 than 1.2e-38 by 0 \
-         and ignore the sign of 0. Infinities and NaN are not supported. `%` of floats rounds the quotient.\n",
+        "\n# Arithmetic\n\n\
+         * Operands are evaluated from left to right, as in Rust; `&&` and `||` may omit the right one.\n\
+         * Integers wrap, and shift counts are taken modulo 32, as in Rust without overflow checks. Where Rust always panics, devices \
+         have these results: `x / 0` is `x`, `x % 0` is 0, the least `i32` divided by -1 is itself, with the remainder 0.\n\
+         * Constants that overflow, divide by zero or shift by more than 31 are errors, as are constants that are not finite.\n\
+         * `usize` has 32 bits. An index past the end of a vector has an undefined result; past the end of `fragments` it is the last \
+         fragment.\n\
+         * Results of floats are equal to Rust's within the accuracy of WGSL. Devices may replace numbers nearer to 0 than 1.2e-38 by 0, \
+         ignore the sign of 0, fuse a product and a sum, and regroup sums and products: intermediate results must be far from the limits \
+         of `f32`, and a sum has an error relative to its greatest term. Infinities and NaN are not supported.\n\
+         * `%` of floats rounds the quotient before it is truncated: near a multiple of the divisor, the result is near 0 or near the \
+         divisor. The quotient is truncated towards 0. glam rounds that of `Vec4` down on processors with SIMD instructions.\n",
     );
+}
+
+fn methods(markdown: &mut String) {
+    markdown.push_str("\n# Methods\n\nResults are equal to Rust's, as stated for arithmetic; remarks state what differs.\n");
     markdown.push_str("\n| receiver | method | in WGSL | |\n|---|---|---|---|\n");
     for method in METHODS {
         let _ = writeln!(

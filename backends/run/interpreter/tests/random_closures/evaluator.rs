@@ -132,6 +132,9 @@ impl Evaluator<'_> {
             syn::Expr::Field(field) => self.field(field),
             syn::Expr::Index(index) => self.index(index),
             syn::Expr::Unary(unary) => {
+                if let Some(value) = operators::negative_literal(unary) {
+                    return Ok(value);
+                }
                 let value = self.expr(&unary.expr)?;
                 Ok(operators::unary(&unary.op, value, &mut self.panics)?)
             }

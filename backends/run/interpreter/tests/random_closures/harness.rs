@@ -26,7 +26,7 @@ pub fn lowered(program: &Program) -> Result<String, String> {
 }
 
 /// Returns a shader whose invocations run every program on one input each.
-pub fn shader(programs: &[(&Program, String)]) -> String {
+pub fn shader(programs: &[(Program, String)]) -> String {
     let mut wgsl = String::new();
     for (name, fields) in [("Fragment", ATTRIBUTES.as_slice()), ("Uniforms", UNIFORMS.as_slice())] {
         let fields: Vec<String> = fields.iter().map(|(name, ty)| format!("    {name}: {},\n", ty.wgsl())).collect();

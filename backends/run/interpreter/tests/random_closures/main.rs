@@ -21,6 +21,8 @@ mod table;
 mod types;
 mod value;
 
+use std::sync::Mutex;
+
 use compiled::OverflowChecks;
 use evaluator::Outcome;
 use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
@@ -55,10 +57,20 @@ fn random_closures_have_the_results_of_rust() {
             Err(diagnostics) => tally.rejected.push(format!("{}{diagnostics}", program.parts())),
         }
     }
-    for batch in programs.chunks(BATCH) {
-        let batch: Vec<(&Program, String)> = batch.iter().map(|(program, text)| (program, text.clone())).collect();
-        compare(&batch, &inputs, &headless, &mut tally);
-    }
+    let batches = Mutex::new(programs.chunks(BATCH));
+    let shared = Mutex::new(tally);
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(batch) = { batches.lock().unwrap().next() } {
+                    let tally = compare(batch, &inputs, &headless);
+                    shared.lock().unwrap().add(tally);
+                }
+            });
+        }
+    });
+    let mut tally = shared.into_inner().unwrap();
+    tally.differences.sort();
     if std::env::var("SHOW").is_ok() {
         println!("{:?}", tally.reasons);
     }
@@ -74,7 +86,7 @@ fn random_closures_have_the_results_of_rust() {
 /// Closures that rustc compiles.
 const COMPILED: usize = 250;
 
-/// The evaluator is right: rustc compiles some of the closures, and their results and panics are those of the evaluator.
+/// Compiles some of the closures by rustc: their results and panics are those of the evaluator.
 #[test]
 fn the_evaluator_has_the_results_of_rustc() {
     let inputs = inputs::inputs(INPUTS);
@@ -101,6 +113,9 @@ fn the_evaluator_has_the_results_of_rustc() {
             }
         }
     }
+    if let Ok(path) = std::env::var("SHOW") {
+        std::fs::write(format!("{path}.rustc"), wrong.join("\n=====\n")).unwrap();
+    }
     assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
     assert!(counts.iter().all(|count| *count > COMPILED), "results and panics: {counts:?}");
 }
@@ -114,10 +129,28 @@ struct Tally {
     differences: Vec<String>,
 }
 
+impl Tally {
+    fn add(&mut self, other: Tally) {
+        self.all += other.all;
+        self.defined += other.defined;
+        self.differences.extend(other.differences);
+        for (reason, count) in other.reasons {
+            *self.reasons.entry(reason).or_default() += count;
+        }
+    }
+}
+
 /// Runs a batch on every device.
-fn compare(batch: &[(&Program, String)], inputs: &[Input], headless: &Headless, tally: &mut Tally) {
+fn compare(batch: &[(Program, String)], inputs: &[Input], headless: &Headless) -> Tally {
+    let mut tally = Tally::default();
     let source = shader(batch);
-    let Some((module, info)) = accepted(batch, &source, tally) else { return };
+    let (module, info) = match accepted(batch, &source) {
+        Ok(valid) => valid,
+        Err(errors) => {
+            tally.differences = errors;
+            return tally;
+        }
+    };
     let program = Bytecode::entry_point(&module, &info, "main", &Options::default()).unwrap();
     let words: Vec<u32> = inputs.iter().flat_map(|input| input.words.clone()).collect();
     let results = vec![0; inputs.len() * batch.len() * RESULT_WORDS];
@@ -157,25 +190,23 @@ fn compare(batch: &[(&Program, String)], inputs: &[Input], headless: &Headless, 
             }
         }
     }
+    tally
 }
 
 /// Returns the validated shader. If it is invalid, finds the programs that are.
 fn accepted(
-    batch: &[(&Program, String)],
+    batch: &[(Program, String)],
     source: &str,
-    tally: &mut Tally,
-) -> Option<(naga::Module, naga::valid::ModuleInfo)> {
-    let found = device::validated(source);
-    if let Err(error) = &found {
-        let single = |(program, text): &(&Program, String)| {
-            let error = device::validated(&shader(&[(program, text.clone())])).err()?;
-            Some(format!("invalid WGSL: {error}\n{}\n{text}", program.parts()))
+) -> Result<(naga::Module, naga::valid::ModuleInfo), Vec<String>> {
+    device::validated(source).map_err(|error| {
+        let single = |one: &(Program, String)| {
+            let error = device::validated(&shader(std::slice::from_ref(one))).err()?;
+            Some(format!("invalid WGSL: {error}\n{}\n{}", one.0.parts(), one.1))
         };
         let errors: Vec<String> = batch.iter().filter_map(single).collect();
         assert!(!errors.is_empty(), "only many functions together are invalid: {error}");
-        tally.differences.extend(errors);
-    }
-    found.ok()
+        errors
+    })
 }
 
 fn difference(program: &Program, input: &Input, device: &str, expected: &Value, words: &[u32]) -> String {

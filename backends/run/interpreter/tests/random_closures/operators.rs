@@ -31,6 +31,16 @@ pub fn literal(literal: &syn::Lit) -> Result<Value, Undefined> {
     }
 }
 
+/// Returns the value of an integer literal after `-`: the least `i32` has no positive counterpart.
+pub fn negative_literal(unary: &syn::ExprUnary) -> Option<Value> {
+    let (syn::UnOp::Neg(_), syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(value), .. })) = (&unary.op, &*unary.expr)
+    else {
+        return None;
+    };
+    let integer = Value::Literal(-value.base10_parse::<i128>().ok()?);
+    Some(Type::named(value.suffix()).map_or(integer.clone(), |ty| integer.typed(ty)))
+}
+
 /// Returns the value of a constant's path.
 pub fn constant(path: &syn::Path) -> Result<Value, Undefined> {
     let names: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
@@ -166,6 +176,8 @@ fn floats(operator: Operator, left: &Value, right: &Value) -> Result<Value, Unde
             Operator::Subtract => a.subtract(b),
             Operator::Multiply => a.multiply(b),
             Operator::Divide => a.divide(b),
+            // glam's `Vec4` rounds the quotient down where the processor has SIMD instructions.
+            Operator::Remainder if size == 4 && a.divide(b)?.lo < 0.0 => Err("the remainder of a negative `Vec4`"),
             Operator::Remainder => a.remainder(b),
             _ => Err("an unknown operator of floats"),
         }

@@ -80,8 +80,7 @@ impl Range {
 
     pub fn add(self, other: Range) -> Result<Range, Undefined> {
         let (lo, hi) = (self.lo + other.lo, self.hi + other.hi);
-        // The sum is exact if both parts can be recovered from it.
-        let exact = lo - self.lo == other.lo && lo - other.lo == self.lo;
+        let exact = self.is_small() && other.is_small();
         let scale = self.scale.max(other.scale);
         let sum = match scale > 16.0 * lo.abs().max(hi.abs()) {
             true => Range::with_errors(lo, hi, ROUNDED, 4.0 * ROUNDED * scale)?,
@@ -113,6 +112,11 @@ impl Range {
         }
         let (lo, hi) = corners(self, other, |x, y| x / y);
         Range::with_errors(lo, hi, 3.0 * ROUNDED, 0.0)
+    }
+
+    /// Returns whether sums of such numbers are exact however devices group them.
+    fn is_small(self) -> bool {
+        self.exact().is_some_and(|value| value.abs() <= 4096.0 && (value * 1024.0).fract() == 0.0)
     }
 
     fn moderate(self) -> Result<(), Undefined> {
