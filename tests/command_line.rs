@@ -278,3 +278,40 @@ fn former_flags_and_values_work_and_are_hidden() {
         assert!(help.contains("--") && !help.contains(hidden), "{hidden}: {help}");
     }
 }
+
+/// The manifest lists limits, and two buffers in one shader are warned of if they exceed what every WebGPU device has.
+#[test]
+fn limits_of_several_buffers_in_a_shader_add_up() {
+    let (near, far) = (folder("limits-near"), folder("limits-far"));
+    let module = |key: &str, prefix: &str, out: &Path, others: usize| {
+        let other = near.join("manifest.json");
+        let mut arguments =
+            vec!["generate", key, "--target", "wgsl", "--form", "module", "--prefix", prefix, "--group", "1"];
+        for _ in 0..others {
+            arguments.extend(["--with", other.to_str().unwrap()]);
+        }
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        let output = fragbuf(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(module("kplus_array", "near", &near, 0), "");
+    let manifest: Value = serde_json::from_slice(&std::fs::read(near.join("manifest.json")).unwrap()).unwrap();
+    let limit = |name: &str| {
+        let limits = manifest["limits"].as_array().unwrap();
+        limits.iter().find(|limit| limit["webgpu"] == name).unwrap_or_else(|| panic!("no {name} in {limits:?}")).clone()
+    };
+    // This technique has no textures: each resource that a pass uses is a storage buffer.
+    let buffers = limit("maxStorageBuffersPerShaderStage")["needed"].as_u64().unwrap();
+    let uses = manifest["steps"].as_array().unwrap().iter().filter_map(|step| step["uses"].as_object());
+    assert_eq!(buffers, uses.map(|uses| uses.len() as u64).max().unwrap());
+    assert_eq!(limit("maxBindGroups")["needed"], 2);
+    assert_eq!(limit("maxTextureDimension2D")["needed"], "max(width, height)");
+    assert!(limit("maxStorageBufferBindingSize")["needed"].as_str().unwrap().contains("pixels"));
+    assert_eq!(module("kplus_array", "far", &far, 1).is_empty(), 2 * buffers <= 8);
+    let warning = module("kplus_array", "far", &far, 4);
+    assert!(warning.contains(&format!("`maxStorageBuffersPerShaderStage` of {}", 5 * buffers)), "{warning}");
+    let usage =
+        fragbuf(&["generate", "kb", "--target", "wgsl", "--with", "Cargo.toml", "--out", far.to_str().unwrap()]);
+    assert_eq!(usage.status.code(), Some(2), "{}", String::from_utf8_lossy(&usage.stderr));
+}

@@ -144,3 +144,47 @@ fn tint_rejects_mixed_operators_and_unclosed_templates() {
     let rejected: Vec<bool> = errors(&sources.map(str::to_owned)).iter().map(Option::is_some).collect();
     assert_eq!(rejected, [true, true, false]);
 }
+
+/// What naga accepts and Tint rejects in user files is an error at its column; what Tint accepts is none.
+#[test]
+fn user_files_have_the_operators_of_tint() {
+    const EXPRESSIONS: [&str; 16] = [
+        "cursor * 2u ^ pixel",
+        "cursor & 3u | pixel",
+        "cursor + 1u & 7u",
+        "cursor << 1u + pixel",
+        "cursor + pixel << 1u",
+        "u32(cursor < pixel >> 2u)",
+        "u32(cursor & 1u == 1u)",
+        "u32(cursor < pixel && pixel < 9u || cursor == 1u)",
+        "min(u32(cursor < pixel), u32(pixel > 1u))",
+        "(cursor * 2u) ^ pixel ^ 1u",
+        "(cursor & 3u) | pixel",
+        "cursor + pixel * 3u - 1u % 2u",
+        "u32(cursor << 1u == pixel >> 2u && cursor > 1u)",
+        "vec2<u32>(cursor, pixel)[cursor & 1u]",
+        "u32(cursor < pixel && pixel < 9u && cursor == 1u)",
+        "array<u32, 2>(cursor, ~pixel)[-1i * 0i]",
+    ];
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tint-user-files");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("own.fragbuf"), "buffer Own { storage: wgsl(\"mine.wgsl\"); keep 8; }").unwrap();
+    let good = include_str!("../examples/user_storage/first_k.wgsl");
+    let registry = Registry::builtin();
+    let line = good.lines().position(|line| line.contains("slots_load(cursor, pixel)")).unwrap() + 1;
+    let line = format!("mine.wgsl:{line}:");
+    let sources =
+        EXPRESSIONS.map(|expression| format!("fn f(pixel: u32, cursor: u32) -> u32 {{ return {expression}; }}"));
+    for (expression, tint) in EXPRESSIONS.iter().zip(errors(&sources)) {
+        std::fs::write(
+            folder.join("mine.wgsl"),
+            good.replace("slots_load(cursor, pixel)", &format!("slots_load({expression}, pixel)")),
+        )
+        .unwrap();
+        let description = fragbuf::load::Description::read(&folder.join("own.fragbuf")).unwrap();
+        let variant = fragbuf::load::load(&description, &[], &[], &registry).variant;
+        let found = variant.err().map(|found| found.to_string());
+        let is_found = found.as_ref().is_some_and(|text| text.contains(&line) && text.contains("invalid-wgsl"));
+        assert_eq!(is_found, tint.is_some(), "{expression}: {found:?}, Tint: {tint:?}");
+    }
+}

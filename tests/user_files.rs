@@ -183,6 +183,55 @@ const BAD: &[Bad] = &[
         "1\n//: provides",
         "9",
     ),
+    bad(
+        "//: requires fragment",
+        "//: requires lock-free when keep == 4\n//: requires fragment",
+        "invalid-row",
+        "lock-free when",
+        "`when`",
+    ),
+    bad(
+        "//: requires fragment",
+        "//: requires u64-atomics when k == 4\n//: requires fragment",
+        "invalid-row",
+        "k == 4",
+        "keep, limited",
+    ),
+    bad("//: provides", "//: requires u64-atomics\n//: provides", "duplicate", "requires fragment", "merge"),
+    bad("//: provides", "//: defines k = 4\n//: provides", "invalid-row", "k = 4", "pixels"),
+    bad(
+        "//: provides",
+        "//: defines pixels = fragments\n//: provides",
+        "invalid-row",
+        "fragments\n//: provides",
+        "width",
+    ),
+    bad("//: provides", "//: defines n = kept\n//: defines kept = n\n//: provides", "invalid-row", "kept\n", "alone"),
+    bad(
+        "//: provides",
+        "//: adds mask of sample_mask\n//: provides",
+        "invalid-row",
+        "of sample_mask",
+        "from sample_mask",
+    ),
+    bad("//: provides", "//: adds mask from position\n//: provides", "invalid-row", "position", "sample_mask"),
+    bad(
+        "//: provides",
+        "//: parameter a A = 3, from 1 to 9, power of two\n//: provides",
+        "invalid-row",
+        "3, from",
+        "set it",
+    ),
+    bad(
+        "//: provides",
+        "//: parameter a A = 3, from 1 to 9, at least k\n//: provides",
+        "invalid-row",
+        "3, from",
+        "set it",
+    ),
+    bad("//: provides", "//: parameter a A = 3, from 1 to 9, odd\n//: provides", "invalid-row", "odd", "power of two"),
+    bad("//: provides", "//: parameter a A = 7, attribute\n//: provides", "invalid-row", "7, attribute", "depth"),
+    bad("cursor + 1u);", "cursor + 1u & 7u);", "invalid-wgsl", "& 7u", "parentheses"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "invalid-row", "//: paper", "the file header"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "invalid-wgsl", "}\nfn first", "every brace closed"),
     bad("atomic_add(pixel, 1u)", "atomic_add(pixel, 1.5)", "invalid-wgsl", "1.5)", "accessors"),
@@ -365,6 +414,51 @@ fn a_condition_of_the_users_own() {
         let (diagnostics, _) = diagnostics(&with("condition_unread", DESCRIPTION, &with_condition(line))).unwrap_err();
         let is_it = |diagnostic: &&fragbuf::Diagnostic| diagnostic.code == code && diagnostic.help.contains(help);
         assert!(diagnostics.iter().find(is_it).is_some(), "{line}: {diagnostics}");
+    }
+}
+
+/// A row in a file has what rows of the registry have: conditional features, restricted options, definitions and extra words.
+#[test]
+fn a_row_declares_features_options_symbols_and_words() {
+    let lines = "//: parameter page PAGE = 8, from 1 to 64, power of two, at least k / 8 -- entries of a page\n\
+                 //: parameter by BY = 0, attribute -- an attribute\n\
+                 //: requires u64-atomics when PAGE > 8\n\
+                 //: defines n = ceil_div(fragments, pixels) + keep\n\
+                 //: adds mask from sample_mask\n//: provides";
+    let file = example("first_k.wgsl").replace("//: provides", lines);
+    let registry = Registry::builtin();
+    let checked = |name: &str, options: &str| {
+        let description = DESCRIPTION.replace("wgsl\")", &format!("wgsl\") {{ {options} }}"));
+        let read = Description::read(&with(name, &description, &file).join("own.fragbuf")).unwrap();
+        load(&read, &[], &[], &registry).variant
+    };
+    let generated = |name: &str, options: &str| {
+        let targets = [target("wgsl").unwrap(), target("spirv").unwrap(), target("glsl-es").unwrap()];
+        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+        let variant = checked(name, options).unwrap_or_else(|errors| panic!("{errors}"));
+        generate(&variant, &request, &registry).unwrap_or_else(|errors| panic!("{errors}"))
+    };
+    let unsupported = |generation: &fragbuf::Generation| {
+        generation.unsupported.iter().map(|(target, missing)| (target.name, missing.feature.name())).collect::<Vec<_>>()
+    };
+    let small = generated("row-small", "page: 4, by: depth");
+    let plan = &small.plans[0].plan;
+    assert_eq!(unsupported(&small), [("glsl-es", "coverage".to_owned())]);
+    assert_eq!((plan.symbols.number_of("PAGE"), plan.symbols.number_of("BY")), (Some(4), Some(1)));
+    let n = plan.symbols.find("n").unwrap();
+    let frame = |id| match plan.symbols.get(id).name.as_ref() {
+        "width" | "height" => Some(4),
+        "fragments" => Some(40),
+        _ => None,
+    };
+    assert_eq!(plan.symbols.value(n, &frame), Ok(11));
+    let store = small.files.iter().find(|file| file.pass == "store" && file.target == "wgsl").unwrap();
+    assert!(String::from_utf8_lossy(&store.bytes).contains("@builtin(sample_mask) mask: u32"));
+    let large = generated("row-large", "page: 16");
+    assert_eq!(unsupported(&large)[0], ("wgsl", "u64-atomics".to_owned()));
+    for options in ["page: 3", "page: 0"] {
+        let errors = checked("row-wrong", options).unwrap_err();
+        assert!(errors.iter().all(|error| error.code == codes::INVALID_OPTION), "{errors}");
     }
 }
 
@@ -638,7 +732,7 @@ fn an_addressing_of_the_users_own() {
     let symbols = manifest["symbols"].as_array().unwrap();
     let pixels = symbols.iter().find(|symbol| symbol["name"] == "pixels").unwrap();
     assert_eq!(pixels["default"], "ceil_div(width, 4) * 4 * height");
-    for (from, to, at) in [("pixels =", "fragments =", "fragments"), ("* height", "* depth", "depth")] {
+    for (from, to, at) in [("pixels =", "width =", "`width`"), ("* height", "* depth", "depth")] {
         let (diagnostics, _) = diagnostics(&with("padded", description, &PADDED.replace(from, to))).unwrap_err();
         assert!(
             diagnostics.iter().any(|diagnostic| diagnostic.message.contains(at) || diagnostic.help.contains("pixels")),

@@ -9,7 +9,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, RowSpans, SourceSpan, UserRow, mang
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Host, Kind, Pass, Row, State, Step};
 
-use crate::link::{FunctionSignature, Item, items, signatures, types};
+use crate::link::{FunctionSignature, Item, grammar_errors, items, signatures, types};
 use crate::{CONTRACTS, Contract};
 
 /// Checks the row of a user file and completes it for the registry. Reports all errors.
@@ -22,6 +22,10 @@ pub fn validate_user_row(user_row: UserRow, registry: &Registry) -> Result<Row, 
     defaults(&row, spans, registry, &mut diagnostics);
     if let Some(template) = &row.template {
         let file = File { source: &template.source, name: &spans.row.file };
+        for error in grammar_errors(&template.source) {
+            let span = file.name_at(error.at, error.operator);
+            diagnostics.push(Diagnostic::new(INVALID_WGSL, &span, error.message, error.help));
+        }
         match items(&template.source) {
             Ok(items) => {
                 declarations(&items, &file, &mut diagnostics);

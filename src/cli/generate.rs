@@ -7,6 +7,7 @@ use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, ma
 
 use super::assignment::assignment;
 use super::input::Input;
+use super::limits;
 use super::output::{self, Failure};
 
 #[derive(clap::Args)]
@@ -32,6 +33,9 @@ pub(crate) struct Generate {
     /// Bind group (descriptor set, register space) of all declarations
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=31))]
     group: u32,
+    /// Manifest of another buffer in the same shader: warns if both together exceed what every WebGPU device has
+    #[arg(long, value_name = "MANIFEST")]
+    with: Vec<PathBuf>,
     /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -67,7 +71,9 @@ impl Generate {
         if folders.iter().all(|(_, generation)| generation.plans.is_empty()) {
             return Err(Failure::Usage(NOTHING.to_owned()));
         }
+        let others = self.with.iter().map(|path| limits::read(path)).collect::<Result<Vec<_>, _>>()?;
         for (folder, generation) in &folders {
+            limits::warn(generation, self.group, &others);
             if !generation.plans.is_empty() {
                 write(folder, generation, self.group)?;
             }

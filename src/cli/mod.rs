@@ -15,6 +15,7 @@ mod devices;
 mod generate;
 mod input;
 mod language;
+mod limits;
 mod list;
 #[cfg(feature = "pictures")]
 mod memory;

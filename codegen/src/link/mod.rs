@@ -6,6 +6,7 @@
 
 mod fold;
 mod folded;
+mod grammar;
 mod index;
 mod interned;
 mod item;
@@ -15,6 +16,7 @@ mod source;
 mod token;
 mod writer;
 
+pub(crate) use grammar::grammar_errors;
 pub(crate) use item::{FunctionSignature, Item, names, parse as items, signatures, types};
 pub(crate) use rename::Renames;
 pub(crate) use source::{LinkError, Source};

@@ -4,7 +4,7 @@
 //! formulas in user files.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, SelectedRow, Selection, SourceSpan, Variant, codes};
-use fragbuf_templates::vocabulary::{Formula, FormulaError, Parameter, Row, RowItem, Step, Words};
+use fragbuf_templates::vocabulary::{Formula, FormulaError, Parameter, ParameterType, Row, RowItem, Step, Words};
 
 use super::notation::normal_form;
 use super::resource::size;
@@ -65,7 +65,7 @@ fn add_parameter(
 ) -> Result<u32, Diagnostics> {
     let context = RowContext { row: Some(&selected.row), variant };
     let set = selected.options.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-    let value = set.map_or_else(|| default(selected, parameter, table, context), Ok)?;
+    let value = set.map_or_else(|| default(selected, parameter, table, variant, context), Ok)?;
     table.add(&parameter.constant, &parameter.summary, parameter.range, value).map_err(|_| {
         let message = format!("`{}` already has another meaning in formulas", parameter.constant);
         let help = "choose another name for the constant".to_owned();
@@ -74,29 +74,63 @@ fn add_parameter(
     Ok(value)
 }
 
-/// Returns the default of a parameter. It must be in the range of the parameter.
+/// Returns the default of a parameter. It must meet the restrictions of the parameter.
 fn default(
     selected: &SelectedRow,
     parameter: &Parameter,
     table: &SymbolTable,
+    variant: &Variant,
     context: RowContext<'_>,
 ) -> Result<u32, Diagnostics> {
     let text = &parameter.default;
     let value = table.compile(text).and_then(|default| table.evaluate(&default, &|_| None));
     let value = value
         .map_err(|error| context.diagnostic(RowItem::Default, &text.0, error.to_string(), error.help().to_owned()))?;
-    let (least, greatest) = parameter.range;
-    let in_range = u32::try_from(value).ok().filter(|value| (least..=greatest).contains(value));
-    in_range.ok_or_else(|| {
-        let (name, axis) = (&parameter.name, &selected.row.axis);
-        let message = format!("the default of `{name}` is {value} here; it must be from {least} to {greatest}");
-        let help = format!("set it in the description, `{axis}: … {{ {name}: {least} }}`, or change the default");
-        Diagnostic {
-            code: context.code_or(RowItem::Default, &text.0, codes::INVALID_OPTION),
-            ..context.diagnostic(RowItem::Default, &text.0, message, help)
+    let problem = match invalid_default(value, selected, parameter, variant) {
+        Ok(value) => return Ok(value),
+        Err(problem) => problem,
+    };
+    let (name, axis, least) = (&parameter.name, &selected.row.axis, parameter.range.0);
+    let message = format!("the default of `{name}` is {value} here; it must be {problem}");
+    let help = match parameter.kind {
+        ParameterType::Attribute => {
+            format!("set it in the description, `{axis}: … {{ {name}: depth }}`, or change the default")
         }
-        .into()
-    })
+        _ => format!("set it in the description, `{axis}: … {{ {name}: {least} }}`, or change the default"),
+    };
+    Err(Diagnostic {
+        code: context.code_or(RowItem::Default, &text.0, codes::INVALID_OPTION),
+        ..context.diagnostic(RowItem::Default, &text.0, message, help)
+    }
+    .into())
+}
+
+/// Returns the value of a default, or what it must be.
+fn invalid_default(
+    value: u64,
+    selected: &SelectedRow,
+    parameter: &Parameter,
+    variant: &Variant,
+) -> Result<u32, String> {
+    let (least, greatest) = parameter.range;
+    let Some(number) = u32::try_from(value).ok().filter(|value| (least..=greatest).contains(value)) else {
+        return Err(format!("from {least} to {greatest}"));
+    };
+    let attributes = variant.attributes.len() as u64;
+    match parameter.kind {
+        ParameterType::PowerOfTwo if !number.is_power_of_two() => return Err("a power of two".to_owned()),
+        ParameterType::Attribute if value >= attributes => {
+            return Err(format!("the index of one of {attributes} attributes"));
+        }
+        _ => {}
+    }
+    let k = u64::from(bucket(variant.keep));
+    let minimums = selected.row.least.iter().filter(|(option, _)| *option == parameter.name);
+    let minimums = minimums.filter_map(|(_, least)| least.evaluate(&|symbol| (symbol == "k").then_some(k)).ok());
+    match minimums.max() {
+        Some(minimum) if value < minimum => Err(format!("at least {minimum} for k up to {k}")),
+        _ => Ok(number),
+    }
 }
 
 /// Checks that every shader and device can compute the formulas of user files for sizes and reads. Other errors in a plan are not

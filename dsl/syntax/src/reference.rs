@@ -67,7 +67,9 @@ fn arithmetic(markdown: &mut String) {
 }
 
 fn methods(markdown: &mut String) {
-    markdown.push_str("\n# Methods\n\nResults are equal to Rust's, as stated for arithmetic; remarks state what differs.\n");
+    markdown.push_str(
+        "\n# Methods\n\nResults are equal to Rust's, as stated for arithmetic; remarks state what differs.\n",
+    );
     markdown.push_str("\n| receiver | method | in WGSL | |\n|---|---|---|---|\n");
     for method in METHODS {
         let _ = writeln!(

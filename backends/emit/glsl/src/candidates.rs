@@ -101,6 +101,8 @@ pub fn find_compound_assignments(order: &Order) -> CompoundAssignments {
         let atomic = footprint::is_atomic(order.module, order.function, *pointer);
         if loaded == *pointer
             && can_assign(op)
+            // GLSL has no `&=` of booleans.
+            && order.inner(left).scalar_kind() != Some(naga::ScalarKind::Bool)
             && single(*value)
             && single(left)
             && nameless(*value)

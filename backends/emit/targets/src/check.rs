@@ -6,6 +6,8 @@ use fragbuf_model::{Diagnostic, Diagnostics, SourceSpan, codes};
 use naga::SourceLocation;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
+use crate::Workgroup;
+
 /// A pass that naga accepts. Only [`check`] constructs it.
 #[derive(Clone, Debug)]
 pub struct Checked {
@@ -28,6 +30,18 @@ impl Checked {
     /// Returns naga's result of validation.
     pub fn info(&self) -> &ModuleInfo {
         &self.info
+    }
+
+    /// Returns the workgroup of its compute shader.
+    pub fn workgroup(&self) -> Option<Workgroup> {
+        let is_compute = |entry: &&naga::EntryPoint| entry.stage == naga::ShaderStage::Compute;
+        let entry = self.module.entry_points.iter().find(is_compute)?;
+        let shared =
+            self.module.global_variables.iter().filter(|(_, global)| global.space == naga::AddressSpace::WorkGroup);
+        // Each variable may be aligned to 16 bytes.
+        let bytes = shared.map(|(_, global)| self.module.types[global.ty].inner.size(self.module.to_ctx()));
+        let bytes = bytes.map(|bytes| bytes.next_multiple_of(16)).sum();
+        Some(Workgroup { size: entry.workgroup_size, bytes })
     }
 }
 

@@ -7,7 +7,7 @@ use fragbuf_templates::vocabulary::{Feature, Loads};
 
 use crate::emission::{Emission, File, Guards, InterlockOrder};
 use crate::target::Target;
-use crate::{Checked, check};
+use crate::{Checked, Workgroup, check};
 
 /// The number of bind groups that every device has. WebGPU's limit `maxBindGroups` is 4 unless a program asks for more.
 const COMMON_BIND_GROUPS: u32 = 4;
@@ -43,6 +43,8 @@ pub struct PlanForTargets {
     pub plan: Plan,
     /// The targets.
     pub targets: Vec<&'static Target>,
+    /// The workgroups of its compute passes.
+    pub workgroups: Vec<Workgroup>,
 }
 
 /// Generates a variant. A target that cannot express it is listed in [`Generation::unsupported`] and is not an error.
@@ -56,14 +58,14 @@ pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -
         let index = match known {
             Some(index) => index,
             None => {
-                programs.push(CheckedProgram {
-                    planned,
-                    profile: target.profile,
-                    passes: checked(plan, target, request, registry)?,
-                });
+                let passes = checked(plan, target, request, registry)?;
+                // The profiles of a plan have equal workgroups.
+                generation.plans[planned].workgroups = passes.iter().filter_map(Checked::workgroup).collect();
+                programs.push(CheckedProgram { planned, profile: target.profile, passes });
                 programs.len() - 1
             }
         };
+        let plan = &generation.plans[planned].plan;
         let files = emit(target, plan, &programs[index].passes, request)?;
         generation.files.extend(files);
     }
@@ -103,7 +105,7 @@ fn plan_for(
         Some(index) => index,
         None => {
             let plan = plan(variant, &selection, registry)?;
-            generation.plans.push(PlanForTargets { plan, targets: Vec::new() });
+            generation.plans.push(PlanForTargets { plan, targets: Vec::new(), workgroups: Vec::new() });
             generation.plans.len() - 1
         }
     };

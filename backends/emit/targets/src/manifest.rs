@@ -12,6 +12,7 @@ use serde_json::{Map, Value, json};
 
 use crate::generate::{Generation, PlanForTargets};
 use crate::glsl::slot;
+use crate::limits::{Limit, Needed, Sharing, limits};
 use crate::names::kebab_case;
 use crate::tier;
 
@@ -31,6 +32,7 @@ pub fn manifest(generation: &Generation, group: u32) -> Value {
     manifest.insert("files".into(), files(generation));
     if let Some(first) = first {
         manifest.extend(plan_json(&first.plan, group));
+        manifest.insert("limits".into(), limits_json(first, group));
     }
     manifest.insert("tier".into(), tiers(&generation.plans));
     let unsupported: Map<String, Value> =
@@ -42,6 +44,7 @@ pub fn manifest(generation: &Generation, group: u32) -> Value {
             let targets: Vec<&str> = planned.targets.iter().map(|target| target.name).collect();
             alternative.insert("targets".into(), targets.into());
             alternative.extend(plan_json(&planned.plan, group));
+            alternative.insert("limits".into(), limits_json(planned, group));
             alternative.into()
         })
         .collect();
@@ -72,6 +75,24 @@ fn tiers(plans: &[PlanForTargets]) -> Value {
         }
     }
     tiers.into()
+}
+
+/// Returns the limits that a device must meet.
+fn limits_json(planned: &PlanForTargets, group: u32) -> Value {
+    let limit = |limit: Limit| {
+        json!({
+            "webgpu": limit.webgpu,
+            "webgpu_default": limit.webgpu_default,
+            "vulkan": limit.vulkan,
+            "opengl": limit.opengl,
+            "needed": match limit.needed {
+                Needed::Number(number) => Value::from(number),
+                Needed::Formula(formula) => Value::from(formula),
+            },
+            "in_one_shader": if limit.sharing == Sharing::Sum { "sum" } else { "greatest" },
+        })
+    };
+    limits(&planned.plan, group, &planned.workgroups).into_iter().map(limit).collect()
 }
 
 /// Returns the part of a manifest that depends on one plan.

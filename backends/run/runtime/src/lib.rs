@@ -29,6 +29,7 @@ mod frame_blocks;
 mod frame_resources;
 pub mod headless;
 mod layout;
+mod limits;
 mod memory;
 mod memory_limits;
 mod objects;

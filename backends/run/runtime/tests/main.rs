@@ -27,6 +27,7 @@ mod embedding;
 mod failures;
 mod invariance;
 mod larger;
+mod limits;
 mod losses;
 mod lowered;
 mod merging;

@@ -13,10 +13,15 @@
 //!                                                            words; `name[index]`, one; `name[first for count]`, some
 //! //: provides keeps-best, indexed                              capabilities
 //! //: requires mutual-exclusion, fragment-atomics                      capabilities of other rows, features of targets
+//! //: requires u64-atomics when LIMIT > 64                      features that are required under a condition
 //! //: when keep <= 64 -- write `keep 64;` or less              a condition on the description, and its fix
 //! //: implies sorted when depth_key                            a capability that is provided where a condition holds
 //! //: suits sync slot_counter, cull early                     defaults on other axes
 //! //: parameter limit LIMIT = 4096, from 1 to 65536 -- tries
+//! //: parameter page PAGE = 4, from 1 to 64, power of two, at least k / 8 -- entries of a page
+//! //: parameter by BY = 0, attribute -- an attribute, by its index
+//! //: defines n = ceil_div(fragments, pixels) + 1              the default of a symbol
+//! //: adds coverage from sample_mask                          a word of every fragment, from a built-in value
 //! //: keeps best 1 of each key / 1000                         which fragments are kept, if no capability says so
 //! //: hazard torn unless mutual-exclusion -- key and payload of two fragments in one slot
 //! //: soundness atomics                                       atomics, interlock, lock or racy
@@ -29,6 +34,7 @@ mod reader;
 mod resources;
 mod statements;
 mod steps;
+mod symbols;
 
 use std::sync::Arc;
 

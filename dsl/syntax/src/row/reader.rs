@@ -94,8 +94,14 @@ impl Reader {
 
     /// Parses a formula over the symbols of a description.
     pub(super) fn condition(&mut self, line: &mut Line<'_>) -> Read<Formula> {
+        self.condition_with(line, Vec::new())
+    }
+
+    /// Parses a formula over the symbols of a description and these constants of the row.
+    pub(super) fn condition_with(&mut self, line: &mut Line<'_>, constants: Vec<String>) -> Read<Formula> {
         let formula = line.until(&[]);
-        let symbols: Vec<&str> = DescriptionValues::symbols().map(|symbol| symbol.name).collect();
+        let symbols = DescriptionValues::symbols().map(|symbol| symbol.name.to_owned());
+        let symbols: Vec<String> = symbols.chain(constants).collect();
         self.formula(&formula, &symbols)?;
         Ok(formula.value.into())
     }

@@ -1,12 +1,9 @@
-//! Lines that declare a buffer, a parameter or a definition.
+//! Lines that declare a buffer.
 //!
-//! Input: a line after its keyword. Output: a resource, parameter or definition of the row.
+//! Input: a line after its keyword. Output: a resource of the row, and the symbols that its formulas may use.
 
-use fragbuf_model::{Diagnostic, Spanned, codes};
-use fragbuf_templates::vocabulary::{
-    BindingTime, Definition, Element, Init, Lifetime, Parameter, ParameterType, Resource, RowItem, SYMBOLS,
-    is_reserved_in_formulas,
-};
+use fragbuf_model::{Diagnostic, codes};
+use fragbuf_templates::vocabulary::{BindingTime, Element, Init, Lifetime, Resource, RowItem, SYMBOLS};
 
 use super::line::Line;
 use super::reader::Read;
@@ -85,70 +82,8 @@ impl Statements {
     }
 
     /// Returns the symbols that have a value at this time, and the row's constants so far.
-    fn symbols_until(&self, time: BindingTime) -> Vec<String> {
+    pub(super) fn symbols_until(&self, time: BindingTime) -> Vec<String> {
         let known = SYMBOLS.iter().filter(|symbol| symbol.when <= time).map(|symbol| symbol.name.to_owned());
         known.chain(self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string())).collect()
-    }
-
-    /// Parses `parameter name CONSTANT = formula, from least to greatest -- summary`.
-    pub(super) fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
-        const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
-        let name = self.reader.name(line, "the option's name", SHAPE)?;
-        self.once(&format!("parameter {}", name.value), &name.span, "rename one of the options")?;
-        let constant = self.constant(line, SHAPE)?;
-        self.reader.punct(line, '=', SHAPE)?;
-        let default = line.until(&[',']);
-        let symbols = self.symbols_until(BindingTime::Generation);
-        self.reader.formula(&default, &symbols)?;
-        self.reader.record_span(RowItem::Default, &default);
-        if !line.punct(',') || !line.keyword("from") {
-            return self.reader.unexpected(line, "`, from`", SHAPE);
-        }
-        let least = self.reader.number(line)?;
-        if !line.keyword("to") {
-            return self.reader.unexpected(line, "`to`", SHAPE);
-        }
-        let greatest = self.reader.number(line)?;
-        if greatest.value < least.value {
-            let message = format!("empty range from {} to {}", least.value, greatest.value);
-            let help = format!("write `from {} to {}`", greatest.value, least.value);
-            return self.reader.stop(codes::INVALID_ROW, &greatest.span, message, help);
-        }
-        self.user_row.row.parameters.push(Parameter {
-            name: name.value.into(),
-            constant: constant.value.into(),
-            kind: ParameterType::Number,
-            default: default.value.into(),
-            range: (least.value, greatest.value),
-            summary: summary(line).into(),
-        });
-        self.user_row.spans.parameters.push(constant.span);
-        Ok(())
-    }
-
-    /// Parses the constant of a parameter. Formulas use it in addition to the symbols that every row has.
-    fn constant(&mut self, line: &mut Line<'_>, shape: &str) -> Read<Spanned<String>> {
-        let constant = self.reader.wgsl_name(line, "a generated constant", shape)?;
-        if !is_reserved_in_formulas(&constant.value) {
-            self.reader.record_span(RowItem::Constant, &constant);
-            return Ok(constant);
-        }
-        let message = format!("the name `{}` is reserved in formulas", constant.value);
-        let help = format!("choose another name, such as `OWN_{}`", constant.value.to_ascii_uppercase());
-        self.reader.stop(codes::INVALID_ROW, &constant.span, message, help)
-    }
-
-    /// Parses `defines pixels = ceil_div(width, 4) * 4 * height`.
-    pub(super) fn defines(&mut self, line: &mut Line<'_>) -> Read<()> {
-        const SHAPE: &str = "`defines pixels = ceil_div(width, 4) * 4 * height`";
-        let name = self.reader.name(line, "a symbol", SHAPE)?;
-        let symbol = self.reader.one_of(&name, &[("pixels", "pixels")], "a symbol that a row can define")?;
-        self.once(&format!("defines {symbol}"), &name.span, "remove one of them")?;
-        self.reader.punct(line, '=', SHAPE)?;
-        let value = line.until(&[]);
-        self.reader.formula(&value, &["width", "height"])?;
-        self.reader.record_span(RowItem::Definition, &value);
-        self.user_row.row.defines.push(Definition { symbol: symbol.into(), value: value.value.into() });
-        Ok(())
     }
 }

@@ -11,7 +11,7 @@ use crate::report::{FIRST, Stop};
 use crate::unknown_name;
 
 /// The keywords that start a line.
-const KEYWORDS: [&str; 15] = [
+const KEYWORDS: [&str; 16] = [
     "paper",
     "buffer",
     "pass",
@@ -24,6 +24,7 @@ const KEYWORDS: [&str; 15] = [
     "suits",
     "parameter",
     "defines",
+    "adds",
     "keeps",
     "hazard",
     "soundness",
@@ -55,7 +56,10 @@ pub(super) struct Statements {
 }
 
 /// The statements that a row may give only once: a second would replace the first.
-const SINGLE: [&str; 6] = ["paper", "provides", "requires", "uses", "keeps", "soundness"];
+const SINGLE: [&str; 5] = ["paper", "provides", "uses", "keeps", "soundness"];
+
+/// The help for a statement that must be on one line.
+const MERGE: &str = "merge the two lines, or remove one of them";
 
 impl Statements {
     /// Returns the state after the first line.
@@ -97,13 +101,13 @@ impl Statements {
         keyword.value = former::present(&keyword.value).to_owned();
         if SINGLE.contains(&keyword.value.as_str()) {
             // Other errors of the line are reported, too.
-            let _ = self.once(&keyword.value, &keyword.span, "merge the two lines, or remove one of them");
+            let _ = self.once(&keyword.value, &keyword.span, MERGE);
         }
         let row = &mut self.user_row.row;
         match keyword.value.as_str() {
             "paper" => row.paper = line.until(&[]).value.into(),
             "provides" => row.provides = self.reader.capabilities(line)?,
-            "requires" => (row.requires, row.needs) = self.reader.requirements(line)?,
+            "requires" => return self.requires(line, &keyword.span),
             "uses" => self.user_row.row.uses = self.uses(line)?,
             "buffer" => return self.buffer(line),
             "pass" => return self.pass(line),
@@ -113,6 +117,7 @@ impl Statements {
             "suits" => return self.suits(line),
             "parameter" => return self.parameter(line),
             "defines" => return self.defines(line),
+            "adds" => return self.adds(line),
             "keeps" => return self.keeps(line),
             "hazard" => return self.hazard(line),
             "soundness" => return self.soundness(line),
@@ -140,6 +145,26 @@ impl Statements {
         let diagnostic = Diagnostic::new(codes::DUPLICATE, at, format!("duplicate `{what}`"), help);
         self.reader.diagnostics.push(diagnostic.label(first, FIRST));
         Err(Stop)
+    }
+
+    /// Parses `requires capability, feature` or `requires feature when condition`.
+    fn requires(&mut self, line: &mut Line<'_>, keyword: &SourceSpan) -> Read<()> {
+        let list = line.here();
+        let (capabilities, features) = self.reader.requirements(line)?;
+        if !line.keyword("when") {
+            let _ = self.once("requires", keyword, MERGE);
+            (self.user_row.row.requires, self.user_row.row.needs) = (capabilities, features);
+            return Ok(());
+        }
+        let constants = self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string()).collect();
+        let condition = self.reader.condition_with(line, constants)?;
+        if let Some(capability) = capabilities.first() {
+            let message = format!("the capability `{}` cannot be required under a condition", capability.name());
+            let help = "conditions apply to features of targets; remove `when` and its condition";
+            return self.reader.stop(codes::INVALID_ROW, &list, message, help);
+        }
+        self.user_row.row.needs_if.extend(features.into_iter().map(|feature| (condition.clone(), feature)));
+        Ok(())
     }
 
     /// Parses `suits axis value, …`.

@@ -136,7 +136,16 @@ fn compile(source: &Path, binary: &Path, checks: OverflowChecks) {
     let mut messages = String::from("no library of glam beside the test");
     for library in libraries {
         let output = Command::new(rustc())
-            .args(["--edition", "2024", "-C", "debuginfo=0", "-C", "opt-level=0", "-C", &format!("overflow-checks={checks}")])
+            .args([
+                "--edition",
+                "2024",
+                "-C",
+                "debuginfo=0",
+                "-C",
+                "opt-level=0",
+                "-C",
+                &format!("overflow-checks={checks}"),
+            ])
             .arg("--extern")
             .arg(format!("glam={}", library.display()))
             .arg("-L")

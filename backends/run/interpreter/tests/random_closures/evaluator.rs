@@ -172,7 +172,8 @@ impl Evaluator<'_> {
         let base = self.expr(&field.base)?;
         let syn::Member::Named(name) = &field.member else { return Err("a tuple".into()) };
         let name = name.to_string();
-        let at = |fields: &[(&str, Type)]| fields.iter().position(|(other, _)| *other == name).ok_or("an unknown field");
+        let at =
+            |fields: &[(&str, Type)]| fields.iter().position(|(other, _)| *other == name).ok_or("an unknown field");
         match base {
             Value::Uniforms => Ok(self.input.uniforms[at(&UNIFORMS)?].clone()),
             Value::Fragment(attributes) => Ok(attributes[at(&ATTRIBUTES)?].clone()),

@@ -1,8 +1,17 @@
 //! Generates ten thousand closures and compares their results for edge values: an evaluator of Rust's meaning, the interpreter,
-//! and devices that run SPIR-V and GLSL.
+//! and devices that run SPIR-V and GLSL. rustc judges the evaluator.
+//!
+//! `CLOSURES=100000 FIRST=20000` compares others and more.
 #![allow(missing_docs, reason = "tests are read, not documented")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by panicking"
+)]
 
+mod comparison;
 mod compiled;
 #[path = "../device/mod.rs"]
 mod device;
@@ -12,86 +21,68 @@ mod generator;
 mod harness;
 mod inputs;
 mod methods;
+mod opengl;
 mod operators;
 mod random;
 mod range;
+mod shrink;
 mod source;
 mod statements;
 mod table;
 mod types;
 mod value;
 
-use std::sync::Mutex;
-
+use comparison::{Device, Shader, buffers, compare, difference, interpret, results};
 use compiled::OverflowChecks;
 use evaluator::Outcome;
-use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
+use fragbuf_interpreter::{Bytecode, Options};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
 use generator::Program;
-use harness::{Parsed, RESULT_WORDS, lowered, shader};
-use range::Undefined;
-use value::{Input, Value};
-
-/// Closures of one shader.
-const BATCH: usize = 50;
+use harness::{Parsed, lowered};
 
 /// Inputs of each closure.
 const INPUTS: usize = 24;
 
-#[test]
-fn random_closures_have_the_results_of_rust() {
-    let count: usize = std::env::var("CLOSURES").map_or(10_000, |count| count.parse().unwrap());
-    let first: usize = std::env::var("FIRST").map_or(0, |first| first.parse().unwrap());
-    let inputs = inputs::inputs(INPUTS);
-    let mut tally = Tally::default();
-    let headless = Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap();
-    let mut programs = Vec::new();
-    for index in first.. {
-        if programs.len() == count {
-            break;
-        }
-        let program = Program::random(index);
-        match lowered(&program) {
-            Ok(functions) => programs.push((program, functions)),
-            Err(diagnostics) => tally.rejected.push(format!("{}{diagnostics}", program.parts())),
-        }
-    }
-    let batches = Mutex::new(programs.chunks(BATCH));
-    let shared = Mutex::new(tally);
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some(batch) = { batches.lock().unwrap().next() } {
-                    let tally = compare(batch, &inputs, &headless);
-                    shared.lock().unwrap().add(tally);
-                }
-            });
-        }
-    });
-    let mut tally = shared.into_inner().unwrap();
-    tally.differences.sort();
-    if std::env::var("SHOW").is_ok() {
-        println!("{:?}", tally.reasons);
-    }
-    if let Ok(path) = std::env::var("SHOW") {
-        std::fs::write(path, tally.differences.join("\n=====\n")).unwrap();
-    }
-    println!("{} of {} results are defined, {} closures rejected", tally.defined, tally.all, tally.rejected.len());
-    assert!(tally.differences.is_empty(), "{} differ:\n{}", tally.differences.len(), tally.differences.join("\n"));
-    assert!(tally.rejected.len() * 2 < count, "{}", tally.rejected[0]);
-    assert!(tally.defined * 2 > tally.all, "only {} of {} results are defined", tally.defined, tally.all);
-}
-
 /// Closures that rustc compiles.
 const COMPILED: usize = 250;
+
+fn number(variable: &str, default: usize) -> usize {
+    std::env::var(variable).map_or(default, |text| text.parse().unwrap())
+}
+
+#[test]
+fn random_closures_have_the_results_of_rust() {
+    let headless = Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap();
+    let spirv = |shader: &Shader| {
+        let program = Bytecode::entry_point(&shader.module, &shader.info, "main", &Options::default()).unwrap();
+        let initial = buffers(&program, shader);
+        let groups = [shader.groups, 1, 1];
+        device::run(&headless, &shader.source, "main", &program, groups, &initial).swap_remove(results(&program))
+    };
+    let devices = [
+        Device { name: "interpreter", run: &interpret },
+        Device { name: "SPIR-V", run: &spirv },
+        Device { name: "GLSL", run: &opengl::run },
+    ];
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let inputs = inputs::inputs(INPUTS);
+    let tally = compare(number("FIRST", 0), number("CLOSURES", 10_000), &inputs, &devices, threads);
+    println!(
+        "{} of {} results are defined, {} closures rejected: {:?}",
+        tally.defined, tally.all, tally.rejected, tally.reasons
+    );
+    assert!(tally.differences.is_empty(), "{} differ:\n{}", tally.differences.len(), tally.differences[0]);
+    assert!(tally.rejected < tally.programs, "most closures are rejected");
+    assert!(tally.defined * 2 > tally.all, "only {} of {} results are defined", tally.defined, tally.all);
+}
 
 /// Compiles some of the closures by rustc: their results and panics are those of the evaluator.
 #[test]
 fn the_evaluator_has_the_results_of_rustc() {
     let inputs = inputs::inputs(INPUTS);
-    let programs: Vec<Program> =
-        (0..).map(Program::random).filter(|program| lowered(program).is_ok()).take(COMPILED).collect();
+    let valid = (0..).map(Program::random).filter(|program| lowered(program).is_ok());
+    let programs: Vec<Program> = valid.take(COMPILED).collect();
     let mut wrong = Vec::new();
     let mut counts = [0; 2];
     for checks in [OverflowChecks::On, OverflowChecks::Off] {
@@ -113,108 +104,32 @@ fn the_evaluator_has_the_results_of_rustc() {
             }
         }
     }
-    if let Ok(path) = std::env::var("SHOW") {
-        std::fs::write(format!("{path}.rustc"), wrong.join("\n=====\n")).unwrap();
-    }
-    assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
+    assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong[0]);
     assert!(counts.iter().all(|count| *count > COMPILED), "results and panics: {counts:?}");
 }
 
-#[derive(Default)]
-struct Tally {
-    all: usize,
-    defined: usize,
-    rejected: Vec<String>,
-    reasons: std::collections::BTreeMap<Undefined, usize>,
-    differences: Vec<String>,
+/// The generated closures call every method that `fragbuf language` lists.
+#[test]
+fn every_method_is_generated() {
+    let sources: String = (0..4000).map(|index| Program::random(index).parts()).collect();
+    let reference = fragbuf_syntax::reference();
+    let methods = reference.split("# Methods").nth(1).unwrap().split("\n# ").next().unwrap();
+    let names: Vec<&str> =
+        methods.lines().filter_map(|line| line.split('`').nth(1)?.split_once('(').map(|(name, _)| name)).collect();
+    assert!(names.len() > 80, "{names:?}");
+    let is_called = |name: &str| sources.contains(&format!(".{name}(")) || sources.contains(&format!("::{name}("));
+    let missing: Vec<&&str> = names.iter().filter(|name| !is_called(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
-impl Tally {
-    fn add(&mut self, other: Tally) {
-        self.all += other.all;
-        self.defined += other.defined;
-        self.differences.extend(other.differences);
-        for (reason, count) in other.reasons {
-            *self.reasons.entry(reason).or_default() += count;
-        }
-    }
-}
-
-/// Runs a batch on every device.
-fn compare(batch: &[(Program, String)], inputs: &[Input], headless: &Headless) -> Tally {
-    let mut tally = Tally::default();
-    let source = shader(batch);
-    let (module, info) = match accepted(batch, &source) {
-        Ok(valid) => valid,
-        Err(errors) => {
-            tally.differences = errors;
-            return tally;
-        }
-    };
-    let program = Bytecode::entry_point(&module, &info, "main", &Options::default()).unwrap();
-    let words: Vec<u32> = inputs.iter().flat_map(|input| input.words.clone()).collect();
-    let results = vec![0; inputs.len() * batch.len() * RESULT_WORDS];
-    let initial: Vec<Vec<u32>> = program
-        .buffers
-        .iter()
-        .map(|buffer| if buffer.name == "results" { results.clone() } else { words.clone() })
-        .collect();
-    let at = program.buffers.iter().position(|buffer| buffer.name == "results").unwrap();
-    let groups = [inputs.len() as u32, 1, 1];
-    let mut interpreted = initial.clone();
-    assert_eq!(dispatch(&program, groups, &mut interpreted), DispatchEnd::Ended);
-    let mut run = match std::env::var("NO_DEVICE").is_ok() {
-        true => interpreted.clone(),
-        false => device::run(headless, &source, "main", &program, groups, &initial),
-    };
-    let found = [("interpreter", interpreted.swap_remove(at)), ("SPIR-V", run.swap_remove(at))];
-    for (index, (program, _)) in batch.iter().enumerate() {
-        let parsed = Parsed::new(program).unwrap();
-        for (number, input) in inputs.iter().enumerate() {
-            tally.all += 1;
-            let expected = match parsed.evaluate(input).value {
-                Ok(value) => value,
-                Err(reason) => {
-                    *tally.reasons.entry(reason).or_default() += 1;
-                    continue;
-                }
-            };
-            tally.defined += 1;
-            let first = (number * batch.len() + index) * RESULT_WORDS;
-            for (device, results) in &found {
-                let words = &results[first..first + RESULT_WORDS];
-                if !expected.is(words) {
-                    tally.differences.push(difference(program, input, device, &expected, words));
-                    break;
-                }
-            }
-        }
-    }
-    tally
-}
-
-/// Returns the validated shader. If it is invalid, finds the programs that are.
-fn accepted(
-    batch: &[(Program, String)],
-    source: &str,
-) -> Result<(naga::Module, naga::valid::ModuleInfo), Vec<String>> {
-    device::validated(source).map_err(|error| {
-        let single = |one: &(Program, String)| {
-            let error = device::validated(&shader(std::slice::from_ref(one))).err()?;
-            Some(format!("invalid WGSL: {error}\n{}\n{}", one.0.parts(), one.1))
-        };
-        let errors: Vec<String> = batch.iter().filter_map(single).collect();
-        assert!(!errors.is_empty(), "only many functions together are invalid: {error}");
-        errors
-    })
-}
-
-fn difference(program: &Program, input: &Input, device: &str, expected: &Value, words: &[u32]) -> String {
-    let floats: Vec<f32> = words.iter().map(|word| f32::from_bits(*word)).collect();
-    format!(
-        "{device}:\n{}\nuniforms {:?}\nfragments {:?}\nexpected {expected:?}\nfound {words:?} {floats:?}\n",
-        program.parts(),
-        input.uniforms,
-        input.fragments
-    )
+/// A report names a small program: what does not change the failure is removed.
+#[test]
+fn a_failing_program_is_made_smaller() {
+    let inputs = inputs::inputs(2);
+    // A device that returns 7 for every closure.
+    let constant = |shader: &Shader| vec![7; shader.results];
+    let tally = compare(0, 4, &inputs, &[Device { name: "constant", run: &constant }], 1);
+    let report = &tally.differences[0];
+    let (program, rest) = report.split_once("\nuniforms").unwrap();
+    assert!(program.len() < 200 && rest.contains("from program"), "{report}");
 }

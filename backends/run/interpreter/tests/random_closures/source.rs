@@ -56,7 +56,11 @@ impl Source {
     }
 
     pub fn unary(&self, operator: char) -> Source {
-        Source { text: format!("{operator}{}", self.at_least(Level::Unary)), level: Level::Unary, constant: self.constant }
+        Source {
+            text: format!("{operator}{}", self.at_least(Level::Unary)),
+            level: Level::Unary,
+            constant: self.constant,
+        }
     }
 
     pub fn cast(&self, ty: &str) -> Source {

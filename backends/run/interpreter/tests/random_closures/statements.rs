@@ -18,7 +18,8 @@ const TYPES: [Type; 9] = [
 
 /// Names that a shading language reserves or declares.
 const NAMES: [&str; 14] = [
-    "v", "texture", "dot", "main", "sample", "out", "buffer", "vec", "t", "select", "min", "layer", "uniforms", "precise",
+    "v", "texture", "dot", "main", "sample", "out", "buffer", "vec", "t", "select", "min", "layer", "uniforms",
+    "precise",
 ];
 
 impl Scope<'_> {
@@ -142,10 +143,7 @@ impl Scope<'_> {
             true => format!("let {name} = fragments[{}];", index.text),
             false => {
                 let pad = "    ".repeat(self.indent);
-                format!(
-                    "let mut {name} = fragments[{}];\n{pad}{name}.{} = {};",
-                    index.text, attribute.0, value.text
-                )
+                format!("let mut {name} = fragments[{}];\n{pad}{name}.{} = {};", index.text, attribute.0, value.text)
             }
         }
     }
@@ -238,7 +236,10 @@ impl Scope<'_> {
             1 => format!("{fragment} in fragments.iter().rev()"),
             form => {
                 self.variables.push(Variable { name: index.clone(), ty: Type::Usize, mutable: false });
-                format!("({index}, {fragment}) in fragments.iter().enumerate(){}", if form == 2 { ".rev()" } else { "" })
+                format!(
+                    "({index}, {fragment}) in fragments.iter().enumerate(){}",
+                    if form == 2 { ".rev()" } else { "" }
+                )
             }
         };
         let body = self.loop_body();

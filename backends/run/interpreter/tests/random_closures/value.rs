@@ -116,9 +116,7 @@ impl Value {
 
     /// Returns whether a device's words are this value.
     pub fn is(&self, words: &[u32]) -> bool {
-        let all = |parts: &[Range]| {
-            parts.iter().zip(words).all(|(part, word)| part.contains(f32::from_bits(*word)))
-        };
+        let all = |parts: &[Range]| parts.iter().zip(words).all(|(part, word)| part.contains(f32::from_bits(*word)));
         match self {
             Value::Float(range) => all(&[*range]),
             Value::Vector(parts) => all(parts),

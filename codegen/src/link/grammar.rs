@@ -1,0 +1,302 @@
+//! Finds expressions that naga parses and WGSL's grammar does not have (WGSL §8.18 and §3.9): browsers reject them.
+//!
+//! Input: the source of a user file. Output: the operators that need parentheses. Everything else is left to naga.
+
+use super::token::{Token, TokenKind, tokens};
+
+/// An operator that needs parentheses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct GrammarError {
+    /// The byte offset of the operator.
+    pub(crate) at: usize,
+    /// The operator.
+    pub(crate) operator: &'static str,
+    pub(crate) message: String,
+    pub(crate) help: &'static str,
+}
+
+/// A binary operator in the source.
+#[derive(Clone, Copy)]
+struct Operator {
+    text: &'static str,
+    at: usize,
+}
+
+/// The classes of operators. Each class has its own rules for its neighbours.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Arithmetic,
+    Shift,
+    Comparison,
+    Bitwise,
+    Logical,
+}
+
+/// The operators and signs, the longest first.
+const SIGNS: [(&str, Option<Class>); 36] = [
+    ("<<=", None),
+    (">>=", None),
+    ("->", None),
+    ("++", None),
+    ("--", None),
+    ("+=", None),
+    ("-=", None),
+    ("*=", None),
+    ("/=", None),
+    ("%=", None),
+    ("&=", None),
+    ("|=", None),
+    ("^=", None),
+    ("&&", Some(Class::Logical)),
+    ("||", Some(Class::Logical)),
+    ("<<", Some(Class::Shift)),
+    (">>", Some(Class::Shift)),
+    ("<=", Some(Class::Comparison)),
+    (">=", Some(Class::Comparison)),
+    ("==", Some(Class::Comparison)),
+    ("!=", Some(Class::Comparison)),
+    ("<", Some(Class::Comparison)),
+    (">", Some(Class::Comparison)),
+    ("+", Some(Class::Arithmetic)),
+    ("-", Some(Class::Arithmetic)),
+    ("*", Some(Class::Arithmetic)),
+    ("/", Some(Class::Arithmetic)),
+    ("%", Some(Class::Arithmetic)),
+    ("&", Some(Class::Bitwise)),
+    ("|", Some(Class::Bitwise)),
+    ("^", Some(Class::Bitwise)),
+    ("=", None),
+    (",", None),
+    (";", None),
+    (":", None),
+    ("@", None),
+];
+
+/// Keywords after which an operator is unary.
+const KEYWORDS: [&str; 4] = ["return", "if", "while", "switch"];
+
+/// The names that template lists follow.
+const TEMPLATES: [&str; 9] = ["array", "atomic", "bitcast", "ptr", "var", "vec2", "vec3", "vec4", "binding_array"];
+
+/// Returns the errors in the order of the source.
+pub(crate) fn grammar_errors(source: &str) -> Vec<GrammarError> {
+    let (code, _) = tokens(source);
+    let templates = template_signs(&code);
+    let mut errors = Vec::new();
+    for (open, _) in &templates {
+        let name = code[open - 1].text;
+        if !TEMPLATES.contains(&name) && !name.starts_with("mat") && !name.starts_with("texture_") {
+            errors.push(GrammarError {
+                at: code[*open].at,
+                operator: "<",
+                message: format!("`{name} <` starts a template list, which a later `>` ends"),
+                help: "put the right operand of `<` in parentheses: `a < (b >> c)`",
+            });
+        }
+    }
+    mixed_operators(&code, &templates, &mut errors);
+    errors.sort_by_key(|error| error.at);
+    errors
+}
+
+/// Returns the indices of `<` and `>` of template lists, as WGSL finds them before it parses expressions.
+fn template_signs(code: &[Token<'_>]) -> Vec<(usize, usize)> {
+    let (mut found, mut pending, mut depth) = (Vec::new(), Vec::<(usize, usize)>::new(), 0usize);
+    let is = |index: usize, text: &str| code.get(index).is_some_and(|token: &Token<'_>| token.text == text);
+    let touches = |index: usize| index > 0 && code[index - 1].at + code[index - 1].text.len() == code[index].at;
+    let mut index = 0;
+    while index < code.len() {
+        let next_is = |text: &str| is(index + 1, text) && touches(index + 1);
+        match code[index].text {
+            "<" if index > 0 && code[index - 1].kind == TokenKind::Name => match next_is("<") || next_is("=") {
+                true => index += 1,
+                false => pending.push((index, depth)),
+            },
+            ">" => match pending.last() {
+                Some((open, level)) if *level == depth => {
+                    found.push((*open, index));
+                    pending.pop();
+                }
+                _ if next_is("=") => index += 1,
+                _ => {}
+            },
+            "(" | "[" => depth += 1,
+            ")" | "]" => {
+                pending.retain(|(_, level)| *level < depth);
+                depth = depth.saturating_sub(1);
+            }
+            "!" | "=" if next_is("=") => index += 1,
+            "=" | ";" | "{" | ":" => {
+                pending.clear();
+                depth = 0;
+            }
+            "&" | "|" if is(index + 1, code[index].text) && touches(index + 1) => {
+                pending.retain(|(_, level)| *level < depth);
+                index += 1;
+            }
+            _ => {}
+        }
+        index += 1;
+    }
+    found
+}
+
+/// Reports operators of different classes in one expression.
+fn mixed_operators(code: &[Token<'_>], templates: &[(usize, usize)], errors: &mut Vec<GrammarError>) {
+    let mut levels: Vec<Vec<Operator>> = vec![Vec::new()];
+    let (mut index, mut after_operand) = (0, false);
+    let is_template = |index: usize| templates.iter().any(|(open, close)| *open == index || *close == index);
+    while index < code.len() {
+        let token = &code[index];
+        let (mut taken, mut is_operand) = (1, false);
+        match token.text {
+            "(" | "[" | "{" => levels.push(Vec::new()),
+            "<" if is_template(index) => levels.push(Vec::new()),
+            ")" | "]" | "}" => {
+                errors.extend(mixture(&levels.pop().unwrap_or_default()));
+                is_operand = token.text != "}";
+            }
+            ">" if is_template(index) => {
+                errors.extend(mixture(&levels.pop().unwrap_or_default()));
+                is_operand = true;
+            }
+            text if token.kind == TokenKind::Sign => match sign(code, index) {
+                Some((text, Some(_))) if after_operand => {
+                    taken = text.len();
+                    if let Some(level) = levels.last_mut() {
+                        level.push(Operator { text, at: token.at });
+                    }
+                }
+                Some((text, None)) => {
+                    taken = text.len();
+                    errors.extend(mixture(&levels.last_mut().map(std::mem::take).unwrap_or_default()));
+                }
+                // A unary operator, or a member.
+                _ => is_operand = text == ".",
+            },
+            text => {
+                is_operand = !KEYWORDS.contains(&text);
+                // The sign of an exponent is a token of its own.
+                let is_exponent =
+                    token.kind == TokenKind::Number && text.ends_with(['e', 'E']) && !text.starts_with("0x");
+                taken += usize::from(
+                    is_exponent && matches!(code.get(index + 1), Some(next) if matches!(next.text, "+" | "-")),
+                );
+            }
+        }
+        // The body of a branch or loop ends its header's expression.
+        if token.text == "{" && levels.len() > 1 {
+            let outer = levels.len() - 2;
+            errors.extend(mixture(&std::mem::take(&mut levels[outer])));
+        }
+        after_operand = is_operand;
+        index += taken;
+        if levels.is_empty() {
+            levels.push(Vec::new());
+        }
+    }
+}
+
+/// Returns the longest sign at a token.
+fn sign(code: &[Token<'_>], index: usize) -> Option<(&'static str, Option<Class>)> {
+    SIGNS.into_iter().find(|(text, _)| {
+        text.bytes().enumerate().all(|(offset, byte)| {
+            let at = code[index].at + offset;
+            code.get(index + offset).is_some_and(|token| token.at == at && token.text.as_bytes() == [byte])
+        })
+    })
+}
+
+fn class(operator: Operator) -> Option<Class> {
+    SIGNS.into_iter().find(|(text, _)| *text == operator.text).and_then(|(_, class)| class)
+}
+
+/// Returns the first operator of an expression that cannot follow the ones before it.
+fn mixture(operators: &[Operator]) -> Option<GrammarError> {
+    let is = |operator: &Operator, wanted: Class| class(*operator) == Some(wanted);
+    // `&`, `|`, `^`, `&&` and `||` stand alone or repeat, except that `&&` and `||` join comparisons.
+    for (index, operator) in operators.iter().enumerate() {
+        let others = &operators[..index];
+        let conflict = others.iter().find(|other| {
+            let is_either = |wanted: Class| is(operator, wanted) || is(other, wanted);
+            let logical = is(operator, Class::Logical) && is(other, Class::Logical);
+            (is_either(Class::Bitwise) || logical) && operator.text != other.text
+        });
+        // Within one operand of `&&` or `||`, there is one comparison, and one shift on each side of it.
+        let part = others.iter().rposition(|other| is(other, Class::Logical)).map_or(0, |at| at + 1);
+        let part = &others[part..];
+        let side = part.iter().rposition(|other| is(other, Class::Comparison)).map_or(0, |at| at + 1);
+        let conflict = conflict.or_else(|| match class(*operator)? {
+            Class::Comparison => part.iter().find(|other| is(other, Class::Comparison)),
+            Class::Shift => part[side..].first(),
+            Class::Arithmetic => part[side..].iter().find(|other| is(other, Class::Shift)),
+            Class::Bitwise | Class::Logical => None,
+        });
+        if let Some(other) = conflict {
+            return Some(GrammarError {
+                at: operator.at,
+                operator: operator.text,
+                message: format!("WGSL does not combine `{}` and `{}` without parentheses", other.text, operator.text),
+                help: "put one of the two operations in parentheses: Rust's precedence does not apply",
+            });
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use fragbuf_templates::Registry;
+
+    use super::grammar_errors;
+
+    fn operators(expression: &str) -> Vec<&'static str> {
+        let source = format!("fn f(a: u32, b: u32, c: u32) -> bool {{\n    return {expression};\n}}\n");
+        grammar_errors(&source).into_iter().map(|error| error.operator).collect()
+    }
+
+    #[test]
+    fn operators_that_need_parentheses_are_found() {
+        for (expression, expected) in [
+            ("a * b ^ c", &["^"][..]),
+            ("a ^ b * c", &["*"]),
+            ("a + b & c", &["&"]),
+            ("a & b | c", &["|"]),
+            ("a << b + c", &["+"]),
+            ("a + b << c", &["<<"]),
+            ("a << b << c", &["<<"]),
+            ("a < b && b < c || c < a", &["||"]),
+            ("a & b == c", &["=="]),
+            ("a == b == c", &["=="]),
+            ("a < b >> c", &["<"]),
+            ("f(a < b, c > (a))", &["<"]),
+            ("vec2<u32>(a * b ^ c, a)[a & b | c]", &["^", "|"]),
+            ("a << b == c && -a >> b < c", &[]),
+            ("(a * b) ^ c ^ (a & b & c)", &[]),
+            ("a < (b >> c) && f(a, -b) == 1.5e-3 * c", &[]),
+            ("array<vec2<u32>, 4u>()[a + b * c - a % b].x > c >> 2u", &[]),
+            ("a <= b || b >= c || !(a != b)", &[]),
+        ] {
+            assert_eq!(operators(expression), expected, "{expression}");
+        }
+    }
+
+    #[test]
+    fn statements_end_expressions() {
+        let source = "fn f(p: ptr<function, u32>) {\n    let a = *p & 1u;\n    var b = a << 2u;\n    b |= a * 2u;\n    \
+                      for (var i = 0u; i < 4u; i++) { b ^= i | a; }\n    if a + b > 3u { return; } else if b < a { *p = a * b; }\n    \
+                      switch a & 3u { case 1u: { b = a % 2u; } default: { b >>= 1u; } }\n}\n";
+        assert_eq!(grammar_errors(source), []);
+    }
+
+    /// The rules reject nothing that Tint accepts: all templates pass it in generated sources.
+    #[test]
+    fn templates_have_no_errors() {
+        let registry = Registry::builtin();
+        let templates: Vec<_> = registry.rows().iter().filter_map(|row| row.template.as_ref()).collect();
+        assert!(templates.len() > 40);
+        for template in templates.into_iter().chain(registry.shared()) {
+            assert_eq!(grammar_errors(&template.source), [], "{}", template.path);
+        }
+    }
+}
