@@ -11,11 +11,20 @@ use crate::statement::contains;
 impl FunctionPrinter<'_, '_> {
     /// Declares the variables that are declared before a statement. Returns the declaration for a `for` header, if any.
     pub fn declarations_before(&mut self, statement: &Statement, span: Span) -> Option<String> {
+        self.declare_before(statement, span, matches!(statement, Statement::Loop { .. }))
+    }
+
+    /// Declares the variables that are declared before a loop whose header has another declaration.
+    pub fn declarations_above(&mut self, statement: &Statement, span: Span) {
+        self.declare_before(statement, span, false);
+    }
+
+    fn declare_before(&mut self, statement: &Statement, span: Span, has_header: bool) -> Option<String> {
         let step = self.order.step_of(statement);
         let mut in_header = None;
         for local in self.declarations.before.remove(&step).unwrap_or_default() {
             let declared = self.function.local_variables.get_span(local);
-            if matches!(statement, Statement::Loop { .. }) && contains(span, declared) && in_header.is_none() {
+            if has_header && contains(span, declared) && in_header.is_none() {
                 self.print_comments_above(span);
                 self.enter_scope();
                 in_header = Some(self.declare_local(local, None));

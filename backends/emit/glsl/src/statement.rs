@@ -66,6 +66,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         }
         // This statement moves into the header, so the declarations before it come first.
         self.declarations_before(statement, span);
+        self.declarations_above(header, *loop_span);
         self.print_comments_above(*loop_span);
         self.enter_scope();
         self.simple(statement)

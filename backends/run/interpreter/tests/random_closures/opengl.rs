@@ -17,7 +17,8 @@ thread_local! {
 
 /// Opens a context and makes it current.
 fn open() -> glow::Context {
-    const HELP: &str = "this test needs OpenGL 4.5 on EGL's surfaceless platform: Debian's `libegl1` and `libgl1-mesa-dri`";
+    const HELP: &str =
+        "this test needs OpenGL 4.5 on EGL's surfaceless platform: Debian's `libegl1` and `libgl1-mesa-dri`";
     // SAFETY: the library is the system's EGL.
     let library = unsafe { egl::DynamicInstance::<egl::EGL1_5>::load_required() }.expect(HELP);
     // SAFETY: this platform has only the default display.
