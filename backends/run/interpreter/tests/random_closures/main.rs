@@ -14,6 +14,7 @@
 mod comparison;
 mod compiled;
 #[path = "../device/mod.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
 mod device;
 mod evaluator;
 mod expressions;
