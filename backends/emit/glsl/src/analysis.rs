@@ -108,6 +108,10 @@ impl<'m> Order<'m> {
                     let footprint = footprint::of_expression(self.module, self.function, expression);
                     self.steps.push(OrderedStep { block: id, statement: None, footprint });
                 }
+                // naga leaves an empty range of unused expressions. Every statement has a step of its own.
+                if range.clone().next().is_none() {
+                    self.steps.push(OrderedStep { block: id, statement: None, footprint: Footprint::default() });
+                }
                 continue;
             }
             let step = self.steps.len();

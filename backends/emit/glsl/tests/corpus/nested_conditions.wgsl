@@ -14,5 +14,21 @@ fn main() {
             }
         }
     }
-    words[2] = n;
+    words[2] = n + unused(n);
+}
+
+// An unused value in the first branch; the second declares a variable.
+fn unused(a: u32) -> u32 {
+    if a > 2u {
+        let b = a * 3u;
+    } else {
+        var c: u32;
+        if a == 1u {
+            c = 4u;
+        } else {
+            c = 5u;
+        }
+        return 1u << c;
+    }
+    return a;
 }

@@ -7,6 +7,7 @@ use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
 use naga::valid::ModuleInfo;
 
 use super::device;
+use super::evaluator::TOO_LONG;
 use super::generator::Program;
 use super::harness::{Parsed, RESULT_WORDS, lowered, shader};
 use super::range::Undefined;
@@ -28,10 +29,10 @@ pub struct Shader {
     pub groups: u32,
 }
 
-/// A device: its name, and a function from a shader to the words that it writes.
+/// A device: its name, and a function from a shader to the words that it writes, or to the reason why it cannot run it.
 pub struct Device<'d> {
     pub name: &'static str,
-    pub run: &'d (dyn Fn(&Shader) -> Vec<u32> + Sync),
+    pub run: &'d (dyn Fn(&Shader) -> Result<Vec<u32>, String> + Sync),
 }
 
 /// The results of a comparison.
@@ -101,6 +102,12 @@ fn shrunk(programs: &[(Program, String)], report: &str, inputs: &[Input], device
     };
     let failure = |program: &Program| {
         let functions = lowered(program).ok()?;
+        // Without its `break`, a loop may not end.
+        let parsed = Parsed::new(program).ok()?;
+        let ends = |input: &Input| parsed.evaluate(input).value != Err(TOO_LONG);
+        if !inputs.iter().all(ends) {
+            return None;
+        }
         compare_batch(&[(program.clone(), functions)], inputs, devices).differences.into_iter().next()
     };
     let small = shrink(program.clone(), |smaller| failure(smaller).is_some());
@@ -126,7 +133,22 @@ fn compare_batch(batch: &[(Program, String)], inputs: &[Input], devices: &[Devic
         results: inputs.len() * batch.len() * RESULT_WORDS,
         groups: inputs.len() as u32,
     };
-    let found: Vec<(&str, Vec<u32>)> = devices.iter().map(|device| (device.name, (device.run)(&shader))).collect();
+    let mut found: Vec<(&str, Vec<u32>)> = Vec::new();
+    for device in devices {
+        match (device.run)(&shader) {
+            Ok(words) => found.push((device.name, words)),
+            Err(error) if batch.len() == 1 => {
+                let (program, wgsl) = &batch[0];
+                tally.differences.push(format!("{} rejects: {error}\n{}\n{wgsl}", device.name, program.parts()));
+                return tally;
+            }
+            // Find the programs that it rejects.
+            Err(_) => {
+                batch.chunks(1).for_each(|one| tally.add(compare_batch(one, inputs, devices)));
+                return tally;
+            }
+        }
+    }
     for (index, (program, _)) in batch.iter().enumerate() {
         let parsed = Parsed::new(program).unwrap();
         for (number, input) in inputs.iter().enumerate() {
@@ -176,11 +198,14 @@ pub fn difference(program: &Program, input: &Input, device: &str, expected: &Val
 }
 
 /// Runs a shader on the interpreter.
-pub fn interpret(shader: &Shader) -> Vec<u32> {
+pub fn interpret(shader: &Shader) -> Result<Vec<u32>, String> {
     let program = Bytecode::entry_point(&shader.module, &shader.info, "main", &Options::default()).unwrap();
     let mut buffers = buffers(&program, shader);
-    assert_eq!(dispatch(&program, [shader.groups, 1, 1], &mut buffers), DispatchEnd::Ended);
-    buffers.swap_remove(results(&program))
+    let end = dispatch(&program, [shader.groups, 1, 1], &mut buffers);
+    if end != DispatchEnd::Ended {
+        return Err(format!("the shader does not end: {end:?}"));
+    }
+    Ok(buffers.swap_remove(results(&program)))
 }
 
 /// Returns the words of the buffers before a dispatch, in the order of the program.

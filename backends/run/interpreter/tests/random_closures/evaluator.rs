@@ -60,7 +60,10 @@ struct Evaluator<'a> {
 }
 
 /// The evaluated steps of one closure: far above what generated closures need.
-const STEPS: u32 = 1_000_000;
+const STEPS: u32 = 100_000;
+
+/// The reason for no result after so many steps.
+pub const TOO_LONG: Undefined = "too many steps";
 
 impl Evaluator<'_> {
     fn call(&mut self, name: &str, arguments: Vec<Value>) -> Result<Value, Stop> {
@@ -123,7 +126,7 @@ impl Evaluator<'_> {
     fn expr(&mut self, expr: &syn::Expr) -> Result<Value, Stop> {
         self.steps += 1;
         if self.steps > STEPS {
-            return Err("too many steps".into());
+            return Err(TOO_LONG.into());
         }
         match expr {
             syn::Expr::Paren(inner) => self.expr(&inner.expr),

@@ -40,7 +40,7 @@ fn open() -> glow::Context {
 }
 
 /// Runs a shader on the driver, printed as GLSL.
-pub fn run(shader: &Shader) -> Vec<u32> {
+pub fn run(shader: &Shader) -> Result<Vec<u32>, String> {
     let options = Options {
         dialect: Dialect::OpenGl450,
         header: "",
@@ -50,11 +50,12 @@ pub fn run(shader: &Shader) -> Vec<u32> {
         written_first: &[],
         zero_workgroup_memory: false,
     };
-    let source = print(&shader.module, &shader.info, &shader.source, Unit::EntryPoint("main"), &options).unwrap();
+    let source = print(&shader.module, &shader.info, &shader.source, Unit::EntryPoint("main"), &options);
+    let source = source.map_err(|errors| format!("{errors:?}"))?;
     GL.with(|gl| compute(gl, &source, &shader.inputs, shader.results, shader.groups))
 }
 
-fn compute(gl: &glow::Context, source: &str, inputs: &[u32], results: usize, groups: u32) -> Vec<u32> {
+fn compute(gl: &glow::Context, source: &str, inputs: &[u32], results: usize, groups: u32) -> Result<Vec<u32>, String> {
     let inputs: Vec<u8> = inputs.iter().flat_map(|word| word.to_ne_bytes()).collect();
     let mut bytes = vec![0; results * 4];
     // SAFETY: the context is current, and the buffers are as long as the shader's indices require.
@@ -62,11 +63,15 @@ fn compute(gl: &glow::Context, source: &str, inputs: &[u32], results: usize, gro
         let unit = gl.create_shader(glow::COMPUTE_SHADER).unwrap();
         gl.shader_source(unit, source);
         gl.compile_shader(unit);
-        assert!(gl.get_shader_compile_status(unit), "{}\n{source}", gl.get_shader_info_log(unit));
+        if !gl.get_shader_compile_status(unit) {
+            return Err(format!("{}\n{source}", gl.get_shader_info_log(unit)));
+        }
         let program = gl.create_program().unwrap();
         gl.attach_shader(program, unit);
         gl.link_program(program);
-        assert!(gl.get_program_link_status(program), "{}\n{source}", gl.get_program_info_log(program));
+        if !gl.get_program_link_status(program) {
+            return Err(format!("{}\n{source}", gl.get_program_info_log(program)));
+        }
         gl.use_program(Some(program));
         let buffers = [gl.create_buffer().unwrap(), gl.create_buffer().unwrap()];
         for (binding, (buffer, content)) in (0..).zip(buffers.iter().zip([&inputs, &bytes])) {
@@ -82,5 +87,5 @@ fn compute(gl: &glow::Context, source: &str, inputs: &[u32], results: usize, gro
         gl.delete_shader(unit);
         buffers.into_iter().for_each(|buffer| gl.delete_buffer(buffer));
     }
-    bytes.chunks_exact(4).map(|word| u32::from_ne_bytes(word.try_into().unwrap())).collect()
+    Ok(bytes.chunks_exact(4).map(|word| u32::from_ne_bytes(word.try_into().unwrap())).collect())
 }
