@@ -37,7 +37,7 @@ pub fn declarations(order: &Order, plan: &Plan) -> Declarations {
         }
         match declaring_store(order, local, &steps) {
             Some(step) => drop(result.by_store.insert(step, local)),
-            None => result.before.entry(statement_before(order, local, &steps)).or_default().push(local),
+            None => result.before.entry(statement_before(order, plan, local, &steps)).or_default().push(local),
         }
     }
     result
@@ -79,12 +79,15 @@ fn ancestors(order: &Order, block: usize) -> Vec<usize> {
     std::iter::successors(Some(block), |block| order.blocks[*block].parent).collect()
 }
 
-/// Returns the innermost statement outside every loop that a declaration can precede to be visible at all mentions.
-fn statement_before(order: &Order, local: Handle<LocalVariable>, mentions: &[usize]) -> usize {
+/// Returns the innermost statement outside every loop that a declaration can precede to be visible at all mentions. The operand of
+/// a short circuit is a block in the IR, but prints as a part of an expression, where nothing can be declared.
+fn statement_before(order: &Order, plan: &Plan, local: Handle<LocalVariable>, mentions: &[usize]) -> usize {
     let first = mentions.first().copied().unwrap_or_default();
+    let is_operand = |block: usize| block != 0 && plan.short_circuit_steps.contains_key(&order.blocks[block].owner);
     let common = ancestors(order, order.steps[first].block).into_iter().find(|candidate| {
         let contains_all = mentions.iter().all(|step| ancestors(order, order.steps[*step].block).contains(candidate));
-        contains_all && !ancestors(order, *candidate).iter().any(|block| order.blocks[*block].is_loop)
+        contains_all
+            && !ancestors(order, *candidate).iter().any(|block| order.blocks[*block].is_loop || is_operand(*block))
     });
     let common = common.unwrap_or_default();
     // Climb from the first mention to the statement of the common block that contains it.

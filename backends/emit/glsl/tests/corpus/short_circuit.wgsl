@@ -27,3 +27,17 @@ fn main(@builtin(local_invocation_index) i: u32) {
     if data[i] == 0u || data[data[i]] == 0u { return; }
     data[10] = u32(take(0u) | take(1u)) + select(0u, data[11], take(2u));
 }
+
+/// The only mention of `last` is inside an operand.
+fn operand_alone(p: u32) -> bool {
+    var last = 0.5 <= 3.25;
+    if (true && 2i > i32(-2147483648)) || last {
+        return p <= 255u;
+    }
+    return false;
+}
+
+@compute @workgroup_size(1)
+fn operands() {
+    data[0] = u32(operand_alone(data[1]));
+}

@@ -79,7 +79,7 @@ fn random_closures_have_the_results_of_rust() {
 
 #[test]
 fn random_closures_have_the_results_of_rust_in_opengl() {
-    assert_equal(&[Device { name: "GLSL", run: &opengl::run }], 1000);
+    assert_equal(&[Device { name: "GLSL", run: &opengl::run }], 10_000);
 }
 
 /// Compiles some of the closures by rustc: their results and panics are those of the evaluator.
