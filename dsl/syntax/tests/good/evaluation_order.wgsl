@@ -13,10 +13,10 @@ fn user_stored(v: vec3<f32>, y: f32) -> vec3<f32> {
     let value = y_1;
     y_1 += 1.0;
     w[2u] = value;
-    let value_1 = w.x;
-    w.x = 5.0;
+    let value_1 = y_1;
+    y_1 = 5.0;
     w[1u] += value_1;
-    return w;
+    return w * y_1;
 }
 
 fn user_constant(a: u32) -> f32 {
