@@ -43,7 +43,7 @@ pub fn inputs(count: usize) -> Vec<Input> {
 fn input(random: &mut Random, at: usize) -> Input {
     let mut words = Vec::new();
     // The first inputs have ordinary numbers only, so that long closures have defined results, too.
-    let is_ordinary = at % 2 == 0;
+    let is_ordinary = at.is_multiple_of(2);
     let fields = UNIFORMS.iter().chain(ATTRIBUTES.iter().cycle().take(ATTRIBUTES.len() * FRAGMENTS));
     for (_, ty) in fields {
         words.extend((0..ty.words()).map(|_| word(random, *ty, is_ordinary)));
