@@ -279,6 +279,21 @@ fn former_flags_and_values_work_and_are_hidden() {
     }
 }
 
+/// Descriptions may use former values of axes; messages and plans have the present ones.
+#[test]
+fn former_values_of_axes_work() {
+    for (key, present, former) in [
+        ("kb_mha", "storage=checksummed_array", concat!("storage=checked", "_array")),
+        ("kb_multi", "storage=multipass_array", concat!("storage=repeated", "_array")),
+        ("kplus_array", "opaque=early_depth", "opaque=early"),
+    ] {
+        let show = |set: &str| fragbuf(&["show", key, "--set", set, "--dump", "plan"]);
+        let (present, former) = (show(present), show(former));
+        assert_eq!(former.status.code(), Some(0), "{}", String::from_utf8_lossy(&former.stderr));
+        assert!(!former.stdout.is_empty() && former.stdout == present.stdout, "{key}");
+    }
+}
+
 /// The manifest lists limits, and two buffers in one shader are warned of if they exceed what every WebGPU device has.
 #[test]
 fn limits_of_several_buffers_in_a_shader_add_up() {

@@ -39,6 +39,7 @@ fn early_depth() -> Row {
         resources: vec![depth_buffer()],
         requires: vec![Capability::SyncInShader, Capability::CullInShader, Capability::OneSample],
         needs: vec![Feature::EarlyDepth, Feature::OwnEntryPoints],
+        former_key: Some("early"),
         edits: vec![Edit::TestDepth(test)],
         ..Row::new(
             "opaque",

@@ -112,9 +112,9 @@ impl Registry {
         self.rows.iter().filter(move |row| row.axis == axis)
     }
 
-    /// Returns the row of this axis and key.
+    /// Returns the row of this axis and key, or former key.
     pub fn row(&self, axis: &str, key: &str) -> Option<&Row> {
-        self.rows.iter().find(|row| row.axis == axis && row.key == key)
+        self.rows.iter().find(|row| row.axis == axis && (row.key == key || row.former_key == Some(key)))
     }
 
     /// Returns the rows that provide `capability`, on axes whose value a description chooses.

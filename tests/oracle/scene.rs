@@ -2,6 +2,7 @@
 //! known without a rasteriser.
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+use super::numbers::Numbers;
 use super::reference;
 
 /// A quad over the pixels `x[0] ≤ x < x[1]`, `y[0] ≤ y < y[1]`, y downwards.
@@ -18,29 +19,6 @@ pub struct Quad {
 impl Quad {
     fn covers(&self, x: u32, y: u32) -> bool {
         (self.x[0]..self.x[1]).contains(&x) && (self.y[0]..self.y[1]).contains(&y)
-    }
-}
-
-/// A seeded generator (xorshift, Marsaglia 2003).
-pub struct Numbers(u64);
-
-impl Numbers {
-    pub fn seeded(seed: u64) -> Self {
-        Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    /// Returns a number below `end`.
-    pub fn below(&mut self, end: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 32) % u64::from(end)) as u32
-    }
-
-    pub fn shuffle<T>(&mut self, things: &mut [T]) {
-        for end in (1..things.len()).rev() {
-            things.swap(end, self.below(end as u32 + 1) as usize);
-        }
     }
 }
 

@@ -224,7 +224,7 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
         self.host.bind_vertices(Some(matches!(pass.objects, Objects::Boxes)));
         let samples = objects.map(|(index, object)| match &pass.objects {
             Objects::All => draw(object.first, object.count),
-            // A box that the near plane cuts hides nothing but itself.
+            // The near plane may clip every sample of such a box away although the object is visible.
             Objects::Boxes if crosses_near_plane(object, &self.scene.view_projection) => Ok(1),
             Objects::Boxes => draw((BOX.len() * index) as u32, BOX.len() as u32),
             Objects::VisibleIn(query) => match self.samples.get(query).and_then(|counts| counts.get(index)) {

@@ -69,6 +69,12 @@ impl<'c> Host<'c> {
         let gl = &context.gl;
         let (files, plan) = Manifest::parse(manifest, "glsl")?;
         check_features(gl, &plan.features)?;
+        if let Some(external) = plan.resources.iter().find(|resource| resource.init == "external") {
+            return Err(Error(format!(
+                "`{}` is written by the engine, and this host has no pass that does",
+                external.name
+            )));
+        }
         let mut passes: BTreeMap<&str, Vec<&File>> = BTreeMap::new();
         files.iter().for_each(|file| passes.entry(&file.pass).or_default().push(file));
         let programs = passes.into_iter().map(|(pass, files)| Ok((pass.to_owned(), compile(gl, &files, read)?)));

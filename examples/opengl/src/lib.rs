@@ -3,9 +3,10 @@
 //! Input: `manifest.json`, the files that it names, a scene. Output: the image, the words of any buffer, the counters. It contains no name
 //! of a technique, a resource or a pass, so it runs whatever the description says. `context` opens OpenGL without a window, `manifest`
 //! parses, `formula` evaluates sizes, `memory` creates buffers and textures, `state` sets the fixed-function state of a pass, and
-//! `host` follows the steps of a frame.
+//! `frame` follows the steps of a frame. `compute` runs a single shader, for tests of printed GLSL.
 #![allow(unsafe_code, reason = "every call of OpenGL is unsafe")]
 
+mod compute;
 mod context;
 mod formula;
 mod frame;

@@ -81,6 +81,7 @@ pub struct VertexInput {
 #[derive(Clone, Deserialize)]
 pub struct Resource {
     pub name: String,
+    pub init: serde_json::Value,
     pub opengl_binding: u32,
     pub words: String,
     pub texture: Option<Texture>,

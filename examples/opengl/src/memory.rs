@@ -58,6 +58,17 @@ impl Memory {
         }
     }
 
+    /// Creates a buffer with these words.
+    pub fn of_words(gl: &glow::Context, words: &[u32]) -> Result<Self, Error> {
+        let memory = Memory::buffer(gl, words.len() as u64)?;
+        if let Memory::Buffer { buffer, .. } = memory {
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+            // SAFETY: the context is current, and the buffer has room for the words.
+            unsafe { gl.named_buffer_sub_data_u8_slice(buffer, 0, &bytes) };
+        }
+        Ok(memory)
+    }
+
     /// Creates a texture with the size of the frame.
     pub fn texture(gl: &glow::Context, format: Format, samples: u64, [width, height]: [i32; 2]) -> Result<Self, Error> {
         let kind = if samples > 1 { glow::TEXTURE_2D_MULTISAMPLE } else { glow::TEXTURE_2D };

@@ -26,28 +26,40 @@ pub fn compile(
     files: &[&File],
     read: &dyn Fn(&str) -> Result<String, Error>,
 ) -> Result<glow::Program, Error> {
+    let mut sources = Vec::with_capacity(files.len());
+    for file in files {
+        let stage = match file.stage.as_str() {
+            "vertex" => glow::VERTEX_SHADER,
+            "fragment" => glow::FRAGMENT_SHADER,
+            "compute" => glow::COMPUTE_SHADER,
+            other => return Err(Error(format!("{}: no stage `{other}` in OpenGL", file.path))),
+        };
+        sources.push((stage, &file.path, read(&file.path)?));
+    }
+    let sources: Vec<_> =
+        sources.iter().map(|(stage, path, source)| (*stage, path.as_str(), source.as_str())).collect();
+    link(gl, &sources)
+}
+
+/// Compiles and links sources, each with its stage and the path for messages.
+pub fn link(gl: &glow::Context, sources: &[(u32, &str, &str)]) -> Result<glow::Program, Error> {
     // SAFETY: the context is current.
     unsafe {
         let program = gl.create_program().map_err(Error)?;
-        for file in files {
-            let stage = match file.stage.as_str() {
-                "vertex" => glow::VERTEX_SHADER,
-                "fragment" => glow::FRAGMENT_SHADER,
-                "compute" => glow::COMPUTE_SHADER,
-                other => return Err(Error(format!("{}: no stage `{other}` in OpenGL", file.path))),
-            };
-            let shader = gl.create_shader(stage).map_err(Error)?;
-            gl.shader_source(shader, &read(&file.path)?);
+        for (stage, path, source) in sources {
+            let shader = gl.create_shader(*stage).map_err(Error)?;
+            gl.shader_source(shader, source);
             gl.compile_shader(shader);
             if !gl.get_shader_compile_status(shader) {
-                return Err(Error(format!("{}: {}", file.path, gl.get_shader_info_log(shader))));
+                return Err(Error(format!("{path}: {}", gl.get_shader_info_log(shader))));
             }
             gl.attach_shader(program, shader);
             gl.delete_shader(shader);
         }
         gl.link_program(program);
         if !gl.get_program_link_status(program) {
-            return Err(Error(format!("{}: {}", files[0].path, gl.get_program_info_log(program))));
+            let paths: Vec<&str> = sources.iter().map(|(_, path, _)| *path).collect();
+            return Err(Error(format!("{}: {}", paths.join(", "), gl.get_program_info_log(program))));
         }
         Ok(program)
     }

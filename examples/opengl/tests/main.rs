@@ -4,6 +4,10 @@
 #![allow(missing_docs, reason = "tests need no documentation")]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by a panic")]
 
+#[path = "../../../tests/oracle/cpu_image.rs"]
+mod cpu_image;
+#[path = "../../../tests/oracle/numbers.rs"]
+mod numbers;
 mod pixels;
 #[path = "../../../tests/oracle/reference.rs"]
 mod reference;

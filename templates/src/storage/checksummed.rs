@@ -8,6 +8,7 @@ use crate::vocabulary::{Access, Capability, Condition, Feature, Hazard, Paramete
 pub(super) fn checksummed_array() -> Row {
     Row {
         template: Some(template!("storage/checksummed_array")),
+        former_key: Some("checked_array"),
         resources: array_resources("keys in ascending order, each with a checksum of its entry; EMPTY past the last"),
         steps: vec![
             reset(&["keys"]),

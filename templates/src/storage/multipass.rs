@@ -14,6 +14,7 @@ pub(super) fn multipass_array() -> Row {
         .uses("changed", Access::Atomic);
     Row {
         template: Some(template!("storage/multipass_array")),
+        former_key: Some("repeated_array"),
         resources,
         steps: vec![
             reset(&["keys"]),

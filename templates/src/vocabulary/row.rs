@@ -23,6 +23,8 @@ pub struct Axis {
 pub struct Row {
     /// The keyword of the language, and the stem of the template's file name.
     pub key: String,
+    /// A former key, which descriptions may still use.
+    pub former_key: Option<&'static str>,
     /// The axis.
     pub axis: String,
     /// What the row does, in one line.
@@ -256,6 +258,7 @@ impl Row {
     pub fn new(axis: &str, key: &str, summary: impl Into<Text>, paper: impl Into<Text>) -> Self {
         Row {
             key: key.to_owned(),
+            former_key: None,
             axis: axis.to_owned(),
             summary: summary.into(),
             paper: paper.into(),

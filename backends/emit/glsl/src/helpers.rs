@@ -13,30 +13,15 @@ pub enum Helper {
     RemainderUint(u8),
     RemainderInt(u8),
     RemainderFloat(u8),
-    ExtractBits {
-        signed: bool,
-        size: u8,
-    },
-    InsertBits {
-        signed: bool,
-        size: u8,
-    },
-    PackBytes {
-        signed: bool,
-        clamp: bool,
-    },
-    UnpackBytes {
-        signed: bool,
-    },
+    ExtractBits { signed: bool, size: u8 },
+    InsertBits { signed: bool, size: u8 },
+    PackBytes { signed: bool, clamp: bool },
+    UnpackBytes { signed: bool },
     FloatToUint(u8),
     FloatToInt(u8),
-    /// The struct of the result, and the function.
     Modf(u8),
-    /// The struct of the result, and the function.
     Frexp(u8),
-    DotBytes {
-        signed: bool,
-    },
+    DotBytes { signed: bool },
     QuantizeToHalf(u8),
 }
 
@@ -72,11 +57,11 @@ impl Helper {
         }
     }
 
-    /// Returns the name of the struct that the function returns, if the helper defines it.
+    /// Returns the name of the type of the result, if the helper defines it.
     pub fn result(self) -> Option<String> {
         match self {
-            Self::Modf(lanes) => Some(typed("wgsl_modf_result_vec", "wgsl_modf_result", lanes)),
-            Self::Frexp(lanes) => Some(typed("wgsl_frexp_result_vec", "wgsl_frexp_result", lanes)),
+            Self::Modf(lanes) => Some(modf_result(lanes)),
+            Self::Frexp(lanes) => Some(frexp_result(lanes)),
             _ => None,
         }
     }
@@ -94,42 +79,10 @@ impl Helper {
     /// Returns the definition.
     pub fn text(self) -> String {
         match self {
-            Self::Modf(lanes) => {
-                let (ty, result) = (typed("vec", "float", lanes), self.result().unwrap_or_default());
-                format!(
-                    "struct {result} {{\n    {ty} fract;\n    {ty} whole;\n}};\n\n{result} wgsl_modf({ty} value) {{\n    {ty} whole = trunc(value);\n    return {result}(value - whole, whole);\n}}\n"
-                )
-            }
-            Self::Frexp(lanes) => {
-                let (ty, integer) = (typed("vec", "float", lanes), typed("ivec", "int", lanes));
-                let result = self.result().unwrap_or_default();
-                format!(
-                    "struct {result} {{\n    {ty} fract;\n    {integer} exp;\n}};\n\n{result} wgsl_frexp({ty} value) {{\n    {integer} exponent;\n    {ty} fraction = frexp(value, exponent);\n    return {result}(fraction, exponent);\n}}\n"
-                )
-            }
-            Self::QuantizeToHalf(lanes) => {
-                let ty = typed("vec", "float", lanes);
-                let value = match lanes {
-                    1 => "unpackHalf2x16(packHalf2x16(vec2(value, 0.0))).x",
-                    2 => "unpackHalf2x16(packHalf2x16(value))",
-                    3 => "vec3(unpackHalf2x16(packHalf2x16(value.xy)), unpackHalf2x16(packHalf2x16(vec2(value.z, 0.0))).x)",
-                    _ => "vec4(unpackHalf2x16(packHalf2x16(value.xy)), unpackHalf2x16(packHalf2x16(value.zw)))",
-                };
-                format!("{ty} wgsl_quantize_to_half({ty} value) {{\n    return {value};\n}}\n")
-            }
-            Self::DotBytes { signed } => {
-                let (ty, vector) = if signed { ("int", "ivec4") } else { ("uint", "uvec4") };
-                let bytes = |word: &str| match signed {
-                    true => format!("(ivec4({word}) << ivec4(24, 16, 8, 0)) >> ivec4(24)"),
-                    false => format!("(uvec4({word}) >> uvec4(0u, 8u, 16u, 24u)) & uvec4(255u)"),
-                };
-                format!(
-                    "{ty} {}(uint a, uint b) {{\n    {vector} products = ({}) * ({});\n    return products.x + products.y + products.z + products.w;\n}}\n",
-                    self.name(),
-                    bytes("a"),
-                    bytes("b")
-                )
-            }
+            Self::Modf(lanes) => modf(lanes),
+            Self::Frexp(lanes) => frexp(lanes),
+            Self::QuantizeToHalf(lanes) => quantize_to_half(lanes),
+            Self::DotBytes { signed } => dot_bytes(signed),
             Self::DivideUint(lanes) => divide("uvec", "uint", lanes, false),
             Self::DivideInt(lanes) => divide("ivec", "int", lanes, true),
             Self::RemainderUint(lanes) => remainder_uint(lanes),
@@ -227,5 +180,53 @@ fn pack_bytes(signed: bool, clamp: bool) -> String {
     };
     format!(
         "uint {name}({ty} value) {{\n    uvec4 bytes = {bytes};\n    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);\n}}\n"
+    )
+}
+
+fn modf_result(lanes: u8) -> String {
+    typed("wgsl_modf_result_vec", "wgsl_modf_result", lanes)
+}
+
+/// Defines modf() with the type of its result.
+fn modf(lanes: u8) -> String {
+    let (ty, result) = (typed("vec", "float", lanes), modf_result(lanes));
+    format!(
+        "struct {result} {{\n    {ty} fract;\n    {ty} whole;\n}};\n\n{result} wgsl_modf({ty} value) {{\n    {ty} whole = trunc(value);\n    return {result}(value - whole, whole);\n}}\n"
+    )
+}
+
+fn frexp_result(lanes: u8) -> String {
+    typed("wgsl_frexp_result_vec", "wgsl_frexp_result", lanes)
+}
+
+/// Defines frexp() with the type of its result.
+fn frexp(lanes: u8) -> String {
+    let (ty, integer, result) = (typed("vec", "float", lanes), typed("ivec", "int", lanes), frexp_result(lanes));
+    format!(
+        "struct {result} {{\n    {ty} fract;\n    {integer} exp;\n}};\n\n{result} wgsl_frexp({ty} value) {{\n    {integer} exponent;\n    {ty} fraction = frexp(value, exponent);\n    return {result}(fraction, exponent);\n}}\n"
+    )
+}
+
+fn quantize_to_half(lanes: u8) -> String {
+    let ty = typed("vec", "float", lanes);
+    let value = match lanes {
+        1 => "unpackHalf2x16(packHalf2x16(vec2(value, 0.0))).x",
+        2 => "unpackHalf2x16(packHalf2x16(value))",
+        3 => "vec3(unpackHalf2x16(packHalf2x16(value.xy)), unpackHalf2x16(packHalf2x16(vec2(value.z, 0.0))).x)",
+        _ => "vec4(unpackHalf2x16(packHalf2x16(value.xy)), unpackHalf2x16(packHalf2x16(value.zw)))",
+    };
+    format!("{ty} wgsl_quantize_to_half({ty} value) {{\n    return {value};\n}}\n")
+}
+
+/// Defines the dot product of four packed bytes.
+fn dot_bytes(signed: bool) -> String {
+    let (ty, vector) = if signed { ("int", "ivec4") } else { ("uint", "uvec4") };
+    let (name, unpack) = (Helper::DotBytes { signed }.name(), |word: &str| match signed {
+        true => format!("(ivec4({word}) << ivec4(24, 16, 8, 0)) >> ivec4(24)"),
+        false => format!("(uvec4({word}) >> uvec4(0u, 8u, 16u, 24u)) & uvec4(255u)"),
+    });
+    let (a, b) = (unpack("a"), unpack("b"));
+    format!(
+        "{ty} {name}(uint a, uint b) {{\n    {vector} products = ({a}) * ({b});\n    return products.x + products.y + products.z + products.w;\n}}\n"
     )
 }

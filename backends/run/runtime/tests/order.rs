@@ -1,21 +1,9 @@
 //! Drawing orders, and reproducible pseudorandom numbers.
 
-/// A seeded generator (xorshift, Marsaglia 2003).
-pub struct Numbers(u64);
+#[path = "../../../../tests/oracle/numbers.rs"]
+pub mod numbers;
 
-impl Numbers {
-    pub fn seeded(seed: u64) -> Self {
-        Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    /// Returns a number below `end`.
-    pub fn below(&mut self, end: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 32) % u64::from(end)) as u32
-    }
-}
+pub use numbers::Numbers;
 
 /// Returns all orders of up to four things, and sixteen of more.
 pub fn orders<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
@@ -38,9 +26,7 @@ fn all<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
 fn shuffled<T: Clone>(things: &[T], seed: u64) -> Vec<T> {
     let mut numbers = Numbers::seeded(seed + 1);
     let mut things = things.to_vec();
-    for end in (1..things.len()).rev() {
-        things.swap(end, numbers.below(end as u32 + 1) as usize);
-    }
+    numbers.shuffle(&mut things);
     things
 }
 

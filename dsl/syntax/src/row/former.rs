@@ -22,9 +22,23 @@ const FORMER: [(&str, &str); 18] = [
     ("unsettled", "not-converged"),
 ];
 
+/// The former symbols of formulas and the present ones.
+const FORMER_SYMBOLS: [(&str, &str); 1] = [("beside_words", "value_words")];
+
 /// Returns the present word for a keyword, a capability or a property.
 pub(super) fn present(word: &str) -> &str {
     FORMER.iter().find(|(former, _)| *former == word).map_or(word, |(_, present)| present)
+}
+
+/// Returns a formula with the present symbols.
+pub(super) fn formula(text: &str) -> String {
+    let is_other = |letter: char| !letter.is_ascii_alphanumeric() && letter != '_';
+    let parts = text.split_inclusive(is_other).map(|part| {
+        let word = part.trim_end_matches(is_other);
+        let symbol = FORMER_SYMBOLS.iter().find(|(former, _)| *former == word).map_or(word, |(_, present)| present);
+        format!("{symbol}{}", &part[word.len()..])
+    });
+    parts.collect()
 }
 
 #[cfg(test)]
@@ -34,7 +48,7 @@ mod tests {
     #[test]
     fn former_words_mean_the_present_ones() {
         let present = "//: storage -- all of it\n\
-            //: buffer rest[pixel < pixels]: value -- the rest\n\
+            //: buffer rest[pixel < pixels * (1 + value_words)]: value -- the rest\n\
             //: pass store: rest coherent\n\
             //: provides lock-free, indexed\n\
             //: requires mutual-exclusion, fragment-atomics\n\
@@ -43,6 +57,7 @@ mod tests {
             fn storage_insert(pixel: u32, entry: Packed) {}\n";
         let former = present
             .replace(": value", ": beside")
+            .replace("value_words", "beside_words")
             .replace("provides lock-free", "offers own-atomics")
             .replace("mutual-exclusion", "critical")
             .replace("timed-out", "given-up");

@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use fragbuf_model::{SourceSpan, Spanned};
 
+use super::former;
+
 /// The remaining part of a line, without the summary after ` -- `.
 pub(super) struct Line<'a> {
     file: Arc<str>,
@@ -106,6 +108,12 @@ impl<'a> Line<'a> {
         self.at = stop.map_or(self.end, |(at, _)| from + at);
         let text = self.whole[from..self.at].trim_end();
         Spanned::new(text.to_owned(), self.span_of(from, from + text.len()))
+    }
+
+    /// As [`Self::until`], for a formula.
+    pub(super) fn formula(&mut self, stops: &[char]) -> Spanned<String> {
+        let text = self.until(stops);
+        Spanned::new(former::formula(&text.value), text.span)
     }
 
     /// Returns whether nothing remains.

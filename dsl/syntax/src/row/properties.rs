@@ -36,7 +36,7 @@ impl Statements {
         const SHAPE: &str = "`keeps best k`, `keeps best 1 of each key / 1000`";
         let side = self.reader.name(line, "`best` or `worst`", SHAPE)?;
         let side = self.reader.one_of(&side, &[("best", Side::Best), ("worst", Side::Worst)], "`best` or `worst`")?;
-        let kept = line.until(&[]);
+        let kept = line.formula(&[]);
         let (most, group) = match kept.value.split_once(" of each ") {
             Some((most, group)) => (most.trim(), Some(group.trim())),
             None => (kept.value.as_str(), None),

@@ -99,7 +99,7 @@ impl Reader {
 
     /// Parses a formula over the symbols of a description and these constants of the row.
     pub(super) fn condition_with(&mut self, line: &mut Line<'_>, constants: Vec<String>) -> Read<Formula> {
-        let formula = line.until(&[]);
+        let formula = line.formula(&[]);
         let symbols = DescriptionValues::symbols().map(|symbol| symbol.name.to_owned());
         let symbols: Vec<String> = symbols.chain(constants).collect();
         self.formula(&formula, &symbols)?;

@@ -67,7 +67,7 @@ impl Statements {
             return self.reader.stop(codes::INVALID_ROW, &index.span, message, help);
         }
         self.reader.punct(line, '<', SHAPE)?;
-        let length = line.until(&[']']);
+        let length = line.formula(&[']']);
         self.reader.punct(line, ']', SHAPE)?;
         let symbols = self.symbols();
         self.reader.formula(&length, &symbols)?;

@@ -84,7 +84,7 @@ impl Statements {
         if !line.punct('[') {
             return Ok(host.reads_all(&name.value));
         }
-        let words = line.until(&[']']);
+        let words = line.formula(&[']']);
         self.reader.punct(line, ']', shape)?;
         let (first, count) = words.value.split_once(" for ").unwrap_or((&words.value, "1"));
         let symbols = self.symbols();

@@ -31,7 +31,7 @@ impl Statements {
         self.once(&format!("parameter {}", name.value), &name.span, "rename one of the options")?;
         let constant = self.constant(line, SHAPE)?;
         self.reader.punct(line, '=', SHAPE)?;
-        let default = line.until(&[',']);
+        let default = line.formula(&[',']);
         let symbols = self.symbols_until(BindingTime::Generation);
         self.reader.formula(&default, &symbols)?;
         self.reader.record_span(RowItem::Default, &default);
@@ -91,7 +91,7 @@ impl Statements {
         if !(line.keyword("at") && line.keyword("least")) {
             return self.reader.unexpected(line, "`power of two` or `at least`", SHAPE);
         }
-        let least = line.until(&[',']);
+        let least = line.formula(&[',']);
         self.reader.formula(&least, &["k"])?;
         self.user_row.row.least.push((parameter.name.clone(), least.value.into()));
         Ok(())
@@ -117,7 +117,7 @@ impl Statements {
         let symbol = self.reader.one_of(&name, &known, "a symbol that a row can define")?;
         self.once(&format!("defines {}", symbol.name), &name.span, "remove one of them")?;
         self.reader.punct(line, '=', SHAPE)?;
-        let value = line.until(&[]);
+        let value = line.formula(&[]);
         // Options get their values after the symbols. A definition that depends on itself is an error of the plan.
         let earlier = SYMBOLS.iter().filter(|other| other.when <= symbol.when && other.name != symbol.name);
         let earlier: Vec<&str> = earlier.map(|other| other.name).collect();
