@@ -1,6 +1,6 @@
 //! Runs the steps of a frame in their order: clears, copies, passes, loops, exchanges and readbacks.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glow::HasContext as _;
 
@@ -40,13 +40,15 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
         let mut frame = Frame { host, scene, loops: Vec::new(), finished: BTreeMap::new(), samples: BTreeMap::new() };
         let mut at = 0;
         while let Some(step) = steps.get(at) {
-            frame.exchange(&step.exchanged);
-            let next = frame.step(step, at)?;
+            let pairs = frame.exchanged_now(&step.exchanged);
+            frame.exchange(&pairs);
+            let next = frame.step(step, at);
             // The names stand for their own memory again.
-            frame.exchange(&step.exchanged);
-            at = next.unwrap_or(at + 1);
+            frame.exchange(&pairs);
+            at = next?.unwrap_or(at + 1);
         }
-        frame.exchange(&ends);
+        let pairs = frame.exchanged_now(&ends);
+        frame.exchange(&pairs);
         Ok(())
     }
 
@@ -58,22 +60,22 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
         self.host.value(formula, self.iteration())
     }
 
-    /// Exchanges the pairs that are exchanged now.
-    fn exchange(&mut self, pairs: &[Exchange]) {
-        for pair in pairs {
-            let finished: u64 = pair.loops.iter().filter_map(|begin| self.finished.get(begin)).sum();
-            if (finished + u64::from(pair.odd)) % 2 == 1 {
-                self.host.exchange(&pair.resources);
-            }
-        }
+    /// Returns the pairs that are exchanged now: those of an odd number of finished iterations.
+    fn exchanged_now(&self, pairs: &[Exchange]) -> Vec<[String; 2]> {
+        let finished = |pair: &Exchange| pair.loops.iter().filter_map(|begin| self.finished.get(begin)).sum::<u64>();
+        let is_odd = |pair: &&Exchange| (finished(pair) + u64::from(pair.odd)) % 2 == 1;
+        pairs.iter().filter(is_odd).map(|pair| pair.resources.clone()).collect()
+    }
+
+    fn exchange(&mut self, pairs: &[[String; 2]]) {
+        pairs.iter().for_each(|pair| self.host.exchange(pair));
     }
 
     /// Runs a step. Returns the index of the next one if it is not the following.
     fn step(&mut self, step: &Step, at: usize) -> Result<Option<usize>, Error> {
         match &step.action {
-            Action::Clear { resource, value } => {
-                let texture = &self.host.resource(resource)?.texture;
-                let texel = texture.as_ref().map(|texture| texture.clear.clone()).unwrap_or_default();
+            Action::Clear { resource, value, texel } => {
+                let texel = texel.clone().unwrap_or_default();
                 self.host.memory(resource)?.clear(self.host.context, *value, &texel);
             }
             Action::Copy { from, to } => {
@@ -170,9 +172,11 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
         let gl = &self.host.context.gl;
         let memory = |name: &str| if name == "output" { Ok(self.host.output) } else { self.host.memory(name) };
         let targets: Vec<&str> = pass.state.targets.iter().map(|target| target.resource.as_str()).collect();
-        let others =
-            pass.uses.iter().filter(|(name, access)| *access == "attachment" && !targets.contains(&name.as_str()));
-        let others: Vec<Memory> = others.map(|(name, _)| memory(name)).collect::<Result<_, Error>>()?;
+        let used = pass.uses.iter().filter(|(_, access)| *access == "attachment").map(|(name, _)| name.as_str());
+        let depth = pass.state.depth.iter().map(|depth| depth.resource.as_str());
+        let stencil = pass.state.stencil.iter().map(|stencil| stencil.resource.as_str());
+        let others: BTreeSet<&str> = used.chain(depth).chain(stencil).filter(|name| !targets.contains(name)).collect();
+        let others: Vec<Memory> = others.into_iter().map(memory).collect::<Result<_, Error>>()?;
         let targets: Vec<Memory> = targets.into_iter().map(memory).collect::<Result<_, Error>>()?;
         // SAFETY: the context is current.
         unsafe {

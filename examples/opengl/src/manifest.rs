@@ -91,7 +91,6 @@ pub struct Resource {
 pub struct Texture {
     pub format: String,
     pub samples: String,
-    pub clear: serde_json::Value,
 }
 
 #[derive(Clone, Deserialize)]
@@ -112,7 +111,7 @@ pub struct Step {
 #[derive(Clone, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 pub enum Action {
-    Clear { resource: String, value: u32 },
+    Clear { resource: String, value: u32, texel: Option<serde_json::Value> },
     Copy { from: String, to: String },
     Pass(Box<Pass>),
     Loop { max_iterations: String, end: usize },
@@ -182,12 +181,14 @@ pub struct State {
 
 #[derive(Clone, Deserialize)]
 pub struct Depth {
+    pub resource: String,
     pub compare: String,
     pub write: bool,
 }
 
 #[derive(Clone, Deserialize)]
 pub struct Stencil {
+    pub resource: String,
     pub compare: String,
     pub fail: String,
     pub pass: String,

@@ -8,6 +8,9 @@
 mod cpu_image;
 #[path = "../../../tests/oracle/numbers.rs"]
 mod numbers;
+mod peeling;
+#[path = "../../../backends/run/cpu/tests/peeling_loop.rs"]
+mod peeling_loop;
 mod pixels;
 #[path = "../../../tests/oracle/reference.rs"]
 mod reference;

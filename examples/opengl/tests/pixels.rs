@@ -17,11 +17,11 @@ use crate::scene::{Quad, first_difference, image, quads, vertices};
 /// Odd and even sizes, a single pixel, and a single row and column.
 const SIZES: [[u32; 2]; 6] = [[13, 7], [16, 16], [1, 1], [31, 1], [1, 9], [37, 23]];
 
-const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
+pub const BACKGROUND: [f64; 3] = [0.2, 0.4, 0.6];
 
-const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+pub const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
-fn context() -> Context {
+pub fn context() -> Context {
     let context = Context::surfaceless();
     context.unwrap_or_else(|error| panic!("{error}; install Debian's packages libegl1 and libgl1-mesa-dri"))
 }
@@ -46,8 +46,18 @@ fn k_of(technique: &Technique) -> Option<u32> {
 
 /// Generates the GLSL passes of a variant and opens a host for them.
 fn host<'c>(context: &'c Context, variant: &Variant, size: [u32; 2]) -> Result<Host<'c>, Error> {
+    host_with(context, variant, &Registry::builtin(), size)
+}
+
+/// As [`host`], with the registry of a test.
+pub fn host_with<'c>(
+    context: &'c Context,
+    variant: &Variant,
+    registry: &Registry,
+    size: [u32; 2],
+) -> Result<Host<'c>, Error> {
     let request = Request { targets: &[target("glsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
-    let generation = generate(variant, &request, &Registry::builtin()).map_err(|error| Error(error.to_string()))?;
+    let generation = generate(variant, &request, registry).map_err(|error| Error(error.to_string()))?;
     let manifest = manifest(&generation, 0).to_string();
     let read = |path: &str| {
         let file = generation.files.iter().find(|file| file.path == path).unwrap();
@@ -56,7 +66,7 @@ fn host<'c>(context: &'c Context, variant: &Variant, size: [u32; 2]) -> Result<H
     Host::new(context, &manifest, &read, size)
 }
 
-fn inputs(host: &Host<'_>) -> Vec<String> {
+pub fn inputs(host: &Host<'_>) -> Vec<String> {
     host.vertex_inputs().iter().map(|input| input.name.clone()).collect()
 }
 

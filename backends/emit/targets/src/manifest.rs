@@ -236,7 +236,7 @@ fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
     let resource = &planned.resource;
     let samples = resource.extents.iter().find(|extent| extent.name == SAMPLE);
     let clear = match resource.init {
-        Init::Clear(word) => clear_value(format, word),
+        Init::Clear(word) => texel(format, word),
         _ => Value::Null,
     };
     json!({
@@ -250,7 +250,8 @@ fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
 /// The name of the extent that counts the samples of a texture.
 const SAMPLE: &str = "sample";
 
-fn clear_value(format: TextureFormat, word: u32) -> Value {
+/// Returns the channels of a texel that stores this word.
+fn texel(format: TextureFormat, word: u32) -> Value {
     match format {
         TextureFormat::R32Uint => json!([word]),
         TextureFormat::Rg16Uint => json!([word & 0xffff, word >> 16]),

@@ -3,10 +3,11 @@
 
 use fragbuf_codegen::{Action, Command, Decision, LoopId, LoopUntil, Parity, Plan, PlannedPass, Range, ResourceId};
 use fragbuf_templates::vocabulary::{
-    Access, Blend, Compare, DepthState, Kind, Objects, State, StencilOperation, StencilState,
+    Access, Blend, Compare, DepthState, Element, Kind, Objects, State, StencilOperation, StencilState,
 };
 use serde_json::{Map, Value, json};
 
+use super::texel;
 use crate::names::kebab_case;
 
 /// Returns the steps of a frame.
@@ -27,9 +28,7 @@ fn name(plan: &Plan, id: ResourceId) -> &str {
 fn step(plan: &Plan, command: &Command) -> Value {
     let mut step = match &command.action {
         Action::Pass(id) => pass_json(&plan.passes[id.0]),
-        Action::Clear { resource, value } => {
-            object(json!({ "do": "clear", "resource": name(plan, *resource), "value": value }))
-        }
+        Action::Clear { resource, value } => object(clear(plan, *resource, *value)),
         Action::Copy { from, to } => object(json!({ "do": "copy", "from": name(plan, *from), "to": name(plan, *to) })),
         Action::Host(decision) => object(host(plan, decision)),
         Action::Loop(id) => {
@@ -45,6 +44,14 @@ fn step(plan: &Plan, command: &Command) -> Value {
         step.insert("exchanged".into(), exchanged.into());
     }
     step.into()
+}
+
+fn clear(plan: &Plan, id: ResourceId, value: u32) -> Value {
+    let mut step = json!({ "do": "clear", "resource": name(plan, id), "value": value });
+    if let Element::Texture(format) = plan.resources[id.0].resource.element {
+        step["texel"] = texel(format, value);
+    }
+    step
 }
 
 fn object(value: Value) -> Map<String, Value> {
