@@ -22,6 +22,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 kind: ParameterType::PowerOfTwo,
                 default: "4".into(),
                 range: (2, 8),
+                is_retry_limit: false,
                 summary: "samples per pixel; every device supports 4, some 2 and 8, the CPU device all".into(),
             }],
             needs: vec![Feature::Coverage],

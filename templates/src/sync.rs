@@ -49,7 +49,7 @@ fn spin_lock() -> Row {
         calls: vec!["storage", "overflow", "counters"],
         provides: vec![Capability::MutualExclusion, Capability::SyncInShader],
         needs: vec![Feature::FragmentAtomics],
-        parameters: vec![Parameter::number(
+        parameters: vec![Parameter::retry_limit(
             "limit",
             "SPIN_LIMIT",
             "4096",

@@ -21,6 +21,7 @@ pub(crate) fn rows() -> Vec<Row> {
                 kind: ParameterType::Attribute,
                 default: "0".into(),
                 range: (0, u32::MAX),
+                is_retry_limit: false,
                 summary: "the attribute that decides, by its packed words [default: the first]".into(),
             }],
             ..Row::new(

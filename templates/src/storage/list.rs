@@ -47,7 +47,7 @@ pub(super) fn ordered_list() -> Row {
         // The list is sorted by key.
         implies: vec![("depth_key".into(), Capability::Sorted)],
         defaults: vec![("sync".into(), "slot_counter".into()), ("sort".into(), "none".into())],
-        parameters: vec![Parameter::number(
+        parameters: vec![Parameter::retry_limit(
             "retries",
             "LINK_TRIES",
             "4096",

@@ -44,7 +44,7 @@ pub(super) fn paged_list() -> Row {
                 (1, 256),
                 "fragments per page; a power of two avoids integer divisions",
             ),
-            Parameter::number(
+            Parameter::retry_limit(
                 "retries",
                 "PAGE_TRIES",
                 "4096",

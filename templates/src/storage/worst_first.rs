@@ -40,7 +40,7 @@ pub(super) fn revised_array() -> Row {
         requires: vec![Capability::MutualExclusion],
         needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
-        parameters: vec![Parameter::number(
+        parameters: vec![Parameter::retry_limit(
             "wait",
             "WAIT_LIMIT",
             "4096",

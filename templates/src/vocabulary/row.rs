@@ -159,6 +159,9 @@ pub struct Parameter {
     pub default: Formula,
     /// The least and the greatest value.
     pub range: (u32, u32),
+    /// Whether it limits the attempts of a fragment, which then times out and is counted. A timeout is no failure if the limit is
+    /// low. A row that declares timeouts as a hazard needs no mark.
+    pub is_retry_limit: bool,
     /// What it does.
     pub summary: Text,
 }
@@ -225,7 +228,19 @@ impl Parameter {
         summary: impl Into<Text>,
     ) -> Self {
         let (name, constant, summary) = (name.into(), constant.into(), summary.into());
-        Parameter { name, constant, kind: ParameterType::Number, default: default.into(), range, summary }
+        let (kind, default) = (ParameterType::Number, default.into());
+        Parameter { name, constant, kind, default, range, is_retry_limit: false, summary }
+    }
+
+    /// Makes a parameter that limits the attempts of a fragment, which then times out and is counted.
+    pub fn retry_limit(
+        name: impl Into<Text>,
+        constant: impl Into<Text>,
+        default: impl Into<Formula>,
+        range: (u32, u32),
+        summary: impl Into<Text>,
+    ) -> Self {
+        Parameter { is_retry_limit: true, ..Parameter::number(name, constant, default, range, summary) }
     }
 }
 

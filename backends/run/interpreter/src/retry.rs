@@ -1,19 +1,22 @@
 //! Retry counters: the words of a loop that only limit how often it is repeated.
 //!
-//! Input: the instructions of a program and their liveness. Output: per loop, the words that are incremented and compared with
-//! a constant, where the comparison only leaves the loop. Nothing else in the program depends on such a word, so two machines
-//! that differ in it alone behave alike until the limit is reached. The tests `progress` of the checker cover it.
+//! Input: the instructions of a program and their liveness. Output: per loop, the words that begin at a constant, change by one
+//! per attempt and are compared with constants, where the comparison only leaves the loop. Nothing else in the program depends on
+//! such a word, so two machines that differ in it alone behave alike until the limit is reached. The tests `progress` of the
+//! checker cover it.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod flow;
+
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::arithmetic::unary;
 use crate::live::Liveness;
 use crate::operation::{Op, OperandUse, Word};
-use crate::scalar::Binary;
 
-/// The least limit of a loop whose attempts [`Bytecode::is_same_attempt`](crate::Bytecode::is_same_attempt) ignores. A loop with
-/// a lower limit is short enough to be followed to its end.
+use flow::{Comparison, CounterUses, Domain, Flow};
+
+/// The least number of attempts of a loop that [`Bytecode::is_same_attempt`](crate::Bytecode::is_same_attempt) does not
+/// distinguish. A loop with fewer is short enough to be followed to its end.
 pub const LEAST_RETRY_LIMIT: u32 = 32;
 
 /// A loop with retry counters.
@@ -26,156 +29,80 @@ pub(crate) struct RetryLoop {
 
 /// Returns every loop that has a retry counter. `first_constant` is the first word of `constants`.
 pub(crate) fn retry_loops(ops: &[Op], live: &Liveness, first_constant: Word, constants: &[u32]) -> Vec<RetryLoop> {
+    let predecessors = predecessors(ops);
     let loops = ops.iter().enumerate().filter_map(|(at, op)| match op {
         Op::Jump { to } if (*to as usize) <= at => Some(*to as usize..at + 1),
         _ => None,
     });
     let with_counters = loops.map(|range| {
-        let analysis = LoopAnalysis { ops, live, range, first_constant, constants };
-        let counters = analysis.increments().into_iter().filter(|word| analysis.only_limits(*word)).collect();
-        RetryLoop { instructions: analysis.range.start as u32..analysis.range.end as u32, counters }
+        let flow = Flow { ops, live, range: range.clone(), first_constant, constants };
+        let is_counter = |word: &Word| {
+            let uses = flow.uses(*word);
+            uses.is_some_and(|uses| {
+                initial_values(&flow, &predecessors, *word).is_some_and(|from| has_many(&uses, from))
+            })
+        };
+        let counters = flow.candidates().into_iter().filter(is_counter).collect();
+        RetryLoop { instructions: range.start as u32..range.end as u32, counters }
     });
     with_counters.filter(|one| !one.counters.is_empty()).collect()
 }
 
-struct LoopAnalysis<'a> {
-    ops: &'a [Op],
-    live: &'a Liveness,
-    range: Range<usize>,
-    first_constant: Word,
-    constants: &'a [u32],
+/// Returns the instructions after which each instruction runs.
+fn predecessors(ops: &[Op]) -> Vec<Vec<usize>> {
+    let mut predecessors = vec![Vec::new(); ops.len()];
+    for (at, op) in ops.iter().enumerate() {
+        for next in op.successors(at).into_iter().flatten() {
+            if let Some(before) = predecessors.get_mut(next) {
+                before.push(at);
+            }
+        }
+    }
+    predecessors
 }
 
-impl LoopAnalysis<'_> {
-    /// Returns the variables that the loop increments or decrements by a constant.
-    fn increments(&self) -> Vec<Word> {
-        let steps = self.ops[self.range.clone()].iter().filter_map(|op| match *op {
-            Op::Binary { op: Binary::Add | Binary::Subtract, to, a, b } => {
-                (self.constant(a).is_some() || self.constant(b).is_some()).then_some(to)
-            }
-            _ => None,
-        });
-        let steps: Vec<Word> = steps.collect();
-        let mut variables: Vec<Word> = self.ops[self.range.clone()]
-            .iter()
-            .filter_map(|op| match *op {
-                Op::Copy { to, from, count: 1 } if steps.contains(&from) => Some(to),
-                _ => None,
-            })
-            .collect();
-        variables.sort_unstable();
-        variables.dedup();
-        variables
-    }
-
-    fn constant(&self, word: Word) -> Option<u32> {
-        self.constants.get(word.checked_sub(self.first_constant)? as usize).copied()
-    }
-
-    /// Returns whether the loop uses a variable for nothing but its limit, and nothing after the loop uses it.
-    fn only_limits(&self, variable: Word) -> bool {
-        // The words that are derived from the variable before each instruction. Words are reused, so they differ.
-        let mut derived: BTreeMap<usize, BTreeSet<Word>> = BTreeMap::from([(self.range.start, [variable].into())]);
-        let mut pending = vec![self.range.start];
-        while let Some(at) = pending.pop() {
-            let before = derived.get(&at).cloned().unwrap_or_default();
-            let Some(after) = self.derived_after(at, variable, before) else { return false };
-            for next in self.ops[at].successors(at).into_iter().flatten() {
-                if !self.range.contains(&next) {
-                    if after.iter().any(|word| self.live.is_live(next, *word)) {
-                        return false;
-                    }
-                    continue;
-                }
-                let is_known = derived.contains_key(&next);
-                let words = derived.entry(next).or_default();
-                let count = words.len();
-                words.extend(&after);
-                if !is_known || words.len() > count {
-                    pending.push(next);
-                }
-            }
-        }
-        true
-    }
-
-    /// Returns the words that are derived from the variable after an instruction. `None`: it uses one for something else, or
-    /// sets the variable to anything but such a word or a constant.
-    fn derived_after(&self, at: usize, variable: Word, mut derived: BTreeSet<Word>) -> Option<BTreeSet<Word>> {
-        let (mut reads, mut written) = (false, Vec::new());
-        let mut op = self.ops[at];
-        op.visit_operands(&mut |touch, first, count| match touch {
-            OperandUse::Read => reads |= (*first..*first + count).any(|word| derived.contains(&word)),
-            OperandUse::Write | OperandUse::WriteSome => written.extend(*first..*first + count),
-        });
-        let result = if reads { self.result(at, &derived)? } else { None };
-        let sets_constant = matches!(op, Op::Copy { from, count: 1, .. } if self.constant(from).is_some());
-        if written.contains(&variable) && result != Some(variable) && !sets_constant {
+/// Returns the values of a variable when the loop begins. `None`: one is not constant.
+fn initial_values(flow: &Flow<'_>, predecessors: &[Vec<usize>], variable: Word) -> Option<BTreeSet<u32>> {
+    let (mut values, mut seen) = (BTreeSet::new(), BTreeSet::new());
+    let mut pending = vec![flow.range.start];
+    while let Some(at) = pending.pop() {
+        if at == 0 {
             return None;
         }
-        written.iter().for_each(|word| {
-            derived.remove(word);
-        });
-        derived.extend(result);
-        Some(derived)
-    }
-
-    /// Returns the word that an instruction derives from such words. The outer `None`: it uses them for something else.
-    fn result(&self, at: usize, derived: &BTreeSet<Word>) -> Option<Option<Word>> {
-        match self.ops[at] {
-            Op::Copy { to, count: 1, .. } | Op::Unary { to, .. } => Some(Some(to)),
-            Op::Binary { op, to, a, b } => {
-                let constant = self.constant(a).or(self.constant(b));
-                let is_allowed = match op {
-                    Binary::Add | Binary::Subtract => constant.is_some(),
-                    Binary::LessU
-                    | Binary::LessEqualU
-                    | Binary::LessS
-                    | Binary::LessEqualS
-                    | Binary::Equal
-                    | Binary::NotEqual => {
-                        constant.is_some_and(|limit| (limit as i32).unsigned_abs() >= LEAST_RETRY_LIMIT)
-                    }
-                    Binary::And | Binary::Or => derived.contains(&a) && derived.contains(&b),
-                    _ => false,
-                };
-                is_allowed.then_some(Some(to))
-            }
-            Op::JumpUnless { to, .. } => (self.leaves(at + 1) || self.leaves(to as usize)).then_some(None),
-            _ => None,
-        }
-    }
-
-    /// Returns whether an instruction leads out of the loop, and on the way there are only constants and jumps.
-    fn leaves(&self, mut at: usize) -> bool {
-        let mut known: BTreeMap<Word, u32> = BTreeMap::new();
-        for _ in 0..self.range.len() {
-            let value = |word: Word| self.constant(word).or_else(|| known.get(&word).copied());
-            match self.ops.get(at) {
-                _ if !self.range.contains(&at) => return true,
-                Some(Op::Jump { to }) => at = *to as usize,
-                Some(Op::JumpUnless { condition, to }) => match value(*condition) {
-                    Some(0) => at = *to as usize,
-                    Some(_) => at += 1,
-                    None => return false,
-                },
-                Some(Op::Copy { to, from, count: 1 }) => match value(*from) {
-                    Some(value) => {
-                        known.insert(*to, value);
-                        at += 1;
-                    }
-                    None => return false,
-                },
-                Some(Op::Unary { op, to, a }) => match value(*a) {
-                    Some(value) => {
-                        known.insert(*to, unary(*op, value));
-                        at += 1;
-                    }
-                    None => return false,
-                },
-                _ => return false,
+        for &before in predecessors[at].iter().filter(|before| at != flow.range.start || !flow.range.contains(before)) {
+            let mut op = flow.ops[before];
+            let mut is_written = false;
+            op.visit_operands(&mut |touch, first, count| {
+                is_written |= touch != OperandUse::Read && (*first..*first + count).contains(&variable);
+            });
+            if is_written {
+                values.insert(flow.copied_constant(before)?);
+            } else if seen.insert(before) {
+                pending.push(before);
             }
         }
-        false
     }
+    Some(values)
+}
+
+/// Returns whether a counter always changes in one direction, and no comparison changes its result within
+/// [`LEAST_RETRY_LIMIT`] attempts.
+fn has_many(uses: &CounterUses, initial: BTreeSet<u32>) -> bool {
+    let [step] = uses.steps.iter().copied().collect::<Vec<_>>()[..] else { return false };
+    let initial: BTreeSet<u32> = initial.union(&uses.resets).copied().collect();
+    let attempts = |comparison: &Comparison| initial.iter().map(|from| attempts(*from, step > 0, *comparison)).min();
+    uses.comparisons.iter().filter_map(attempts).min().is_some_and(|least| least >= LEAST_RETRY_LIMIT)
+}
+
+/// Returns after how many steps of one the result of a comparison may change: at its constant, or where values wrap around.
+fn attempts(from: u32, is_up: bool, comparison: Comparison) -> u32 {
+    let distance = |to: u32| if is_up { to.wrapping_sub(from) } else { from.wrapping_sub(to) };
+    let last = match (comparison.domain, is_up) {
+        (Domain::Unsigned, true) => u32::MAX,
+        (Domain::Unsigned, false) => 0,
+        (Domain::Signed, true) => i32::MAX as u32,
+        (Domain::Signed, false) => i32::MIN as u32,
+        (Domain::Equality, _) => comparison.constant,
+    };
+    distance(comparison.constant).min(distance(last))
 }

@@ -7,7 +7,6 @@ use fragbuf_interpreter::{Buffer, Bytecode, WordAddress};
 
 use crate::memory::memory_index;
 use crate::model::Model;
-use crate::search::Property;
 
 /// What every state of a search shares.
 #[derive(Debug)]
@@ -112,15 +111,6 @@ impl<'p> SearchContext<'p> {
             BufferLocation::State { first, .. } => Some(first + address.word as usize),
             BufferLocation::ReadOnly(_) => None,
         }
-    }
-
-    /// Returns, per ordered word, whether a property observes it at every instant.
-    pub(crate) fn watched(&self, property: &dyn Property) -> Vec<bool> {
-        let mut watched = vec![false; self.ordered];
-        for range in property.watched() {
-            watched[range.start.min(self.ordered)..range.end.min(self.ordered)].fill(true);
-        }
-        watched
     }
 
     /// Returns index in memory, first word in a state and number of words of every buffer that states hold.

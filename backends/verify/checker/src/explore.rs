@@ -5,7 +5,7 @@
 //! order of steps that do not affect each other (`reduction.rs`).
 
 use std::collections::hash_map::Entry;
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::hash::BuildHasherDefault;
 
 use fragbuf_interpreter::Machine;
@@ -13,9 +13,11 @@ use fragbuf_interpreter::Machine;
 use crate::context::SearchContext;
 use crate::fingerprint::{Identity, fingerprint};
 use crate::graph::StateGraph;
+use crate::progress::RunOn;
 use crate::reduction::independent;
 use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, Step};
 use crate::state::State;
+use crate::watched::WatchedWords;
 
 /// Searches from `first`, up to `limit` states.
 pub(crate) fn explore(
@@ -27,28 +29,33 @@ pub(crate) fn explore(
     let mut exploration = Exploration {
         context,
         machine: Machine::new(context.program),
+        watched: WatchedWords::new(context, property),
         first: first.clone(),
         numbers: HashMap::default(),
         graph: StateGraph::default(),
         queue: VecDeque::new(),
+        undecided: BTreeSet::new(),
         result: SearchResult::default(),
     };
     let running = context.running(&first);
     exploration.visit(first, None);
     let failure = exploration.run(property, limit, &running);
-    let is_exhaustive = exploration.queue.is_empty() || failure.is_some();
+    let is_exhaustive = failure.is_some() || (exploration.queue.is_empty() && exploration.undecided.is_empty());
     SearchResult { is_exhaustive, failure, ..exploration.result }
 }
 
 struct Exploration<'a, 'p> {
     context: &'a SearchContext<'p>,
     machine: Machine<'p>,
+    watched: WatchedWords,
     first: State,
     /// The number of each visited state, by its fingerprint.
     numbers: HashMap<u128, u32, BuildHasherDefault<Identity>>,
     graph: StateGraph,
     /// States whose steps have not been followed.
     queue: VecDeque<(State, u32)>,
+    /// The states in which no fragment moves on, but the loop of one is too long to decide whether it waits.
+    undecided: BTreeSet<u32>,
     result: SearchResult,
 }
 
@@ -93,14 +100,18 @@ impl Exploration<'_, '_> {
                 }
             }
             let endless = self.graph.endless()?;
-            if endless.idle.iter().any(|number| self.run_on_from(*number)) {
-                continue;
+            if endless.idle.is_empty() {
+                return self.failure(endless.first, None, FailureKind::Livelock(running.to_vec()));
             }
-            let (number, kind) = match endless.idle.first() {
-                Some(idle) => (*idle, FailureKind::Deadlock(self.running_in(*idle))),
-                None => (endless.first, FailureKind::Livelock(running.to_vec())),
-            };
-            return self.failure(number, None, kind);
+            match self.run_on_from_any(&endless.idle) {
+                Err(failure) => return Some(failure),
+                Ok(true) => {}
+                Ok(false) => {
+                    let waits = endless.idle.iter().find(|number| !self.undecided.contains(number)).copied()?;
+                    let kind = FailureKind::Deadlock(self.running_in(waits));
+                    return self.failure(waits, None, kind);
+                }
+            }
         }
     }
 
@@ -118,7 +129,7 @@ impl Exploration<'_, '_> {
         {
             return self.failure(number, None, FailureKind::Deadlock(vec![helper]));
         }
-        if let Some((fragment, is_in_loop)) = independent(self.context, state, &running) {
+        if let Some((fragment, is_in_loop)) = independent(self.context, &self.watched, state, &running) {
             match self.take(state, number, &[fragment], property) {
                 Err(failure) => return Some(failure),
                 // A loop of independent steps alone would keep the other fragments from running.
@@ -131,8 +142,11 @@ impl Exploration<'_, '_> {
             Ok(moves) if moves.other => return None,
             Ok(_) => {}
         }
-        let continues = self.run_on(state, number, &running);
-        if continues { None } else { self.failure(number, None, FailureKind::Deadlock(running)) }
+        match self.run_on(state, number, &running) {
+            Err(failure) => Some(failure),
+            Ok(moves) if moves.other || self.undecided.contains(&number) => None,
+            Ok(_) => self.failure(number, None, FailureKind::Deadlock(running)),
+        }
     }
 
     /// Takes every step of some fragments.
@@ -150,7 +164,7 @@ impl Exploration<'_, '_> {
                 let stepped = match self.context.step(&mut self.machine, state, fragment, choice) {
                     Ok(stepped) => stepped,
                     Err(error) => {
-                        return Err(self.failed(number, Some(step), FailureKind::of(error, fragment)));
+                        return Err(self.failed(number, Some(step), FailureKind::Step(fragment, error)));
                     }
                 };
                 if stepped.state.words != state.words
@@ -165,25 +179,37 @@ impl Exploration<'_, '_> {
         Ok(moves)
     }
 
-    /// Runs each fragment on to the limit of its loop; returns whether one comes to another state.
-    fn run_on(&mut self, state: &State, number: u32, running: &[usize]) -> bool {
-        let mut moves = Moves::default();
+    /// Lets each fragment run on alone. Where none moves, the state is undecided if the loop of one is too long.
+    fn run_on(&mut self, state: &State, number: u32, running: &[usize]) -> Result<Moves, Failure> {
+        let (mut moves, mut is_decided) = (Moves::default(), true);
         for &fragment in running {
-            if let Some(next) = self.context.run_on(&mut self.machine, state, fragment) {
-                let (next, is_new) = self.visit(next, Some((number, (fragment, RUN_ON), true)));
-                moves = Moves { other: moves.other || next != number, new: moves.new || is_new };
+            let step = (fragment, RUN_ON);
+            match self.context.run_on(&mut self.machine, state, fragment) {
+                RunOn::Moved(next) => {
+                    let (next, is_new) = self.visit(next, Some((number, step, true)));
+                    moves = Moves { other: moves.other || next != number, new: moves.new || is_new };
+                }
+                RunOn::Waits => {}
+                RunOn::TooLong => is_decided = false,
+                RunOn::Failed(kind) => return Err(self.failed(number, Some(step), kind)),
             }
         }
-        moves.other
+        if !moves.other && !is_decided {
+            self.undecided.insert(number);
+        }
+        Ok(moves)
     }
 
-    /// The same for a state that is no longer in memory; returns whether one comes to a new state.
-    fn run_on_from(&mut self, number: u32) -> bool {
-        let Some(state) = self.replay(number) else { return false };
-        let before = self.graph.count();
-        let running = self.context.running(&state);
-        self.run_on(&state, number, &running);
-        self.graph.count() > before
+    /// The same for states that are no longer in memory, up to one from which a fragment moves; returns whether there is one.
+    fn run_on_from_any(&mut self, numbers: &[u32]) -> Result<bool, Failure> {
+        for &number in numbers.iter().filter(|number| !self.undecided.contains(number)).collect::<Vec<_>>() {
+            let Some(state) = self.replay(number) else { continue };
+            let running = self.context.running(&state);
+            if self.run_on(&state, number, &running)?.other {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     fn running_in(&mut self, number: u32) -> Vec<usize> {

@@ -1,10 +1,11 @@
 //! Footprints: what a step accesses, and whether the order of two steps of different fragments matters.
 //!
-//! Input: a fragment's next event. Output: its footprint. A [`Summary`] holds the footprints of all steps that follow a state.
+//! Input: a fragment's next event. Output: its footprint. [`Summaries`] hold, per state, the footprints of all steps that follow it.
 
-use fragbuf_interpreter::{Access, Event};
+use fragbuf_interpreter::Event;
 
 use crate::context::SearchContext;
+use crate::watched::WatchedWords;
 
 /// What a step accesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,15 +18,15 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
-    /// Returns the footprint of a fragment's next event. `watched`: the words that the property observes at every instant.
-    pub(crate) fn new(context: &SearchContext<'_>, fragment: usize, event: &Event, watched: &[bool]) -> Self {
+    /// Returns the footprint of a fragment's next event.
+    pub(crate) fn new(context: &SearchContext<'_>, fragment: usize, event: &Event, watched: &WatchedWords) -> Self {
         let is_helper = context.helper == Some(fragment);
         let local = Footprint { object: None, writes: false, is_watched: false };
         match event {
             Event::Access(access) => {
                 let Some(word) = context.word(access.address) else { return local };
                 let writes = access.writes() && !is_helper;
-                let is_watched = writes && words(access, word).any(|word| watched.get(word).copied().unwrap_or(false));
+                let is_watched = writes && watched.contains(context, access);
                 Footprint { object: Some(word as u32), writes, is_watched }
             }
             Event::CriticalBegin | Event::CriticalEnd if !is_helper => {
@@ -40,10 +41,6 @@ impl Footprint {
         let same = self.object.is_some() && self.object == other.object;
         (same && (self.writes || other.writes)) || (self.is_watched && other.is_watched)
     }
-}
-
-fn words(access: &Access, word: usize) -> std::ops::Range<usize> {
-    word..word + usize::from(access.words)
 }
 
 /// The footprints of the steps of each fragment after a state, as bits: per fragment, whether it reads and whether it writes

@@ -63,7 +63,10 @@ mod specification;
 mod state;
 mod stream;
 mod subject;
+#[cfg(test)]
+mod test_program;
 mod verdict;
+mod watched;
 
 pub use frame_memory::{FrameMemory, ReadOutError};
 pub use model::Model;

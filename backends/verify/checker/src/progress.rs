@@ -9,7 +9,7 @@ use std::rc::Rc;
 use fragbuf_interpreter::{Machine, Reply};
 
 use crate::context::SearchContext;
-use crate::search::{RUN_ON, Step};
+use crate::search::{FailureKind, RUN_ON, Step};
 use crate::state::{State, Status, StepError};
 
 /// An earlier status of a fragment, since which the fragment has changed nothing (Brent's algorithm finds its cycles).
@@ -33,7 +33,19 @@ pub(crate) struct Stepped {
     pub(crate) recurs: bool,
 }
 
-/// The most steps of [`SearchContext::run_on`].
+/// What comes of a fragment that runs while no other does.
+pub(crate) enum RunOn {
+    /// It changes something, leaves its loop or ends.
+    Moved(State),
+    /// It waits: it cannot take a step, or comes back to a status in which it has been.
+    Waits,
+    /// It has done neither after the greatest number of steps that is followed.
+    TooLong,
+    /// A step fails.
+    Failed(FailureKind),
+}
+
+/// The most steps of [`SearchContext::run_on`]. A loop may have more attempts: rows allow up to 2^24.
 const LONGEST: u32 = 1 << 17;
 
 impl SearchContext<'_> {
@@ -75,39 +87,45 @@ impl SearchContext<'_> {
         false
     }
 
-    /// Runs a fragment while no other runs, until it changes something, leaves its loop or ends. `None`: it comes back to a
-    /// status in which it has been, or fails.
-    pub(crate) fn run_on(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> Option<State> {
+    /// Runs a fragment while no other runs, until it changes something, leaves its loop or ends. Its accesses observe the latest
+    /// writes.
+    pub(crate) fn run_on(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> RunOn {
         let mut now = state.clone();
         let (mut earlier, mut limit) = (now.fragments[fragment].clone(), 1);
         for steps in 0..LONGEST {
             match &now.fragments[fragment] {
                 Status::Before { at, .. } if steps == 0 || self.program.is_in_loop(*at) => {}
-                _ => return Some(now),
+                _ => return RunOn::Moved(now),
             }
             if self.choices(&now, fragment) == 0 {
-                return None;
+                return RunOn::Waits;
             }
-            let (next, _) = self.step_exactly(machine, &now, fragment, 0).ok()?;
+            let next = match self.step_exactly(machine, &now, fragment, 0) {
+                Ok((next, _)) => next,
+                Err(error) => return RunOn::Failed(FailureKind::Step(fragment, error)),
+            };
             let has_effect = !next.has_memory_of(&now);
             now = next;
             if has_effect {
-                return Some(now);
+                return RunOn::Moved(now);
             }
             if now.fragments[fragment] == earlier {
-                return None;
+                return RunOn::Waits;
             }
             if steps == limit {
                 (earlier, limit) = (now.fragments[fragment].clone(), 2 * limit);
             }
         }
-        None
+        RunOn::TooLong
     }
 
     /// Performs a step of a schedule again. `None`: it fails.
     pub(crate) fn replay(&self, machine: &mut Machine<'_>, state: &State, step: Step) -> Option<State> {
         match step {
-            (fragment, RUN_ON) => self.run_on(machine, state, fragment),
+            (fragment, RUN_ON) => match self.run_on(machine, state, fragment) {
+                RunOn::Moved(next) => Some(next),
+                RunOn::Waits | RunOn::TooLong | RunOn::Failed(_) => None,
+            },
             (fragment, choice) => self.step(machine, state, fragment, choice).ok().map(|stepped| stepped.state),
         }
     }

@@ -7,6 +7,7 @@
 use fragbuf_interpreter::Machine;
 
 use crate::context::SearchContext;
+use crate::progress::RunOn;
 use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, StateVerdict, Step};
 use crate::state::State;
 
@@ -46,7 +47,8 @@ struct RandomWalk<'a, 'p> {
 }
 
 impl<'p> RandomWalk<'_, 'p> {
-    /// Runs the schedule; returns its final state with the verdict. `Ok(None)`: it is longer than [`LONGEST`].
+    /// Runs the schedule; returns its final state with the verdict. `Ok(None)`: it is longer than [`LONGEST`], or a loop is
+    /// too long to run to its end.
     fn run(
         &mut self,
         machine: &mut Machine<'p>,
@@ -65,8 +67,7 @@ impl<'p> RandomWalk<'_, 'p> {
             let able = |at: &usize| self.context.choices(&state, *at) > 0 && !waits[*at];
             let able: Vec<usize> = running.iter().copied().filter(able).collect();
             if able.is_empty() {
-                let (fragment, next) = self.run_on(machine, &state, &running).ok_or(FailureKind::Deadlock(running))?;
-                self.steps.push((fragment, RUN_ON));
+                let Some(next) = self.run_on(machine, &state, &running)? else { return Ok(None) };
                 state = next;
                 waits.fill(false);
                 continue;
@@ -75,7 +76,7 @@ impl<'p> RandomWalk<'_, 'p> {
             let choice = self.rng.below(self.context.choices(&state, fragment));
             self.steps.push((fragment, choice));
             let stepped = match self.context.step(machine, &state, fragment, choice) {
-                Err(error) => return Err(FailureKind::of(error, fragment)),
+                Err(error) => return Err(FailureKind::Step(fragment, error)),
                 Ok(stepped) => stepped,
             };
             if stepped.state.words != state.words
@@ -92,9 +93,30 @@ impl<'p> RandomWalk<'_, 'p> {
         Ok(None)
     }
 
-    /// Runs the first fragment on that is not kept in its loop for ever.
-    fn run_on(&self, machine: &mut Machine<'p>, state: &State, running: &[usize]) -> Option<(usize, State)> {
-        running.iter().find_map(|&fragment| Some((fragment, self.context.run_on(machine, state, fragment)?)))
+    /// Lets the first fragment run on alone that then changes something or leaves its loop; returns the state after that.
+    /// `None`: there is none, but a loop is too long to decide whether its fragment waits.
+    fn run_on(
+        &mut self,
+        machine: &mut Machine<'p>,
+        state: &State,
+        running: &[usize],
+    ) -> Result<Option<State>, FailureKind> {
+        let mut is_decided = true;
+        for &fragment in running {
+            match self.context.run_on(machine, state, fragment) {
+                RunOn::Moved(next) => {
+                    self.steps.push((fragment, RUN_ON));
+                    return Ok(Some(next));
+                }
+                RunOn::Waits => {}
+                RunOn::TooLong => is_decided = false,
+                RunOn::Failed(kind) => {
+                    self.steps.push((fragment, RUN_ON));
+                    return Err(kind);
+                }
+            }
+        }
+        if is_decided { Err(FailureKind::Deadlock(running.to_vec())) } else { Ok(None) }
     }
 
     fn pick(&mut self, able: &[usize], priorities: &mut [u32]) -> usize {

@@ -1,9 +1,10 @@
 //! Dynamic partial-order reduction (Flanagan and Godefroid 2005), with recognised states (Yang et al. 2008).
 //!
 //! Input: a first state and a property. Output: whether a failure exists. The search is depth first. In each state it follows
-//! one fragment, and others only if a later step of theirs conflicts with a step that was followed there, so that another order
-//! may have another outcome. When it comes to a state that it has visited, it compares the summary of the steps after that
-//! state with the steps that lead there now. A failure, a deadlock and a cycle are left to the search of all interleavings,
+//! one fragment. If the step of that fragment can come first (`reduction.rs`), no other is followed. Otherwise another fragment
+//! is followed if a later step of it conflicts with a step that was followed there and nothing orders the two, so that another
+//! order may have another outcome. A step that can come first orders no later step. When the search comes to a state that it
+//! has visited, it compares the summary of the steps after that state with the steps that lead there now. A failure, a deadlock and a cycle are left to the search of all interleavings,
 //! which finds the shortest schedule.
 
 use std::collections::HashMap;
@@ -20,6 +21,7 @@ use crate::graph::StateGraph;
 use crate::reduction::independent;
 use crate::search::{Failure, FailureKind, Property, SearchResult};
 use crate::state::{State, Status};
+use crate::watched::WatchedWords;
 
 /// Searches from `first`, up to `limit` states.
 pub(crate) fn explore_reduced(
@@ -35,7 +37,7 @@ pub(crate) fn explore_reduced(
     let mut search = ReducedSearch {
         context,
         machine: Machine::new(context.program),
-        watched: context.watched(property),
+        watched: WatchedWords::new(context, property),
         numbers: HashMap::default(),
         depths: Vec::new(),
         incomplete: HashMap::new(),
@@ -68,8 +70,7 @@ struct Undecided(Option<Failure>);
 struct ReducedSearch<'a, 'p> {
     context: &'a SearchContext<'p>,
     machine: Machine<'p>,
-    /// The words that the property observes at every instant.
-    watched: Vec<bool>,
+    watched: WatchedWords,
     numbers: HashMap<u128, u32, BuildHasherDefault<Identity>>,
     /// Per state, its depth in the stack, or [`DONE`].
     depths: Vec<u32>,
@@ -131,9 +132,9 @@ impl ReducedSearch<'_, '_> {
         let running = self.context.running(&state);
         let able: Vec<usize> =
             running.iter().copied().filter(|fragment| self.context.choices(&state, *fragment) > 0).collect();
-        let alone = independent(self.context, &state, &running).map(|(fragment, _)| fragment);
+        let alone = independent(self.context, &self.watched, &state, &running).map(|(fragment, _)| fragment);
         let first = alone.or(last.filter(|last| able.contains(last))).or(able.first().copied());
-        let local = Footprint::new(self.context, 0, &fragbuf_interpreter::Event::Fence, &[]);
+        let local = Footprint::new(self.context, 0, &fragbuf_interpreter::Event::Fence, &self.watched);
         self.stack.push(Visit {
             number,
             able: able.iter().map(|fragment| 1 << fragment).sum(),
@@ -234,7 +235,9 @@ impl ReducedSearch<'_, '_> {
     fn clock_of(&self, top: usize, fragment: usize, footprint: Footprint) -> Vec<u32> {
         let count = self.stack[top].state.fragments.len();
         let mut clock = self.stack[top].clocks[fragment * count..(fragment + 1) * count].to_vec();
-        for earlier in self.stack[..top].iter().filter(|earlier| earlier.footprint.conflicts(footprint)) {
+        // A step that can come first does not order the steps that conflict with it.
+        let orders = |earlier: &&Visit| !earlier.is_alone && earlier.footprint.conflicts(footprint);
+        for earlier in self.stack[..top].iter().filter(orders) {
             clock.iter_mut().zip(&earlier.clock).for_each(|(one, other)| *one = (*one).max(*other));
         }
         clock[fragment] = top as u32 + 1;
@@ -260,7 +263,7 @@ impl ReducedSearch<'_, '_> {
         visit.choice += 1;
         let stepped = match self.context.step(&mut self.machine, &visit.state, fragment, choice) {
             Ok(stepped) => stepped,
-            Err(error) => return Err(self.failed(FailureKind::of(error, fragment))),
+            Err(error) => return Err(self.failed(FailureKind::Step(fragment, error))),
         };
         let visit = &self.stack[top];
         if stepped.state.words != visit.state.words

@@ -1,36 +1,45 @@
 //! Partial-order reduction of the relaxed model: steps that can come first without losing a behaviour.
 //!
 //! Input: a state. Output: a fragment whose next step may be followed alone, before the steps of all others. Then the other
-//! orders of that step need not be explored. Three kinds of steps can come first:
+//! orders of that step need not be explored. These steps can come first:
 //!
-//! * A fence, and the end of a critical section: they change the views of their fragment only, and disable no other step.
+//! * A fence: it changes the views of its fragment only.
+//! * The end of a critical section: it changes the views of its fragment only, and lets others enter, which they can do in no
+//!   earlier state.
 //! * A plain access: it observes and follows the last write. A conflicting access that is not ordered by happens-before is a
 //!   data race in either order.
 //! * An atomic store: no load has to observe it, and every store and read-modify-write can still take the positions before it
 //!   in modification order that it could take without it.
 //!
 //! Atomic loads and read-modify-writes cannot come first, because they may observe writes that other fragments execute later.
+//! Nor can a store of a word that the property observes at every instant: memory between two such stores depends on their order.
 
 use fragbuf_interpreter::{Event, Operation};
 
 use crate::context::SearchContext;
 use crate::model::Model;
 use crate::state::{State, Status};
+use crate::watched::WatchedWords;
 
 /// Returns a fragment whose next step can come first, and whether that step is in a loop.
-pub(crate) fn independent(context: &SearchContext<'_>, state: &State, running: &[usize]) -> Option<(usize, bool)> {
+pub(crate) fn independent(
+    context: &SearchContext<'_>,
+    watched: &WatchedWords,
+    state: &State,
+    running: &[usize],
+) -> Option<(usize, bool)> {
     if context.model != Model::Relaxed || !context.is_reduced {
         return None;
     }
     running.iter().find_map(|&fragment| match &state.fragments[fragment] {
-        Status::Before { event, at, .. } if comes_first(context, event, fragment) => {
+        Status::Before { event, at, .. } if comes_first(context, watched, event, fragment) => {
             Some((fragment, context.program.is_in_loop(*at)))
         }
         _ => None,
     })
 }
 
-fn comes_first(context: &SearchContext<'_>, event: &Event, fragment: usize) -> bool {
+fn comes_first(context: &SearchContext<'_>, watched: &WatchedWords, event: &Event, fragment: usize) -> bool {
     // A helper invocation observes what memory holds at the time, so the order of all writes matters to it.
     let writes_first = context.helper.is_none();
     match event {
@@ -39,9 +48,13 @@ fn comes_first(context: &SearchContext<'_>, event: &Event, fragment: usize) -> b
         Event::CriticalEnd => true,
         Event::Access(access) => match access.operation {
             Operation::Load => !access.is_atomic,
-            Operation::Store => writes_first,
+            Operation::Store => writes_first && !watched.contains(context, access),
             Operation::Atomic(_) => false,
         },
         Event::CriticalBegin | Event::Barrier => false,
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests;

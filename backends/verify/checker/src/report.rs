@@ -14,6 +14,7 @@ use crate::case_setup::CaseSetup;
 use crate::context::SearchContext;
 use crate::memory::memory_index;
 use crate::programs::CheckedSource;
+use crate::progress::RunOn;
 use crate::search::{Failure, FailureKind, RUN_ON};
 use crate::state::{State, Status, StepError};
 
@@ -64,9 +65,9 @@ pub(crate) fn steps(
         let Status::Before { event, at, .. } = state.fragments[*fragment].clone() else { break };
         let location = location(context.program, at, source);
         if *choice == RUN_ON {
-            let action = "repeats its loop up to the limit, because nothing changes any more".to_owned();
-            steps.push(ScheduleStep { fragment: letter(*fragment), action, location });
-            let Some(next) = context.run_on(&mut machine, &state, *fragment) else { break };
+            let action = "runs on alone, and observes the latest writes, until it changes something or leaves its loop";
+            steps.push(ScheduleStep { fragment: letter(*fragment), action: action.to_owned(), location });
+            let RunOn::Moved(next) = context.run_on(&mut machine, &state, *fragment) else { break };
             state = next;
             continue;
         }
@@ -158,11 +159,6 @@ pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source:
     match kind {
         FailureKind::FinalState(text) => text.clone(),
         FailureKind::Instant(text) => format!("at this instant, {text}"),
-        FailureKind::DataRace(one, other) => format!(
-            "data race: {} and {} access the same word, at least one writes, at least one access is not atomic, and nothing orders them",
-            letter(*one),
-            letter(*other)
-        ),
         FailureKind::Deadlock(fragments) => {
             format!("deadlock: {} waits for a value that no running fragment can change", letters(fragments))
         }
@@ -170,15 +166,18 @@ pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source:
             format!("livelock: no schedule from this state lets {} all finish", letters(fragments))
         }
         FailureKind::Step(fragment, error) => {
-            let action = match error {
+            let fragment = letter(*fragment);
+            match error {
                 StepError::OutOfBounds(at) => {
-                    format!("accesses an index out of bounds at {}", location(context.program, *at, source))
+                    format!("{fragment} accesses an index out of bounds at {}", location(context.program, *at, source))
                 }
-                StepError::Endless => "loops without end and without accessing memory".to_owned(),
-                StepError::Barrier => "reaches a barrier".to_owned(),
-                StepError::DataRace(other) => format!("and {} are a data race", letter(*other)),
-            };
-            format!("{} {action}", letter(*fragment))
+                StepError::Endless => format!("{fragment} loops without end and without accessing memory"),
+                StepError::Barrier => format!("{fragment} reaches a barrier"),
+                StepError::DataRace(other) => format!(
+                    "data race: {} and {fragment} access the same word, at least one writes, at least one access is not atomic, and nothing orders them",
+                    letter(*other)
+                ),
+            }
         }
     }
 }

@@ -30,14 +30,14 @@ pub(crate) enum StateVerdict {
 /// One step: the fragment, and the number of the way in which its event is performed, or [`RUN_ON`].
 pub(crate) type Step = (usize, u32);
 
-/// A step in which a fragment repeats its loop up to the loop's limit, because no other fragment changes what it reads.
+/// A step in which a fragment runs on alone, and observes the latest writes, until it changes something or leaves its loop.
 pub(crate) const RUN_ON: u32 = u32::MAX;
 
 /// What a search found.
 #[derive(Debug, Default)]
 pub(crate) struct SearchResult {
     pub(crate) states: usize,
-    /// Whether every state was followed; false if some were beyond the limit.
+    /// Whether every state was followed and decided; false if some were beyond the limit, or a loop was too long to run to its end.
     pub(crate) is_exhaustive: bool,
     pub(crate) failure: Option<Failure>,
     /// The first wrong final state that the declared hazards permit.
@@ -78,16 +78,6 @@ pub(crate) struct Failure {
     pub(crate) kind: FailureKind,
 }
 
-impl FailureKind {
-    /// Returns what is wrong if a step of a fragment has this error.
-    pub(crate) fn of(error: StepError, fragment: usize) -> Self {
-        match error {
-            StepError::DataRace(other) => FailureKind::DataRace(other, fragment),
-            error => FailureKind::Step(fragment, error),
-        }
-    }
-}
-
 /// What went wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum FailureKind {
@@ -95,8 +85,6 @@ pub(crate) enum FailureKind {
     FinalState(String),
     /// Memory is wrong at an instant, as the property describes.
     Instant(String),
-    /// Two accesses of these fragments are a data race.
-    DataRace(usize, usize),
     /// No fragment can run, and these wait.
     Deadlock(Vec<usize>),
     /// No steps lead from here to a final state of these.

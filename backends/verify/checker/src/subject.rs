@@ -8,7 +8,7 @@ use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, SourceSpan, Variant, codes};
 use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Permits, Soundness};
+use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
 
 use crate::probe::{probe_pass, probe_row};
 use crate::programs::{FullscreenProgram, Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
@@ -69,10 +69,10 @@ impl Subject {
         if retries == RetryLimit::Minimum && !minimise_retries(&mut selection) {
             return Ok(None);
         }
-        let may_time_out = retries == RetryLimit::Minimum || has_few_retries(&selection);
         let stream_row = probe_row(READ_STREAM, include_str!("read_stream.wgsl"), "checker/read_stream.wgsl");
         let registry = registry.clone().with(stream_row);
         let plan = plan(variant, &selection, &registry)?;
+        let may_time_out = has_few_retries(&plan);
         let needs_bound = selection.rows.iter().any(|row| row.row.requires.contains(&Capability::ConservativeBound));
         let (passes, fullscreen, stream) = compiled(&plan, target, &registry)?;
         let read_out = ReadOut::new(&plan, target.profile, &registry)?;
@@ -198,18 +198,26 @@ fn position(plan: &Plan, runnable: &Runnable) -> (usize, u32, usize) {
     (outermost, runnable.iteration.unwrap_or(0), at)
 }
 
-/// Returns whether a row that locks declares so few attempts that the search counts them.
-fn has_few_retries(selection: &Selection) -> bool {
-    let mut locks = selection.rows.iter().filter(|selected| selected.row.soundness == Soundness::Lock);
-    locks.any(|selected| selected.options.iter().any(|(_, limit)| *limit < LEAST_RETRY_LIMIT))
+/// Returns whether a row has so low a retry limit that the search counts the attempts.
+fn has_few_retries(plan: &Plan) -> bool {
+    let value = |constant: &str| plan.constants.iter().find(|(name, _)| *name == constant).map(|(_, value)| *value);
+    let mut limits = plan.selection.rows.iter().flat_map(|selected| retry_limits(&selected.row));
+    limits.any(|limit| value(&limit.constant).is_some_and(|value| value < LEAST_RETRY_LIMIT))
 }
 
-/// Sets every parameter of rows that lock to its minimum; returns whether there was one.
+/// Sets every retry limit to its minimum; returns whether there was one.
 fn minimise_retries(selection: &mut Selection) -> bool {
     let mut found = false;
-    for selected in selection.rows.iter_mut().filter(|selected| selected.row.soundness == Soundness::Lock) {
-        found |= !selected.row.parameters.is_empty();
-        selected.options = selected.row.parameters.iter().map(|one| (one.name.to_string(), one.range.0)).collect();
+    for selected in &mut selection.rows {
+        for limit in retry_limits(&selected.row) {
+            found = true;
+            selected.options.retain(|(name, _)| *name != *limit.name);
+            selected.options.push((limit.name.to_string(), limit.range.0));
+        }
     }
     found
+}
+
+fn retry_limits(row: &Row) -> impl Iterator<Item = &Parameter> {
+    row.parameters.iter().filter(|parameter| parameter.is_retry_limit)
 }

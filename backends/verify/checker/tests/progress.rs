@@ -1,6 +1,6 @@
 //! Progress: what waits for ever, and what only takes many steps.
 
-use fragbuf_checker::Model;
+use fragbuf_checker::{Limits, Model, Report, Shader, check_shader};
 
 use crate::litmus::{litmus, run};
 
@@ -66,6 +66,58 @@ fn a_short_loop_reaches_its_limit_before_others_run() {
     }
 }
 
+/// The number of attempts depends on the initial value and the step, not only on the constant of the comparison.
+#[test]
+fn attempts_are_counted_from_the_initial_value() {
+    let from = "if id.x == 9u { first = 1000u; }";
+    for (before, head, holds) in [
+        ("", "var i = 0u; i < 32u; i++", true),
+        ("", "var i = 0u; i < 31u; i++", false),
+        ("", "var i = 30u; i < 40u; i++", false),
+        ("", "var i = 1000u; i < 1040u; i++", true),
+        ("", "var i = 0u; i < 64u; i += 32u", false),
+        ("", "var i = 40u; i < 50u; i = 100u - i", false),
+        ("", "var i = 1000u; i > 0u; i--", true),
+        ("", "var i = 3u; i > 0u; i--", false),
+        // It wraps around after four attempts.
+        ("", "var i = 3u; i < 1000u; i--", false),
+        ("", "var i = -20i; i < 20i; i++", true),
+        ("", "var i = 20i; i > -5i; i--", false),
+        ("", "var i = 0u; i != 40u; i++", true),
+        ("", "var i = 0u; i != 20u; i++", false),
+        ("var first = 990u;", "var i = first; i < 1000u; i++", false),
+        (&format!("var first = 990u; {from}"), "var i = first; i < 1000u; i++", false),
+    ] {
+        let wait = format!("{before} for ({head}) {{ if atomicLoad(&x) == 1u {{ return; }} }} seen[0] = 1u;");
+        let program = litmus("atomicStore(&x, 1u);", &wait, "seen[0] == 0u");
+        for model in [Model::Sequential, Model::Relaxed] {
+            assert_eq!(run(&program, 2, model).failure.is_none(), holds, "{before} {head} {model:?}");
+        }
+    }
+}
+
+/// The counter reaches the comparison through an array that is also written at an unknown index.
+#[test]
+fn a_counter_that_a_local_array_holds_is_more_than_a_limit() {
+    let program = litmus(
+        "var a: array<u32, 4>;
+         let j = id.x + 1u;
+         let k = id.x;
+         atomicStore(&x, 50u);
+         for (var i = 1u; i < 100u; i++) {
+             a[0] = i;
+             a[j] = 5u;
+             if atomicLoad(&x) == a[k] { seen[0] = 1u; break; }
+         }",
+        "atomicStore(&x, 1000u);",
+        "!(seen[0] == 1u && atomicLoad(&x) == 1000u)",
+    );
+    for model in [Model::Sequential, Model::Relaxed] {
+        let failure = run(&program, 2, model).failure.unwrap();
+        assert_eq!(failure.violation, "`holds` returns false", "{model:?}");
+    }
+}
+
 #[test]
 fn a_long_loop_reaches_its_limit_if_nothing_can_change() {
     // Both store zero, so that the word is not constant.
@@ -76,7 +128,11 @@ fn a_long_loop_reaches_its_limit_if_nothing_can_change() {
         assert_eq!(run(&program, 2, model).failure, None);
         let wrong = program.replace("== 2u", "== 1u");
         let failure = run(&wrong, 2, model).failure.unwrap();
-        assert!(failure.steps.iter().any(|step| step.action.starts_with("repeats its loop")), "{:?}", failure.steps);
+        assert!(
+            failure.steps.iter().any(|step| step.action.starts_with("runs on alone, and observes the latest writes")),
+            "{:?}",
+            failure.steps
+        );
         // An unbounded one waits for ever.
         let endless = program.replacen("for (var i = 0u; i < 1000u; i++)", "loop", 1);
         let failure = run(&endless, 2, model).failure.unwrap();
@@ -92,5 +148,40 @@ fn a_wait_that_reads_several_words_may_be_for_ever() {
         assert_eq!(report("atomicStore(&y, 1u); atomicStore(&x, 2u);").failure, None);
         let failure = report("atomicStore(&y, 1u); atomicStore(&x, 1u);").failure.unwrap();
         assert!(failure.violation.starts_with("deadlock: A waits"), "{}", failure.violation);
+    }
+}
+
+/// Returns the report of two invocations that both wait with this number of attempts, and what they then do.
+fn waiting(attempts: u32, then: &str, random_schedules: Option<u32>) -> Report {
+    // Both store zero, so that the word is not constant.
+    let wait = format!(
+        "atomicStore(&x, 0u); for (var i = 0u; i < {attempts}u; i++) {{ if atomicLoad(&x) == 1u {{ return; }} }} {then}"
+    );
+    let source = litmus(&wait, &wait, "true");
+    let shader = Shader { file: "litmus.wgsl", source: &source, entry: "main", fill: &[] };
+    check_shader(&shader, &Limits { fragments: vec![2], random_schedules, ..Limits::default() }).unwrap()
+}
+
+#[test]
+fn a_loop_too_long_to_run_to_its_limit_is_not_decided() {
+    for random in [None, Some(2)] {
+        let report = waiting(1 << 20, "", random);
+        assert_eq!(report.failure, None, "{random:?}");
+        assert!(!report.is_exhaustive, "{random:?}");
+    }
+    let report = waiting(1 << 10, "", None);
+    assert!(report.failure.is_none() && report.is_exhaustive);
+}
+
+#[test]
+fn a_step_that_fails_at_the_limit_is_no_deadlock() {
+    for random in [None, Some(2)] {
+        let failure = waiting(1000, "seen[4u + id.x] = 1u;", random).failure.unwrap();
+        assert!(
+            failure.violation.contains(" accesses an index out of bounds at litmus.wgsl:"),
+            "{}",
+            failure.violation
+        );
+        assert!(failure.steps.last().unwrap().action.starts_with("runs on alone"), "{:?}", failure.steps);
     }
 }

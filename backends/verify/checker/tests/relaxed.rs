@@ -135,6 +135,17 @@ fn an_interlock_orders_its_own_sections_only() {
 }
 
 #[test]
+fn a_store_orders_no_load_that_need_not_observe_it() {
+    // The addition of the second invocation may come first, although its load comes before it and the store may do so too.
+    let program = litmus(
+        "seen[0] = atomicAdd(&x, 1u); atomicStore(&y, 1u);",
+        "seen[1] = atomicLoad(&y); atomicAdd(&x, 2u);",
+        "seen[0] == 0u",
+    );
+    assert!(!holds(&program, Model::Relaxed));
+}
+
+#[test]
 fn a_word_may_have_many_writes() {
     let program = litmus(
         "for (var i = 1u; i <= 300u; i++) { atomicStore(&x, i); }",

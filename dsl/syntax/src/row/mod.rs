@@ -17,7 +17,7 @@
 //! //: when keep <= 64 -- write `keep 64;` or less              a condition on the description, and its fix
 //! //: implies sorted when depth_key                            a capability that is provided where a condition holds
 //! //: suits sync slot_counter, cull early                     defaults on other axes
-//! //: parameter limit LIMIT = 4096, from 1 to 65536 -- tries
+//! //: parameter limit LIMIT = 4096, from 1 to 65536, retry limit -- tries
 //! //: parameter page PAGE = 4, from 1 to 64, power of two, at least k / 8 -- entries of a page
 //! //: parameter by BY = 0, attribute -- an attribute, by its index
 //! //: defines n = ceil_div(fragments, pixels) + 1              the default of a symbol

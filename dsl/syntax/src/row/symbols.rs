@@ -24,7 +24,7 @@ fn definable() -> impl Iterator<Item = &'static Symbol> {
 }
 
 impl Statements {
-    /// Parses `parameter name CONSTANT = formula, from least to greatest, power of two, at least formula -- summary`.
+    /// Parses `parameter name CONSTANT = formula, from least to greatest -- summary`. After the range, [restrictions](Self::restriction).
     pub(super) fn parameter(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`parameter limit SPIN_LIMIT = 4096, from 1 to 65536`";
         let name = self.reader.name(line, "the option's name", SHAPE)?;
@@ -48,6 +48,7 @@ impl Statements {
             kind,
             default: default.value.into(),
             range,
+            is_retry_limit: false,
             summary: summary(line).into(),
         };
         while line.punct(',') {
@@ -76,9 +77,9 @@ impl Statements {
         Ok((least.value, greatest.value))
     }
 
-    /// Parses `power of two` or `at least formula`, a formula over k.
+    /// Parses `power of two`, `at least formula`, a formula over k, or `retry limit`.
     fn restriction(&mut self, line: &mut Line<'_>, parameter: &mut Parameter) -> Read<()> {
-        const SHAPE: &str = "`, power of two` or `, at least k / 32 + 1`";
+        const SHAPE: &str = "`, power of two`, `, at least k / 32 + 1` or `, retry limit`";
         let start = line.here();
         if line.keyword("power") && line.keyword("of") && line.keyword("two") {
             if parameter.kind == ParameterType::Attribute {
@@ -88,8 +89,16 @@ impl Statements {
             parameter.kind = ParameterType::PowerOfTwo;
             return Ok(());
         }
+        if line.keyword("retry") && line.keyword("limit") {
+            if parameter.kind == ParameterType::Attribute {
+                let message = "an attribute is not a number of attempts".to_owned();
+                return self.reader.stop(codes::INVALID_ROW, &start, message, "remove `retry limit`");
+            }
+            parameter.is_retry_limit = true;
+            return Ok(());
+        }
         if !(line.keyword("at") && line.keyword("least")) {
-            return self.reader.unexpected(line, "`power of two` or `at least`", SHAPE);
+            return self.reader.unexpected(line, "`power of two`, `at least` or `retry limit`", SHAPE);
         }
         let least = line.formula(&[',']);
         self.reader.formula(&least, &["k"])?;

@@ -5,16 +5,15 @@ mod oracle;
 
 use std::collections::BTreeSet;
 
-use fragbuf_codegen::{Notes, PassSource, Profile, SourceMap};
-use fragbuf_interpreter::{Bytecode, Machine, Options};
-use fragbuf_model::SourceSpan;
-use fragbuf_targets::check;
+use fragbuf_interpreter::Bytecode;
 
 use crate::context::SearchContext;
 use crate::explore::explore;
 use crate::model::Model;
-use crate::programs::MARKERS;
-use crate::search::{Property, StateVerdict};
+use crate::reduced::explore_reduced;
+use crate::search::{Property, SearchResult, StateVerdict};
+use crate::state::State;
+use crate::test_program::{compiled, two_invocations};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -76,22 +75,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     perform(2u * id.x + 1u);
 }";
 
-fn shader() -> Bytecode {
-    let source = PassSource {
-        name: "main".to_owned(),
-        text: SHADER.to_owned(),
-        lines: SourceMap::default(),
-        entry_points: Vec::new(),
-        exports: Vec::new(),
-        resources: Vec::new(),
-        written_first: Vec::new(),
-        notes: Notes::default(),
-    };
-    let checked = check(source, Profile::Native, &SourceSpan::new("oracle", 1, 1)).unwrap();
-    let options = Options { markers: &MARKERS, ..Options::default() };
-    Bytecode::entry_point(checked.module(), checked.info(), "main", &options).unwrap()
-}
-
 /// Collects the words of final states.
 struct Collect {
     outcomes: BTreeSet<Outcome>,
@@ -115,8 +98,11 @@ impl Property for Collect {
     }
 }
 
-/// Returns the outcomes that the checker finds.
-fn found(shader: &Bytecode, program: &Program, is_reduced: bool) -> BTreeSet<Outcome> {
+/// A search, such as [`explore`].
+type Search = fn(&SearchContext<'_>, State, &mut dyn Property, usize) -> SearchResult;
+
+/// Returns the outcomes that a search finds. `is_reduced`: it may leave out interleavings.
+fn found(shader: &Bytecode, program: &Program, search: Search, is_reduced: bool) -> BTreeSet<Outcome> {
     let words =
         |operation: &Operation| [operation.kind as u32, operation.word as u32, operation.value, operation.expected];
     let operations = program.operations.iter().flat_map(words).collect();
@@ -125,15 +111,10 @@ fn found(shader: &Bytecode, program: &Program, is_reduced: bool) -> BTreeSet<Out
     let (mut context, words) = SearchContext::new(shader, &memory, Model::Relaxed);
     context.has_weak_exchange = true;
     context.is_reduced = is_reduced;
-    let machines = (0..2).map(|number| {
-        let mut machine = Machine::new(shader);
-        machine.set_input(0, &[number, 0, 0]);
-        machine
-    });
-    let first = context.start(words, machines.collect()).unwrap();
+    let first = two_invocations(&context, words);
     let begin = |index: usize| context.state_buffers().find(|buffer| buffer.0 == index).map_or(0, |buffer| buffer.1);
     let mut collect = Collect { outcomes: BTreeSet::new(), words: begin(2), seen: begin(3) };
-    let result = explore(&context, first, &mut collect, 1_000_000);
+    let result = search(&context, first, &mut collect, 1_000_000);
     assert!(result.is_exhaustive && result.failure.is_none(), "{program:?}: {:?}", result.failure);
     collect.outcomes
 }
@@ -162,11 +143,11 @@ fn programs() -> Vec<Program> {
 
 #[test]
 fn outcomes_are_those_of_the_axioms_without_load_buffering() {
-    let shader = shader();
+    let shader = compiled(SHADER);
     let (mut programs_with_more, mut outcomes) = (0, 0);
     for program in programs() {
         let expected = oracle::outcomes(&program);
-        let found = found(&shader, &program, true);
+        let found = found(&shader, &program, explore_reduced, true);
         assert_eq!(found, expected.ordered, "{program:?}");
         outcomes += found.len();
         programs_with_more += usize::from(expected.all.len() > expected.ordered.len());
@@ -183,9 +164,11 @@ fn outcomes_are_those_of_the_axioms_without_load_buffering() {
 }
 
 #[test]
-fn the_reduced_search_finds_every_outcome() {
-    let shader = shader();
+fn the_reduced_searches_find_every_outcome() {
+    let shader = compiled(SHADER);
     for program in programs() {
-        assert_eq!(found(&shader, &program, true), found(&shader, &program, false), "{program:?}");
+        let all = found(&shader, &program, explore, false);
+        assert_eq!(found(&shader, &program, explore, true), all, "{program:?}");
+        assert_eq!(found(&shader, &program, explore_reduced, true), all, "{program:?}");
     }
 }
