@@ -1,6 +1,7 @@
 //! `fragbuf check`: checks a technique in every interleaving of the fragments of one pixel.
 //!
-//! Exit code 0: no failure found, or the check is not applicable. 1: a failure, with its schedule.
+//! Exit code 0: no failure found, or the check is not applicable. 1: a failure, with its schedule. 4: the search ended before
+//! every state was visited, so nothing is decided.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use fragbuf::{Registry, TARGETS, Target, source_file, target};
-use fragbuf_checker::{Error, Limits, Model, Report, Schedule, Shader, check_shader, check_variant};
+use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
 use super::assignment::assignment;
@@ -30,17 +31,24 @@ pub(crate) struct Check {
     /// Entry point of the WGSL file
     #[arg(long, value_name = "NAME", requires = "wgsl")]
     entry: Option<String>,
-    /// Initial words of one of the WGSL file's buffers; the others are 0
-    #[arg(long, value_name = "BUFFER=WORD[,WORD…]", requires = "wgsl", value_parser = fill)]
+    /// Initial words of one of the WGSL file's buffers, and channels of its textures: 3, -1, 0x1f or 0.5. Other words are 0, and
+    /// other channels 1
+    #[arg(long, value_name = "NAME=WORD[,WORD…]", requires = "wgsl", value_parser = fill)]
     fill: Vec<(String, Vec<u32>)>,
+    /// Value of one of the WGSL file's `override` constants
+    #[arg(long = "override", value_name = "NAME=VALUE", requires = "wgsl", value_parser = override_value)]
+    overrides: Vec<(String, f64)>,
+    /// Number of workgroups of a compute stage [default: as many as the invocations fill]
+    #[arg(long, value_name = "N", requires = "wgsl", value_parser = clap::value_parser!(u32).range(1..=8))]
+    workgroups: Option<u32>,
     /// Change the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
     /// Target whose shaders are checked [default: the first that supports the description]
     #[arg(long, value_name = "TARGET")]
     target: Option<String>,
-    /// Number of concurrent fragments [default: 2 and 3]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
+    /// Number of concurrent fragments or, in a WGSL file, invocations [default: 2 and 3]
+    #[arg(long, alias = "invocations", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
     fragments: Option<u32>,
     /// Number of entries that the pixel keeps [default: 1, 2 and 3]
     #[arg(long, alias = "entries", value_name = "K", value_parser = clap::value_parser!(u32).range(1..=7))]
@@ -51,6 +59,10 @@ pub(crate) struct Check {
     /// Run this many random schedules per case instead of all interleavings
     #[arg(long, alias = "random", value_name = "N")]
     random_schedules: Option<u32>,
+    /// Greatest number of states of one case. If there are more, nothing is decided
+    #[arg(long, value_name = "N", default_value_t = Limits::default().states, conflicts_with = "random_schedules",
+        value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1_000_000_000))]
+    states: usize,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
@@ -79,7 +91,14 @@ impl Check {
         let source = source_file::read(file).map_err(|error| Failure::files(file, &error))?;
         let name = file.display().to_string();
         let entry = self.entry.as_deref().unwrap_or_default();
-        let shader = Shader { file: &name, source: &source, entry, fill: &self.fill };
+        let shader = Shader {
+            file: &name,
+            source: &source,
+            entry,
+            fill: &self.fill,
+            overrides: &self.overrides,
+            workgroups: self.workgroups,
+        };
         let limits = self.limits();
         let report = check_shader(&shader, &limits).map_err(|error| match error {
             Error::Unable(text) | Error::NotApplicable(text) => Failure::Input(text),
@@ -112,7 +131,11 @@ impl Check {
             report_text(name, on, limits, report)
         };
         output::print(&text)?;
-        Ok(ExitCode::from(u8::from(report.failure.is_some())))
+        Ok(ExitCode::from(match Verdict::of(limits, report) {
+            Verdict::Holds | Verdict::Sampled => 0,
+            Verdict::Fails => 1,
+            Verdict::Undecided => 4,
+        }))
     }
 
     /// Prints that there was nothing to interleave.
@@ -136,6 +159,7 @@ impl Check {
             limits.entries = vec![k];
         }
         limits.random_schedules = self.random_schedules;
+        limits.states = self.states;
         limits.model = match self.model {
             ModelArgument::Sc => Model::Sequential,
             ModelArgument::Relaxed => Model::Relaxed,
@@ -158,11 +182,53 @@ impl Check {
     }
 }
 
-/// Parses `buffer=1,2,3`.
+/// Parses `buffer=1,-2,0x3,0.5`.
 fn fill(text: &str) -> Result<(String, Vec<u32>), String> {
-    let (name, words) = text.split_once('=').ok_or("write BUFFER=WORD[,WORD…]")?;
-    let words = words.split(',').map(|word| word.trim().parse::<u32>().map_err(|error| format!("`{word}`: {error}")));
-    Ok((name.trim().to_owned(), words.collect::<Result<_, _>>()?))
+    let (name, words) = text.split_once('=').ok_or("write NAME=WORD[,WORD…]")?;
+    Ok((name.trim().to_owned(), words.split(',').map(|text| word(text.trim())).collect::<Result<_, _>>()?))
+}
+
+/// Parses the bits of an unsigned or signed integer or of a float, which has a point or an exponent.
+fn word(text: &str) -> Result<u32, String> {
+    let hexadecimal = text.strip_prefix("0x").map(|digits| u32::from_str_radix(digits, 16));
+    let integer = || text.parse::<u32>().ok().or_else(|| text.parse::<i32>().ok().map(|value| value as u32));
+    let float = || text.parse::<f32>().ok().filter(|value| value.is_finite()).map(f32::to_bits);
+    let parsed = hexadecimal.map_or_else(|| integer().or_else(float), Result::ok);
+    parsed.ok_or_else(|| format!("`{text}` is neither an integer of 32 bits nor a finite float"))
+}
+
+/// Parses `name=1.5`. Booleans are 0 and 1.
+fn override_value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    let number = match value.trim() {
+        "true" => Some(1.0),
+        "false" => Some(0.0),
+        other => other.parse::<f64>().ok().filter(|value| value.is_finite()),
+    };
+    Ok((name.trim().to_owned(), number.ok_or_else(|| format!("`{value}` is neither a finite number nor a boolean"))?))
+}
+
+/// What a report says about the subject.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    /// No interleaving fails.
+    Holds,
+    /// No random schedule fails.
+    Sampled,
+    Fails,
+    /// Some states were not visited.
+    Undecided,
+}
+
+impl Verdict {
+    fn of(limits: &Limits, report: &Report) -> Self {
+        match (&report.failure, limits.random_schedules) {
+            (Some(_), _) => Verdict::Fails,
+            (None, Some(_)) => Verdict::Sampled,
+            (None, None) if report.is_exhaustive => Verdict::Holds,
+            (None, None) => Verdict::Undecided,
+        }
+    }
 }
 
 fn model_name(model: Model) -> &'static str {
@@ -176,11 +242,21 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
     let plural = if report.cases == 1 { "" } else { "s" };
     let cases = format!("{} case{plural}, {} states", report.cases, report.states);
     let subject = format!("{name} on {on}, {}", model_name(limits.model));
+    let unchecked = "the set of kept fragments is not checked: the storage provides neither keeps-all nor keeps-best, and has no `keeps` line";
+    let unchecked = (!report.is_kept_set_checked).then_some(unchecked);
+    let notes: Vec<&str> = report.notes.iter().map(String::as_str).chain(unchecked).collect();
+    let notes: String = notes.iter().map(|note| format!("  note: {note}\n")).collect();
     let Some(schedule) = &report.failure else {
-        let scope = if report.is_exhaustive { "any interleaving" } else { "the schedules tried" };
-        let unchecked = "  The set of kept fragments is not checked: the storage provides neither keeps-all nor keeps-best, and has no `keeps` line.\n";
-        let note = if report.is_kept_set_checked { "" } else { unchecked };
-        return format!("{subject}: no failure in {scope} ({cases})\n{note}");
+        let sentence = match (Verdict::of(limits, report), limits.random_schedules) {
+            (Verdict::Undecided, _) => format!(
+                "NOT DECIDED: no failure in the states that were visited, but the search ended before all were: at most {} states \
+                 per case, see `--states` and `--random-schedules`",
+                limits.states
+            ),
+            (_, Some(count)) => format!("no failure in {count} random schedules per case; others may fail"),
+            (_, None) => "no failure in any interleaving".to_owned(),
+        };
+        return format!("{subject}: {sentence} ({cases})\n{notes}");
     };
     let verdict = if report.is_declared { "fails with declared hazards" } else { "FAILS" };
     let mut text = format!("{subject}: {verdict} ({cases})\n\n");
@@ -194,6 +270,7 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
         text.push_str(&format!("  not explained by the declared hazards: {}\n\n", hazards.join(", ")));
     }
     text.push_str(&schedule_text(schedule));
+    text.push_str(&notes);
     text
 }
 
@@ -220,8 +297,12 @@ fn report_json(name: &str, on: &str, limits: &Limits, report: &Report) -> Value 
         "description": name,
         "on": on,
         "model": model_name(limits.model),
-        "holds": report.failure.is_none(),
+        "holds": match Verdict::of(limits, report) {
+            Verdict::Undecided => Value::Null,
+            verdict => Value::Bool(verdict != Verdict::Fails),
+        },
         "exhaustive": report.is_exhaustive,
+        "notes": report.notes,
         "cases": report.cases,
         "states": report.states,
         "declared_hazard": report.is_declared,
@@ -230,17 +311,23 @@ fn report_json(name: &str, on: &str, limits: &Limits, report: &Report) -> Value 
     })
 }
 
+fn step_json(step: &ScheduleStep) -> Value {
+    json!({ "fragment": step.fragment, "action": step.action, "location": step.location })
+}
+
 fn schedule_json(schedule: &Schedule) -> Value {
-    let steps = schedule
-        .steps
-        .iter()
-        .map(|step| json!({ "fragment": step.fragment, "action": step.action, "location": step.location }));
+    let steps = schedule.steps.iter().map(step_json);
     json!({
         "case": schedule.case,
         "initial_fragments": schedule.initial_fragments,
         "fragments": schedule.fragments.iter().map(|(name, words)| json!({ "name": name, "words": words })).collect::<Vec<_>>(),
         "steps": steps.collect::<Vec<_>>(),
         "violation": schedule.violation,
+        "race": schedule.race.as_ref().map(|race| json!({
+            "word": race.word,
+            "first": step_json(&race.first),
+            "second": step_json(&race.second),
+        })),
     })
 }
 

@@ -46,7 +46,7 @@ impl Checked {
 }
 
 /// Returns the naga capabilities that sources of this profile may use.
-pub(crate) fn capabilities(profile: Profile) -> Capabilities {
+pub fn capabilities(profile: Profile) -> Capabilities {
     // pack2x16float and its kin belong to WGSL without extensions; naga has a capability for them.
     let portable = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     match profile {

@@ -21,7 +21,7 @@ mod spirv;
 mod target;
 mod wgsl;
 
-pub use check::{Checked, check};
+pub use check::{Checked, capabilities, check};
 pub use emission::{Emission, File, Guards};
 pub use generate::{Generation, PlanForTargets, Request, generate};
 pub use limits::{Limit, Needed, Sharing, Workgroup, limits};

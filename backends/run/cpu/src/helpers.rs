@@ -38,7 +38,7 @@ impl SharedMemory for Unchanged<'_, '_> {
     fn event(&mut self, event: &Event) -> Reply {
         match event {
             Event::Access(access) => Reply::Done(self.0.access(&Access { operation: Operation::Load, ..*access })),
-            Event::Barrier => Reply::Stop,
+            Event::Barrier(_) => Reply::Stop,
             Event::Fence | Event::CriticalBegin | Event::CriticalEnd => Reply::Done(0),
         }
     }

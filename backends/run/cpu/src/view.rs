@@ -89,7 +89,7 @@ impl SharedMemory for View<'_> {
     fn event(&mut self, event: &Event) -> Reply {
         match event {
             Event::Access(access) => Reply::Done(self.access(access)),
-            Event::Barrier => Reply::Stop,
+            Event::Barrier(_) => Reply::Stop,
             Event::Fence | Event::CriticalBegin | Event::CriticalEnd => Reply::Done(0),
         }
     }

@@ -70,6 +70,8 @@ pub struct Buffer {
     pub space: Space,
     /// Its least length in words: its length, unless it ends in a runtime-sized array.
     pub words: u32,
+    /// The words of an element of the runtime-sized array at its end; 0 if it has none.
+    pub element_words: u32,
     /// Whether the program writes to it. Machines do not stop at reads of other buffers.
     pub is_written: bool,
     /// Whether all accesses to it commute: one atomic operation whose result the program ignores and whose order does
@@ -182,7 +184,7 @@ impl Bytecode {
 
     /// Returns whether the program has workgroup barriers.
     pub fn has_barriers(&self) -> bool {
-        self.ops.contains(&Op::Barrier)
+        self.ops.iter().any(|op| matches!(op, Op::Barrier(_)))
     }
 
     /// Returns the input that is this built-in value.

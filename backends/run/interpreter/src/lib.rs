@@ -34,6 +34,6 @@ mod workgroup;
 pub use bytecode::{Buffer, Bytecode, InterfaceVariable, Marker, Options, Space, Texture, Unsupported};
 pub use half::{from_half, to_half};
 pub use machine::{Exit, Machine, OutOfBoundsAccess};
-pub use memory::{Access, Atomic, Event, Operation, Reply, Sequential, SharedMemory, WordAddress};
+pub use memory::{Access, Atomic, Barrier, Event, Operation, Reply, Sequential, SharedMemory, WordAddress};
 pub use retry::LEAST_RETRY_LIMIT;
-pub use workgroup::{DispatchEnd, dispatch, workgroup};
+pub use workgroup::{DispatchEnd, dispatch, set_invocation_ids, workgroup};

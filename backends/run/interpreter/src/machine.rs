@@ -287,10 +287,10 @@ impl<'p> Machine<'p> {
                         read!(to + u32::from(size)) = u32::from(exchanged);
                     }
                 }
-                Op::Fence | Op::Barrier | Op::CriticalBegin | Op::CriticalEnd => {
+                Op::Fence | Op::Barrier(_) | Op::CriticalBegin | Op::CriticalEnd => {
                     let event = match program.ops[at] {
                         Op::Fence => Event::Fence,
-                        Op::Barrier => Event::Barrier,
+                        Op::Barrier(barrier) => Event::Barrier(barrier),
                         Op::CriticalBegin => Event::CriticalBegin,
                         _ => Event::CriticalEnd,
                     };

@@ -88,6 +88,15 @@ impl Access {
     }
 }
 
+/// The memory whose accesses a workgroup barrier orders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Barrier {
+    /// Storage buffers.
+    pub storage: bool,
+    /// Workgroup variables.
+    pub workgroup: bool,
+}
+
 /// An operation that other invocations can observe, before it takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Event {
@@ -96,7 +105,7 @@ pub enum Event {
     /// A memory fence.
     Fence,
     /// A workgroup barrier.
-    Barrier,
+    Barrier(Barrier),
     /// The beginning of the interlock.
     CriticalBegin,
     /// The end of the interlock.
@@ -170,7 +179,7 @@ impl SharedMemory for Sequential<'_> {
                 }
                 Reply::Done(old)
             }
-            Event::Barrier => Reply::Stop,
+            Event::Barrier(_) => Reply::Stop,
             Event::Fence | Event::CriticalBegin | Event::CriticalEnd => Reply::Done(0),
         }
     }

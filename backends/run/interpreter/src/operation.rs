@@ -3,7 +3,7 @@
 //! Operands are word numbers. During compilation, numbers from [`CONSTANT`] are constants; the finished program stores them
 //! after the temporaries.
 
-use crate::memory::Atomic;
+use crate::memory::{Atomic, Barrier};
 use crate::packing::{Pack, Unpack};
 use crate::scalar::{Binary, Ternary, Unary};
 use crate::wide::Wide;
@@ -152,7 +152,7 @@ pub(crate) enum Op {
         expected: Word,
     },
     Fence,
-    Barrier,
+    Barrier(Barrier),
     CriticalBegin,
     CriticalEnd,
     HelperLane {
@@ -253,8 +253,13 @@ impl Op {
                 }
                 visit(Write, to, words + u32::from(exchanges));
             }
-            Op::Jump { .. } | Op::Fence | Op::Barrier | Op::CriticalBegin | Op::CriticalEnd | Op::Discard | Op::End => {
-            }
+            Op::Jump { .. }
+            | Op::Fence
+            | Op::Barrier(_)
+            | Op::CriticalBegin
+            | Op::CriticalEnd
+            | Op::Discard
+            | Op::End => {}
         }
     }
 
@@ -272,7 +277,7 @@ impl Op {
                 | Op::Store { .. }
                 | Op::Atomic { .. }
                 | Op::Fence
-                | Op::Barrier
+                | Op::Barrier(_)
                 | Op::CriticalBegin
                 | Op::CriticalEnd
         )

@@ -130,7 +130,7 @@ impl<S: SharedMemory> SharedMemory for BarrierSegment<'_, S> {
     }
 
     fn event(&mut self, event: &Event) -> Reply {
-        if *event == Event::Barrier && !self.has_passed {
+        if matches!(event, Event::Barrier(_)) && !self.has_passed {
             self.has_passed = true;
             return Reply::Done(0);
         }
@@ -138,8 +138,8 @@ impl<S: SharedMemory> SharedMemory for BarrierSegment<'_, S> {
     }
 }
 
-/// Sets the ids of an invocation.
-fn set_invocation_ids(machine: &mut Machine<'_>, index: u32, group: [u32; 3], groups: [u32; 3]) {
+/// Sets the ids of an invocation with this index in one of `groups` workgroups.
+pub fn set_invocation_ids(machine: &mut Machine<'_>, index: u32, group: [u32; 3], groups: [u32; 3]) {
     let program = machine.program();
     let size = program.workgroup_size;
     let local = [index % size[0], index / size[0] % size[1], index / (size[0] * size[1])];

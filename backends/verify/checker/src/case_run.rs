@@ -28,7 +28,7 @@ pub(crate) struct CaseRun<'s> {
 /// One iteration of the pass under test.
 pub(crate) struct Iteration<'s> {
     pub(crate) context: SearchContext<'s>,
-    pub(crate) first: Result<State, StepError>,
+    pub(crate) first: Result<State, (usize, StepError)>,
     /// The iteration before, and its steps.
     pub(crate) before: Option<(usize, Vec<Step>)>,
     /// The frame before the pass.
@@ -109,8 +109,8 @@ impl<'s> CaseRun<'s> {
         let iteration = &self.iterations[at];
         let context = &iteration.context;
         let first = match &iteration.first {
-            Err(error) => {
-                let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(0, *error) });
+            Err((fragment, error)) => {
+                let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(*fragment, *error) });
                 let result = SearchResult { states: 1, is_exhaustive: true, failure, ..SearchResult::default() };
                 return (result, HashMap::new());
             }

@@ -3,9 +3,12 @@
 //! Input: a program, memory and a memory model. Output: the location of every buffer, in read-only memory or in the words
 //! of a state.
 
-use fragbuf_interpreter::{Buffer, Bytecode, WordAddress};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 
-use crate::memory::memory_index;
+use fragbuf_interpreter::{Buffer, Bytecode, Event, Space, WordAddress};
+
+use crate::memory::{TexelLayout, memory_index};
 use crate::model::Model;
 
 /// What every state of a search shares.
@@ -16,8 +19,15 @@ pub(crate) struct SearchContext<'p> {
     pub(crate) locations: Vec<BufferLocation>,
     /// Memory that the program does not write, by binding.
     pub(crate) read_only: Vec<Vec<u32>>,
+    pub(crate) texels: TexelLayout,
     /// How many words of a state have an order that matters. They come first.
     pub(crate) ordered: usize,
+    /// The first word of workgroup memory, which ends where the ordered words end.
+    pub(crate) first_of_workgroups: usize,
+    /// Per invocation of a compute shader, the number of its workgroup. Fragments have none.
+    pub(crate) workgroups: Vec<u32>,
+    /// The instructions whose index was out of bounds, if that is no failure.
+    pub(crate) out_of_bounds: Option<RefCell<BTreeSet<u32>>>,
     pub(crate) model: Model,
     /// Per ordered word, whether it is neither atomic nor coherent: no fence makes it visible to another fragment.
     pub(crate) private: Vec<bool>,
@@ -42,20 +52,45 @@ pub(crate) struct SearchContext<'p> {
 pub(crate) enum BufferLocation {
     /// The index in [`SearchContext::read_only`].
     ReadOnly(usize),
-    /// The words of a state that hold it. `commutes`: no program can observe the order of its accesses.
+    /// The words of a state that hold it. `commutes`: no program can observe the order of its accesses. Workgroup memory
+    /// follows once more for each further workgroup.
     State { first: usize, words: usize, commutes: bool },
+}
+
+/// The locations of all buffers, and the words of the first state.
+struct Layout {
+    locations: Vec<BufferLocation>,
+    /// Ordered words of storage buffers, those of workgroups, then words whose accesses commute.
+    words: Vec<u32>,
+    first_of_workgroups: usize,
+    ordered: usize,
 }
 
 impl<'p> SearchContext<'p> {
     /// Returns the context of a program over this memory, and the words of the first state. Fences are events under the
     /// relaxed model, and every option that a caller may set is off.
     pub(crate) fn new(program: &'p Bytecode, memory: &[Vec<u32>], model: Model) -> (Self, Vec<u32>) {
-        let (locations, words, ordered) = SearchContext::lay_out(program, memory);
+        SearchContext::with_workgroups(program, memory, model, Vec::new())
+    }
+
+    /// The same for invocations of a compute shader. `workgroups`: the number of each invocation's workgroup.
+    pub(crate) fn with_workgroups(
+        program: &'p Bytecode,
+        memory: &[Vec<u32>],
+        model: Model,
+        workgroups: Vec<u32>,
+    ) -> (Self, Vec<u32>) {
+        let count = workgroups.iter().max().map_or(0, |last| last + 1);
+        let Layout { locations, words, first_of_workgroups, ordered } = SearchContext::lay_out(program, memory, count);
         let mut context = SearchContext {
             program,
             locations,
             read_only: memory.to_vec(),
+            texels: TexelLayout::FRAME,
             ordered,
+            first_of_workgroups,
+            workgroups,
+            out_of_bounds: None,
             model,
             private: Vec::new(),
             has_fences: model == Model::Relaxed,
@@ -66,18 +101,16 @@ impl<'p> SearchContext<'p> {
             one_by_one: false,
             counts_samples: false,
         };
-        context.private = context.each_ordered(|buffer| !buffer.is_coherent);
+        context.private = context.each_ordered(|buffer| !buffer.is_coherent && buffer.space == Space::Storage);
         (context, words)
     }
 
-    /// Returns the location of each buffer, the words of the first state with the ordered ones first, and the number of
-    /// ordered words.
-    fn lay_out(program: &Bytecode, memory: &[Vec<u32>]) -> (Vec<BufferLocation>, Vec<u32>, usize) {
+    fn lay_out(program: &Bytecode, memory: &[Vec<u32>], workgroups: u32) -> Layout {
         let mut locations = vec![BufferLocation::ReadOnly(0); program.buffers.len()];
         let mut words: Vec<u32> = Vec::new();
-        let mut ordered = 0;
-        for commutes in [false, true] {
-            for (number, buffer) in program.buffers.iter().enumerate() {
+        let buffers = || program.buffers.iter().enumerate();
+        let mut storage = |commutes: bool, words: &mut Vec<u32>| {
+            for (number, buffer) in buffers().filter(|(_, buffer)| buffer.space != Space::Workgroup) {
                 let index = memory_index(buffer.binding);
                 if !buffer.is_written {
                     locations[number] = BufferLocation::ReadOnly(index);
@@ -87,11 +120,20 @@ impl<'p> SearchContext<'p> {
                     words.extend_from_slice(content);
                 }
             }
-            if !commutes {
-                ordered = words.len();
-            }
+        };
+        storage(false, &mut words);
+        let first_of_workgroups = words.len();
+        let mut workgroup_variables = Vec::new();
+        for (number, buffer) in buffers().filter(|(_, buffer)| buffer.space == Space::Workgroup) {
+            let length = buffer.words as usize;
+            workgroup_variables
+                .push((number, BufferLocation::State { first: words.len(), words: length, commutes: false }));
+            words.resize(words.len() + length * workgroups as usize, 0);
         }
-        (locations, words, ordered)
+        let ordered = words.len();
+        storage(true, &mut words);
+        workgroup_variables.into_iter().for_each(|(number, location)| locations[number] = location);
+        Layout { locations, words, first_of_workgroups, ordered }
     }
 
     /// Returns a property of its buffer for each ordered word.
@@ -99,10 +141,32 @@ impl<'p> SearchContext<'p> {
         let mut all = vec![false; self.ordered];
         for (buffer, location) in self.program.buffers.iter().zip(&self.locations) {
             if let BufferLocation::State { first, words, commutes: false } = location {
-                all[*first..first + words].fill(property(buffer));
+                let copies = if buffer.space == Space::Workgroup { self.workgroup_count() } else { 1 };
+                all[*first..first + words * copies].fill(property(buffer));
             }
         }
         all
+    }
+
+    fn workgroup_count(&self) -> usize {
+        self.workgroups.iter().max().map_or(0, |last| *last as usize + 1)
+    }
+
+    /// Returns the invocations of a fragment's workgroup.
+    pub(crate) fn members(&self, fragment: usize) -> Vec<usize> {
+        let Some(own) = self.workgroups.get(fragment) else { return vec![fragment] };
+        let all = self.workgroups.iter().enumerate();
+        all.filter(|(_, workgroup)| *workgroup == own).map(|(member, _)| member).collect()
+    }
+
+    /// Returns an event of a fragment with the address in the memory of its own workgroup.
+    pub(crate) fn placed(&self, fragment: usize, event: Event) -> Event {
+        let Event::Access(mut access) = event else { return event };
+        let buffer = &self.program.buffers[usize::from(access.address.buffer)];
+        if buffer.space == Space::Workgroup {
+            access.address.word += buffer.words * self.workgroups.get(fragment).copied().unwrap_or(0);
+        }
+        Event::Access(access)
     }
 
     /// Returns the index of an address among the words of a state.
@@ -117,6 +181,7 @@ impl<'p> SearchContext<'p> {
     pub(crate) fn state_buffers(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let locations = self.program.buffers.iter().zip(&self.locations);
         locations.filter_map(|(buffer, location)| match location {
+            BufferLocation::State { .. } if buffer.space == Space::Workgroup => None,
             BufferLocation::State { first, words, .. } => Some((memory_index(buffer.binding), *first, *words)),
             BufferLocation::ReadOnly(_) => None,
         })

@@ -32,6 +32,10 @@ impl Footprint {
             Event::CriticalBegin | Event::CriticalEnd if !is_helper => {
                 Footprint { object: Some(context.ordered as u32), writes: true, is_watched: false }
             }
+            Event::Barrier(_) => {
+                let workgroup = context.workgroups.get(fragment).copied().unwrap_or(0);
+                Footprint { object: Some(context.ordered as u32 + 1 + workgroup), writes: true, is_watched: false }
+            }
             _ => local,
         }
     }

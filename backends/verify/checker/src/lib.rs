@@ -67,10 +67,11 @@ mod subject;
 mod test_program;
 mod verdict;
 mod watched;
+mod word_name;
 
 pub use frame_memory::{FrameMemory, ReadOutError};
 pub use model::Model;
 pub use read_out::ReadOut;
-pub use report::{Schedule, ScheduleStep};
+pub use report::{Race, Schedule, ScheduleStep};
 pub use shader::{Shader, check_shader};
 pub use verdict::{Error, Limits, Report, check_variant};

@@ -39,8 +39,25 @@ pub(crate) fn with_buffers<T>(program: &Bytecode, memory: &mut Memory, work: imp
     result
 }
 
-/// Returns a texel of an external texture, which has one word per pixel of the frame and one sample.
-pub(crate) fn texel(words: &[u32], [x, y, sample]: [u32; 3]) -> Option<[u32; 4]> {
-    let is_inside = x < WIDTH && y == 0 && sample == 0;
-    words.get(x as usize).filter(|_| is_inside).map(|word| [*word, 0, 0, 0])
+/// The layout of textures in memory: rows of texels, whose other channels are zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TexelLayout {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) channels: u32,
+}
+
+impl TexelLayout {
+    /// External textures have one word per pixel of the frame.
+    pub(crate) const FRAME: TexelLayout = TexelLayout { width: WIDTH, height: 1, channels: 1 };
+
+    /// Returns a texel. Textures have one sample and one level.
+    pub(crate) fn texel(self, words: &[u32], [x, y, sample]: [u32; 3]) -> Option<[u32; 4]> {
+        if x >= self.width || y >= self.height || sample > 0 {
+            return None;
+        }
+        let first = (y * self.width + x) * self.channels;
+        let channel = |channel: u32| words.get((first + channel) as usize).copied().filter(|_| channel < self.channels);
+        channel(0).map(|value| [value, channel(1).unwrap_or(0), channel(2).unwrap_or(0), channel(3).unwrap_or(0)])
+    }
 }

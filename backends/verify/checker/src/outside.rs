@@ -97,6 +97,7 @@ fn failure(pass: &str, [x, y]: [u32; 2], is_helper: bool, violation: &str) -> Sc
         initial_fragments: Vec::new(),
         steps: Vec::new(),
         violation: violation.to_owned(),
+        race: None,
     }
 }
 

@@ -6,7 +6,7 @@
 use fragbuf_interpreter::{Access, Event, Reply, SharedMemory, WordAddress};
 
 use crate::context::{BufferLocation, SearchContext};
-use crate::memory::{WIDTH, memory_index, texel};
+use crate::memory::memory_index;
 
 /// Memory that answers one event, then stops. Accesses that commute are performed at once, because no program can observe
 /// their order.
@@ -36,11 +36,11 @@ impl SharedMemory for Pausing<'_, '_> {
 
     fn texel(&self, texture: u16, position: [u32; 3]) -> Option<[u32; 4]> {
         let texture = self.context.program.textures.get(usize::from(texture))?;
-        texel(self.context.read_only.get(memory_index(texture.binding))?, position)
+        self.context.texels.texel(self.context.read_only.get(memory_index(texture.binding))?, position)
     }
 
     fn extent(&self, _texture: u16) -> [u32; 3] {
-        [WIDTH, 1, 1]
+        [self.context.texels.width, self.context.texels.height, 1]
     }
 
     fn event(&mut self, event: &Event) -> Reply {

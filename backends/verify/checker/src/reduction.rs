@@ -51,7 +51,7 @@ fn comes_first(context: &SearchContext<'_>, watched: &WatchedWords, event: &Even
             Operation::Store => writes_first && !watched.contains(context, access),
             Operation::Atomic(_) => false,
         },
-        Event::CriticalBegin | Event::Barrier => false,
+        Event::CriticalBegin | Event::Barrier(_) => false,
     }
 }
 

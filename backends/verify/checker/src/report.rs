@@ -5,7 +5,7 @@
 
 use fragbuf_codegen::{FIRST_BINDING, LineSource};
 use fragbuf_frame::COUNTERS_RESOURCE;
-use fragbuf_interpreter::{Atomic, Bytecode, Event, Machine, Operation, Reply};
+use fragbuf_interpreter::{Access, Atomic, Buffer, Bytecode, Event, Machine, Operation, Reply};
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Element;
 
@@ -19,7 +19,7 @@ use crate::search::{Failure, FailureKind, RUN_ON};
 use crate::state::{State, Status, StepError};
 
 /// A failure, step by step.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// The case: the initial fragments, and how the new ones compare with them.
     pub case: String,
@@ -31,6 +31,19 @@ pub struct Schedule {
     pub steps: Vec<ScheduleStep>,
     /// What is wrong after the last step.
     pub violation: String,
+    /// The accesses of a data race.
+    pub race: Option<Race>,
+}
+
+/// Two accesses of the same word that nothing orders. At least one writes, and at least one is not atomic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Race {
+    /// The word, by the name of its variable and its indices.
+    pub word: String,
+    /// The earlier access.
+    pub first: ScheduleStep,
+    /// The later access.
+    pub second: ScheduleStep,
 }
 
 /// One step.
@@ -46,27 +59,56 @@ pub struct ScheduleStep {
 
 /// Names of memory and of values, for one case.
 pub(crate) struct Names<'a> {
-    pub(crate) resource: &'a dyn Fn(usize, u32) -> String,
+    pub(crate) resource: &'a dyn Fn(&Buffer, u32) -> String,
     pub(crate) value: &'a dyn Fn(u64) -> String,
 }
 
-/// Runs the steps of a failure again and describes them.
-pub(crate) fn steps(
+/// A step that was performed again.
+struct Replayed {
+    number: usize,
+    access: Option<Access>,
+    step: ScheduleStep,
+}
+
+/// Returns the schedule of a failure, without the names of the case and of the fragments.
+pub(crate) fn failing_schedule(
     context: &SearchContext<'_>,
     first: &State,
     failure: &Failure,
     source: &CheckedSource,
     names: &Names<'_>,
-) -> Vec<ScheduleStep> {
+) -> Schedule {
+    let replayed = replay(context, first, failure, source, names);
+    let race = race(&failure.kind, &replayed, context, names);
+    Schedule {
+        case: String::new(),
+        fragments: Vec::new(),
+        initial_fragments: Vec::new(),
+        violation: violation(&failure.kind, context, source, race.as_ref()),
+        steps: replayed.into_iter().map(|replayed| replayed.step).collect(),
+        race,
+    }
+}
+
+/// Runs the steps of a failure again and describes them.
+fn replay(
+    context: &SearchContext<'_>,
+    first: &State,
+    failure: &Failure,
+    source: &CheckedSource,
+    names: &Names<'_>,
+) -> Vec<Replayed> {
     let mut machine = Machine::new(context.program);
     let mut state = first.clone();
     let mut steps = Vec::new();
     for (fragment, choice) in &failure.steps {
         let Status::Before { event, at, .. } = state.fragments[*fragment].clone() else { break };
-        let location = location(context.program, at, source);
+        let location = code_location(context.program, at, source);
+        let number = *fragment;
         if *choice == RUN_ON {
             let action = "runs on alone, and observes the latest writes, until it changes something or leaves its loop";
-            steps.push(ScheduleStep { fragment: letter(*fragment), action: action.to_owned(), location });
+            let step = ScheduleStep { fragment: letter(number), action: action.to_owned(), location };
+            steps.push(Replayed { number, access: None, step });
             let RunOn::Moved(next) = context.run_on(&mut machine, &state, *fragment) else { break };
             state = next;
             continue;
@@ -80,13 +122,31 @@ pub(crate) fn steps(
         if is_helper && !matches!(event, Event::Access(access) if !access.writes()) {
             action.push_str(", without effect: a helper invocation");
         }
-        steps.push(ScheduleStep { fragment: letter(*fragment), action, location });
+        let access = if let Event::Access(access) = event { Some(access) } else { None };
+        let step = ScheduleStep { fragment: letter(number), action, location };
+        steps.push(Replayed { number, access, step });
         match next {
             Some(next) => state = next,
             None => break,
         }
     }
     steps
+}
+
+/// Returns the accesses of a data race: the last step, and the last access of the same word by the other fragment that
+/// conflicts with it.
+fn race(kind: &FailureKind, steps: &[Replayed], context: &SearchContext<'_>, names: &Names<'_>) -> Option<Race> {
+    let FailureKind::Step(_, StepError::DataRace(other, word)) = kind else { return None };
+    let (second, earlier) = steps.split_last()?;
+    let access = second.access?;
+    let conflicts = |step: &&Replayed| {
+        let same = |one: &Access| context.word(one.address) == Some(*word as usize) && !one.is_atomic;
+        step.number == *other && step.access.is_some_and(|one| same(&one) && (one.writes() || access.writes()))
+    };
+    let first = earlier.iter().rfind(conflicts)?;
+    let buffer = &context.program.buffers[usize::from(access.address.buffer)];
+    let word = (names.resource)(buffer, access.address.word);
+    Some(Race { word, first: first.step.clone(), second: second.step.clone() })
 }
 
 /// Returns the name of a fragment: A, B, C, …
@@ -101,10 +161,9 @@ fn action(event: &Event, reply: Reply, choice: u32, program: &Bytecode, names: &
         Event::Fence => return "fence".to_owned(),
         Event::CriticalBegin => return "enters the critical section".to_owned(),
         Event::CriticalEnd => return "leaves the critical section".to_owned(),
-        Event::Barrier => return "barrier".to_owned(),
+        Event::Barrier(_) => return "passes the barrier".to_owned(),
     };
-    let memory = memory_index(program.buffers[usize::from(access.address.buffer)].binding);
-    let word = (names.resource)(memory, access.address.word);
+    let word = (names.resource)(&program.buffers[usize::from(access.address.buffer)], access.address.word);
     let value = |value: u64| (names.value)(value);
     let observed = match reply {
         Reply::Done(observed) | Reply::Failed(observed) => observed,
@@ -139,13 +198,14 @@ fn function_name(function: Atomic) -> String {
 }
 
 /// Returns the line of a template or of the user's source that an instruction comes from. Generated accessors are skipped.
-fn location(program: &Bytecode, at: u32, source: &CheckedSource) -> String {
+pub(crate) fn code_location(program: &Bytecode, at: u32, source: &CheckedSource) -> String {
     let lines = program.trace(at).into_iter().map(|span| span.location(&source.text).line_number as usize);
     let lines: Vec<usize> = lines.collect();
     for line in &lines {
         match source.lines.source(*line) {
             LineSource::Source { name, line } if !name.starts_with("generated/") => return format!("{name}:{line}"),
             LineSource::Description(span) => return span.to_string(),
+            LineSource::UserFile(span) => return format!("{}:{}", span.file, span.line),
             _ => {}
         }
     }
@@ -154,31 +214,61 @@ fn location(program: &Bytecode, at: u32, source: &CheckedSource) -> String {
 }
 
 /// Describes what went wrong.
-pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source: &CheckedSource) -> String {
-    let letters = |fragments: &[usize]| fragments.iter().map(|one| letter(*one)).collect::<Vec<_>>().join(", ");
+fn violation(kind: &FailureKind, context: &SearchContext<'_>, source: &CheckedSource, race: Option<&Race>) -> String {
     match kind {
         FailureKind::FinalState(text) => text.clone(),
         FailureKind::Instant(text) => format!("at this instant, {text}"),
-        FailureKind::Deadlock(fragments) => {
-            format!("deadlock: {} waits for a value that no running fragment can change", letters(fragments))
-        }
-        FailureKind::Livelock(fragments) => {
-            format!("livelock: no schedule from this state lets {} all finish", letters(fragments))
-        }
-        FailureKind::Step(fragment, error) => {
-            let fragment = letter(*fragment);
-            match error {
-                StepError::OutOfBounds(at) => {
-                    format!("{fragment} accesses an index out of bounds at {}", location(context.program, *at, source))
-                }
-                StepError::Endless => format!("{fragment} loops without end and without accessing memory"),
-                StepError::Barrier => format!("{fragment} reaches a barrier"),
-                StepError::DataRace(other) => format!(
-                    "data race: {} and {fragment} access the same word, at least one writes, at least one access is not atomic, and nothing orders them",
-                    letter(*other)
-                ),
+        FailureKind::Deadlock(fragments) => match &fragments[..] {
+            [one] => format!("deadlock: {} waits for a value that no other fragment can change", letter(*one)),
+            _ => format!("deadlock: {} wait, and none of them can change what another waits for", letters(fragments)),
+        },
+        FailureKind::Livelock(fragments) => match &fragments[..] {
+            [one] => format!("livelock: {} can take steps for ever, but cannot end in any order of them", letter(*one)),
+            _ => {
+                format!("livelock: {} can take steps for ever, but in no order can all of them end", letters(fragments))
             }
+        },
+        FailureKind::Step(fragment, StepError::DataRace(other, _)) => {
+            let (one, other) = (letter(*other), letter(*fragment));
+            let places = race.map_or(format!(": {one} and {other} access the same word"), |race| {
+                let access = |step: &ScheduleStep| format!("{} {} at {}", step.fragment, step.action, step.location);
+                format!(" on {}: {}, and {}", race.word, access(&race.first), access(&race.second))
+            });
+            format!("data race{places}. At least one of the two accesses is not atomic, and nothing orders them")
         }
+        FailureKind::Step(fragment, error) => step_violation(context, *fragment, *error, source),
+    }
+}
+
+/// Describes an error of one fragment.
+pub(crate) fn step_violation(
+    context: &SearchContext<'_>,
+    fragment: usize,
+    error: StepError,
+    source: &CheckedSource,
+) -> String {
+    let fragment = letter(fragment);
+    match error {
+        StepError::OutOfBounds(at) => {
+            format!("{fragment} accesses an index out of bounds at {}", code_location(context.program, at, source))
+        }
+        StepError::Endless => format!("{fragment} loops without end and without accessing memory"),
+        StepError::Barrier { waits, at, missing } => format!(
+            "divergent barrier: {} waits at {}, and {} of its workgroup does not reach this barrier",
+            letter(waits),
+            code_location(context.program, at, source),
+            letter(missing)
+        ),
+        StepError::DataRace(other, _) => format!("data race: {} and {fragment} access the same word", letter(other)),
+    }
+}
+
+/// Returns the names of fragments: `A, B and C`.
+fn letters(fragments: &[usize]) -> String {
+    let letters: Vec<String> = fragments.iter().map(|one| letter(*one)).collect();
+    match letters.split_last() {
+        Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        _ => letters.concat(),
     }
 }
 
@@ -186,20 +276,29 @@ pub(crate) fn violation(kind: &FailureKind, context: &SearchContext<'_>, source:
 pub(crate) fn schedule(run: &CaseRun<'_>, iteration: usize, failure: &Failure) -> Schedule {
     let setup = &run.setup;
     let source = &setup.runnable().source;
-    let resource = |memory: usize, word: u32| resource_name(setup, memory, word);
+    let resource = |buffer: &Buffer, word: u32| resource_name(setup, memory_index(buffer.binding), word);
     let value = |value: u64| value_name(setup, value);
     let names = Names { resource: &resource, value: &value };
     let mut chain = vec![(iteration, failure.clone())];
     while let Some((before, taken)) = chain.last().and_then(|(at, _)| run.iterations[*at].before.clone()) {
         chain.push((before, Failure { steps: taken, kind: failure.kind.clone() }));
     }
-    let mut all = Vec::new();
+    let (mut all, mut last) = (Vec::new(), None);
     for (at, failure) in chain.iter().rev() {
         let iteration = &run.iterations[*at];
-        if let Ok(first) = &iteration.first {
-            all.extend(steps(&iteration.context, first, failure, source, &names));
+        match &iteration.first {
+            Ok(first) => {
+                let part = failing_schedule(&iteration.context, first, failure, source, &names);
+                all.extend(part.steps.clone());
+                last = Some(part);
+            }
+            Err((fragment, error)) => {
+                let violation = step_violation(&iteration.context, *fragment, *error, source);
+                last = Some(Schedule { violation, ..Schedule::default() });
+            }
         }
     }
+    let Schedule { violation, race, .. } = last.unwrap_or_default();
     let words = |words: &[u32]| words.iter().map(|word| format!("{word:08x}")).collect::<Vec<_>>().join(" ");
     let drawn = if chain.len() > 1 { format!(", drawn {} times", chain.len()) } else { String::new() };
     Schedule {
@@ -207,7 +306,8 @@ pub(crate) fn schedule(run: &CaseRun<'_>, iteration: usize, failure: &Failure) -
         fragments: setup.case.new.iter().enumerate().map(|(at, new)| (letter(at), words(&new.words))).collect(),
         initial_fragments: setup.case.prior.iter().map(|prior| words(&prior.words)).collect(),
         steps: all,
-        violation: violation(&failure.kind, &run.iterations[iteration].context, source),
+        violation,
+        race,
     }
 }
 

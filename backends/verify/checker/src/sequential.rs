@@ -4,7 +4,7 @@
 
 use fragbuf_interpreter::{Bytecode, Event, Exit, Machine, Reply, Sequential, SharedMemory, WordAddress};
 
-use crate::memory::{Memory, WIDTH, memory_index, texel, with_buffers};
+use crate::memory::{Memory, TexelLayout, WIDTH, memory_index, with_buffers};
 
 /// The memory of an invocation that runs while no other does.
 struct SequentialMemory<'a> {
@@ -23,7 +23,7 @@ impl SharedMemory for SequentialMemory<'_> {
     }
 
     fn texel(&self, texture: u16, position: [u32; 3]) -> Option<[u32; 4]> {
-        texel(self.textures.get(usize::from(texture))?, position)
+        TexelLayout::FRAME.texel(self.textures.get(usize::from(texture))?, position)
     }
 
     fn extent(&self, _texture: u16) -> [u32; 3] {

@@ -26,6 +26,8 @@ pub(crate) struct State {
     left_interlock: u32,
     /// The fragment that has started and not ended, where fragments run one by one.
     started: Option<usize>,
+    /// The invocations that may pass the barrier at which they wait, a bit each: all members of their workgroup have reached it.
+    released: u32,
     /// What each fragment has observed. Under sequential consistency it serves to find data races.
     order: Rc<RelaxedMemory>,
 }
@@ -90,7 +92,10 @@ impl State {
 
     /// Returns whether memory, the interlock and what fragments may observe are those of another state.
     pub(crate) fn has_memory_of(&self, other: &State) -> bool {
-        self.words == other.words && self.order == other.order && self.in_interlock == other.in_interlock
+        self.words == other.words
+            && self.order == other.order
+            && self.in_interlock == other.in_interlock
+            && self.released == other.released
     }
 }
 
@@ -101,22 +106,30 @@ pub(crate) enum StepError {
     OutOfBounds(u32),
     /// A fragment loops without accessing memory and does not end.
     Endless,
-    /// A fragment reaches a barrier, which only workgroups have.
-    Barrier,
-    /// The access and an earlier one of this fragment are a data race.
-    DataRace(usize),
+    /// An invocation waits at a barrier, at this instruction, that another invocation of its workgroup does not reach.
+    Barrier { waits: usize, at: u32, missing: usize },
+    /// The access of this word of the state and an earlier one of this fragment are a data race.
+    DataRace(usize, u32),
 }
 
 impl SearchContext<'_> {
-    /// Returns the state in which each machine has stopped before its first event.
-    pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, StepError> {
-        let order = Rc::new(RelaxedMemory::new(machines.len()));
-        let mut state =
-            State { words, fragments: Vec::new(), in_interlock: None, left_interlock: 0, started: None, order };
+    /// Returns the state in which each machine has stopped before its first event. `Err`: a fragment fails before it.
+    pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, (usize, StepError)> {
+        let order = Rc::new(RelaxedMemory::new(machines.len(), self.first_of_workgroups as u32));
+        let mut state = State {
+            words,
+            fragments: Vec::new(),
+            in_interlock: None,
+            left_interlock: 0,
+            started: None,
+            released: 0,
+            order,
+        };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
-            let status = self.run(&mut machine, fragment, None, &mut state.words)?;
+            let status = self.run(&mut machine, fragment, None, &mut state.words).map_err(|error| (fragment, error))?;
             state.fragments.push(status);
         }
+        self.check_barriers(&state).map_err(|error| (0, error))?;
         Ok(state)
     }
 
@@ -132,14 +145,17 @@ impl SearchContext<'_> {
         let is_helper = machine.is_helper;
         let exit = machine.run(&mut Pausing { context: self, reply, words, is_helper });
         if let Some(access) = machine.out_of_bounds.take() {
-            return Err(StepError::OutOfBounds(access.at));
+            match &self.out_of_bounds {
+                Some(known) => drop(known.borrow_mut().insert(access.at)),
+                None => return Err(StepError::OutOfBounds(access.at)),
+            }
         }
         match exit {
             Exit::Ended => Ok(Status::Ended(true)),
             Exit::Discarded => Ok(Status::Ended(!self.counts_samples)),
             Exit::Endless => Err(StepError::Endless),
-            Exit::Stopped(Event::Barrier) => Err(StepError::Barrier),
             Exit::Stopped(event) => {
+                let event = self.placed(fragment, event);
                 let mut saved = Vec::new();
                 machine.save(&mut saved);
                 Ok(Status::Before { event, at: machine.at(), saved: saved.into(), anchor: None })
@@ -164,6 +180,7 @@ impl SearchContext<'_> {
             // A helper invocation passes the interlock, and its loads return what memory holds.
             _ if self.helper == Some(fragment) => 1,
             Event::CriticalBegin => u32::from(state.in_interlock.is_none() && self.is_next(state, fragment)),
+            Event::Barrier(_) => u32::from(self.passes_barrier(state, fragment)),
             Event::Access(access) => self.word(access.address).map_or(1, |word| {
                 let value = value(&state.words[word..], access.words);
                 match self.model {
@@ -175,6 +192,33 @@ impl SearchContext<'_> {
             }),
             _ => 1,
         }
+    }
+
+    /// Returns whether a fragment may pass the barrier at which it waits.
+    fn passes_barrier(&self, state: &State, fragment: usize) -> bool {
+        let is_released = |member: usize| state.released >> member & 1 == 1;
+        let waits =
+            |member: &usize| matches!(state.fragments[*member], Status::Before { event: Event::Barrier(_), .. });
+        let members = self.members(fragment);
+        is_released(fragment) || members.iter().all(|member| waits(member) && !is_released(*member))
+    }
+
+    /// Checks that no member of a workgroup waits at a barrier after another has ended, or while another waits at another barrier.
+    fn check_barriers(&self, state: &State) -> Result<(), StepError> {
+        let barrier = |member: usize| match &state.fragments[member] {
+            Status::Before { event: Event::Barrier(_), at, .. } if state.released >> member & 1 == 0 => Some(*at),
+            _ => None,
+        };
+        for fragment in 0..self.workgroups.len() {
+            let Some(at) = barrier(fragment) else { continue };
+            let missing = self.members(fragment).into_iter().find(|member| {
+                state.fragments[*member].has_ended() || barrier(*member).is_some_and(|other| other != at)
+            });
+            if let Some(missing) = missing {
+                return Err(StepError::Barrier { waits: fragment, at, missing });
+            }
+        }
+        Ok(())
     }
 
     /// Returns whether all earlier fragments have left the interlock, if it is ordered.
@@ -203,6 +247,7 @@ impl SearchContext<'_> {
         if !next.order.is_trivial() {
             Rc::make_mut(&mut next.order).forget(|fragment| !next.fragments[fragment].has_ended());
         }
+        self.check_barriers(&next)?;
         Ok((next, reply))
     }
 
@@ -211,6 +256,14 @@ impl SearchContext<'_> {
             return Ok(Reply::Done(self.observed_by_helper(state, event, choice)));
         }
         match event {
+            Event::Barrier(barrier) => {
+                if state.released >> fragment & 1 == 0 {
+                    let members = self.members(fragment);
+                    Rc::make_mut(&mut state.order).barrier(&members, *barrier);
+                    state.released |= members.iter().map(|member| 1 << member).sum::<u32>();
+                }
+                state.released &= !(1 << fragment);
+            }
             Event::CriticalBegin => state.in_interlock = Some(fragment),
             Event::CriticalEnd => {
                 state.in_interlock = None;
@@ -231,7 +284,7 @@ impl SearchContext<'_> {
                 && let Some(other) =
                     Rc::make_mut(&mut state.order).perform_at_once(fragment, word as u32, access, old, is_done)
             {
-                return Err(StepError::DataRace(other));
+                return Err(StepError::DataRace(other, word as u32));
             }
             return Ok(match is_done {
                 true => Reply::Done(perform(access, &mut state.words[word..])),
@@ -250,7 +303,7 @@ impl SearchContext<'_> {
         match observed {
             Observed::Value(value) => Ok(Reply::Done(value)),
             Observed::Spurious(value) => Ok(Reply::Failed(value)),
-            Observed::Race(other) => Err(StepError::DataRace(other)),
+            Observed::Race(other) => Err(StepError::DataRace(other, word as u32)),
         }
     }
 

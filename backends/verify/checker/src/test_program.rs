@@ -11,7 +11,11 @@ use fragbuf_targets::check;
 
 use crate::context::SearchContext;
 use crate::programs::MARKERS;
+use crate::search::{Property, SearchResult};
 use crate::state::State;
+
+/// A search: of all interleavings, or of a reduced set.
+pub(crate) type Search = fn(&SearchContext<'_>, State, &mut dyn Property, usize) -> SearchResult;
 
 /// Compiles the entry point `main`.
 pub(crate) fn compiled(source: &str) -> Bytecode {

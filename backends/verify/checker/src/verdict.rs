@@ -67,6 +67,8 @@ pub struct Report {
     pub hazards: Vec<(String, String)>,
     /// Whether the declared hazards permit the failure. Then they permit all failures that were found.
     pub is_declared: bool,
+    /// What the verdict depends on, in sentences.
+    pub notes: Vec<String>,
     /// Whether the rows declare which fragments are kept. Otherwise the set of kept fragments is not checked.
     pub is_kept_set_checked: bool,
 }
@@ -98,6 +100,7 @@ impl Report {
             failure: None,
             hazards: Vec::new(),
             is_declared: false,
+            notes: Vec::new(),
             is_kept_set_checked: true,
         }
     }

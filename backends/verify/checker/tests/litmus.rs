@@ -3,7 +3,7 @@
 use fragbuf_checker::{Error, Limits, Model, Report, Shader, check_shader};
 
 pub(crate) fn run(source: &str, invocations: u32, model: Model) -> Report {
-    let shader = Shader { file: "litmus.wgsl", source, entry: "main", fill: &[] };
+    let shader = Shader { file: "litmus.wgsl", source, entry: "main", ..Shader::default() };
     let limits = Limits { fragments: vec![invocations], model, ..Limits::default() };
     let report = check_shader(&shader, &limits).unwrap();
     assert!(report.is_exhaustive || report.failure.is_some());
@@ -149,7 +149,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) { atomicStore(&x[atomicAdd
 @group(0) @binding(0) var<storage, read_write> x: f32;
 @fragment
 fn main(@location(0) a: f32) { x = dpdx(a); }";
-    let shader = Shader { file: "litmus.wgsl", source: derivative, entry: "main", fill: &[] };
+    let shader = Shader { file: "litmus.wgsl", source: derivative, entry: "main", ..Shader::default() };
     let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else {
         panic!("derivatives are accepted")
     };

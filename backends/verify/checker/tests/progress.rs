@@ -158,7 +158,7 @@ fn waiting(attempts: u32, then: &str, random_schedules: Option<u32>) -> Report {
         "atomicStore(&x, 0u); for (var i = 0u; i < {attempts}u; i++) {{ if atomicLoad(&x) == 1u {{ return; }} }} {then}"
     );
     let source = litmus(&wait, &wait, "true");
-    let shader = Shader { file: "litmus.wgsl", source: &source, entry: "main", fill: &[] };
+    let shader = Shader { file: "litmus.wgsl", source: &source, entry: "main", ..Shader::default() };
     check_shader(&shader, &Limits { fragments: vec![2], random_schedules, ..Limits::default() }).unwrap()
 }
 

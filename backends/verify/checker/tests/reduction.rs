@@ -74,7 +74,7 @@ fn shaders_have_the_same_verdict_without_the_reduction() {
         let program = litmus(&format!("{a} {b}"), &format!("{writes} {b} {c}"), "seen[0] + seen[1] < 3u");
         for model in [Model::Sequential, Model::Relaxed] {
             let checked = |reduce: bool| {
-                let shader = Shader { file: "litmus.wgsl", source: &program, entry: "main", fill: &[] };
+                let shader = Shader { file: "litmus.wgsl", source: &program, entry: "main", ..Shader::default() };
                 check_shader(&shader, &Limits { fragments: vec![2, 3], model, reduce, ..Limits::default() }).unwrap()
             };
             let (reduced, all) = (checked(true), checked(false));

@@ -6,9 +6,12 @@ use naga::{
 
 use super::compiler::{Compiler, PendingJumps, Result, Value};
 use crate::layout::{Layouts, scalar_of};
-use crate::memory::Atomic;
+use crate::memory::{self, Atomic};
 use crate::operation::{Op, Word};
 use crate::scalar::Binary;
+
+/// The barriers of `workgroupUniformLoad`.
+const WORKGROUP: memory::Barrier = memory::Barrier { storage: false, workgroup: true };
 
 impl<'m> Compiler<'m> {
     pub(super) fn block(&mut self, block: &'m Block) {
@@ -58,8 +61,11 @@ impl<'m> Compiler<'m> {
             Statement::Kill => {
                 self.push(Op::Discard);
             }
-            Statement::ControlBarrier(_) => {
-                self.push(Op::Barrier);
+            Statement::ControlBarrier(barrier) => {
+                self.push(Op::Barrier(memory::Barrier {
+                    storage: barrier.contains(Barrier::STORAGE),
+                    workgroup: barrier.contains(Barrier::WORK_GROUP),
+                }));
             }
             Statement::MemoryBarrier(barrier) if barrier.contains(Barrier::STORAGE) => {
                 self.push(Op::Fence);
@@ -72,12 +78,12 @@ impl<'m> Compiler<'m> {
             }
             Statement::Atomic { pointer, fun, value, result } => self.atomic(*pointer, fun, *value, *result)?,
             Statement::WorkGroupUniformLoad { pointer, result } => {
-                self.push(Op::Barrier);
+                self.push(Op::Barrier(WORKGROUP));
                 let target = self.pointer(*pointer)?;
                 let inner = self.layouts.pointee(self.type_of(*pointer))?;
                 let words = self.load(target, &inner)?;
                 self.callee.values[result.index()] = Some(Value::Words(words));
-                self.push(Op::Barrier);
+                self.push(Op::Barrier(WORKGROUP));
             }
             Statement::Call { function, arguments, result } => self.call(*function, arguments, *result)?,
             Statement::MemoryBarrier(_) => return Err("memory barriers over textures".to_owned()),

@@ -55,6 +55,7 @@ impl Compiler<'_> {
             binding: variable.binding.map(|binding| (binding.group, binding.binding)),
             space,
             words: self.least_words(inner)?,
+            element_words: self.element_words(inner),
             is_written: false,
             commutes: false,
             is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
@@ -67,6 +68,17 @@ impl Compiler<'_> {
     fn initial_word(&self, variable: &GlobalVariable) -> Word {
         let is_written_first = |name: &String| self.options.written_first.contains(name);
         if variable.name.as_ref().is_some_and(is_written_first) { UNWRITTEN } else { 0 }
+    }
+
+    /// Returns the words of an element of the runtime-sized array at the end of a buffer; 0 if it has none.
+    fn element_words(&self, inner: &TypeInner) -> u32 {
+        match inner {
+            TypeInner::Array { size: ArraySize::Dynamic, stride, .. } => stride / 4,
+            TypeInner::Struct { members, .. } => {
+                members.last().map_or(0, |member| self.element_words(self.layouts.inner(member.ty)))
+            }
+            _ => 0,
+        }
     }
 
     /// Returns the words of a buffer without a runtime-sized array at its end.

@@ -7,7 +7,7 @@ use crate::explore::explore;
 use crate::model::Model;
 use crate::reduced::explore_reduced;
 use crate::search::{FailureKind, Property, StateVerdict};
-use crate::test_program::{compiled, two_invocations};
+use crate::test_program::{Search, compiled, two_invocations};
 
 /// One invocation stores to the first word, the other to the second.
 const SHADER: &str = "
@@ -42,9 +42,7 @@ fn every_order_of_two_watched_stores_is_followed() {
         let shader = SHADER.replace("ELEMENT", element).replace("FIRST", first).replace("SECOND", second);
         let program = compiled(&shader);
         for model in [Model::Sequential, Model::Relaxed] {
-            for (is_reduced, search) in
-                [(false, explore as fn(&_, _, &mut _, _) -> _), (true, explore), (true, explore_reduced)]
-            {
+            for (is_reduced, search) in [(false, explore as Search), (true, explore), (true, explore_reduced)] {
                 for (wrong, is_found) in [([1, 0], true), ([0, 1], true), ([1, 1], true), ([2, 0], false)] {
                     let (mut context, words) = SearchContext::new(&program, &[vec![0; 2]], model);
                     context.is_reduced = is_reduced;

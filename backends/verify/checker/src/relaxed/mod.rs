@@ -11,6 +11,7 @@
 //!   writes. A read-modify-write also passes on the view of the write that it observes (release sequences).
 //! * A plain access must have every write of its word in its view, and a plain write must come after every plain read.
 //!   Otherwise it is a data race. No fence adds words that are not coherent to a view.
+//! * A workgroup barrier adds the views of all members of the workgroup to each, for the memory that it orders.
 //! * The interlock adds what fragments have accessed inside of their critical sections, until the section ends.
 
 mod history;
@@ -20,7 +21,7 @@ mod view;
 use fragbuf_interpreter::{Access, Atomic, Operation};
 
 use history::{Accessor, History, PlainRead, Write};
-use view::{View, clock};
+use view::{MemoryKind, View, clock};
 
 /// The memory of all words whose order matters.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +31,8 @@ pub(crate) struct RelaxedMemory {
     fragments: Vec<Views>,
     /// What fragments have accessed inside of critical sections.
     sections: View,
+    /// The first word of workgroup memory. Words before it are in storage buffers.
+    first_of_workgroups: u32,
 }
 
 /// The views of a fragment.
@@ -78,10 +81,15 @@ pub(crate) enum Observed {
 }
 
 impl RelaxedMemory {
-    /// Returns memory that every fragment has observed.
-    pub(crate) fn new(fragments: usize) -> Self {
+    /// Returns memory that every fragment has observed. `first_of_workgroups`: its first word of workgroup memory.
+    pub(crate) fn new(fragments: usize, first_of_workgroups: u32) -> Self {
         let views = Views { epoch: 1, ..Views::default() };
-        RelaxedMemory { histories: Vec::new(), fragments: vec![views; fragments], sections: View::default() }
+        let fragments = vec![views; fragments];
+        RelaxedMemory { histories: Vec::new(), fragments, sections: View::default(), first_of_workgroups }
+    }
+
+    fn kind(&self, word: u32) -> MemoryKind {
+        if word < self.first_of_workgroups { MemoryKind::Storage } else { MemoryKind::Workgroup }
     }
 
     /// Returns whether no access has left anything that orders, or may race with, another.
@@ -238,7 +246,7 @@ impl RelaxedMemory {
         let is_ordered = |read: &&PlainRead| {
             let other = usize::from(read.accessor.fragment);
             other == fragment
-                || views.current.get(clock(other)) >= read.epoch
+                || views.current.get(clock(other, self.kind(word))) >= read.epoch
                 || (read.accessor.in_section && views.outside.is_some())
         };
         let reader = history.reads.iter().find(|read| !is_ordered(read)).filter(|_| access.writes());

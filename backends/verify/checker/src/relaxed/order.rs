@@ -1,15 +1,18 @@
-//! Fences and critical sections of relaxed memory, and the removal of what no fragment can observe.
+//! Fences, barriers and critical sections of relaxed memory, and the removal of what no fragment can observe.
 
-use fragbuf_interpreter::Event;
+use fragbuf_interpreter::{Barrier, Event};
 
-use super::view::{View, clock};
+use super::view::{MemoryKind, View, clock, is_clock_of, kind_of_clock};
 use super::{RelaxedMemory, Views};
 
 impl RelaxedMemory {
     /// Performs an event that is not an access. `is_private`: the word is neither atomic nor coherent.
     pub(crate) fn order(&mut self, fragment: usize, event: &Event, is_private: impl Fn(usize) -> bool) {
         let views = &mut self.fragments[fragment];
-        let is_shared = |key: u32| if key < clock(0) { !is_private(key as usize) } else { key != clock(fragment) };
+        let is_shared = |key: u32| match kind_of_clock(key) {
+            None => !is_private(key as usize),
+            Some(_) => !is_clock_of(key, fragment),
+        };
         match event {
             Event::Fence => {
                 views.current.join_where(&views.observed, is_shared);
@@ -19,7 +22,7 @@ impl RelaxedMemory {
                 views.observed = View::default();
                 views.released = View::default();
                 views.released.join_where(&views.current, is_shared);
-                views.released.raise(clock(fragment), views.epoch);
+                views.released.raise_clocks(fragment, views.epoch);
                 views.epoch += 1;
             }
             Event::CriticalBegin => {
@@ -31,7 +34,31 @@ impl RelaxedMemory {
                     views.current = outside;
                 }
             }
-            Event::Access(_) | Event::Barrier => {}
+            Event::Access(_) | Event::Barrier(_) => {}
+        }
+    }
+
+    /// Performs a workgroup barrier: each member has observed what any member has observed or accessed before it.
+    pub(crate) fn barrier(&mut self, members: &[usize], barrier: Barrier) {
+        let is_ordered = |kind: MemoryKind| match kind {
+            MemoryKind::Storage => barrier.storage,
+            MemoryKind::Workgroup => barrier.workgroup,
+        };
+        let mut all = View::default();
+        for &member in members {
+            let epoch = self.fragments[member].epoch;
+            for kind in MemoryKind::ALL.into_iter().filter(|kind| is_ordered(*kind)) {
+                all.raise(clock(member, kind), epoch);
+            }
+            let kind = |key: u32| kind_of_clock(key).unwrap_or(self.kind(key));
+            all.join_where(&self.fragments[member].current, |key| is_ordered(kind(key)));
+            self.fragments[member].epoch += 1;
+        }
+        for &member in members {
+            let views = &mut self.fragments[member];
+            for view in std::iter::once(&mut views.current).chain(&mut views.outside) {
+                view.join_where(&all, |key| !is_clock_of(key, member));
+            }
         }
     }
 
@@ -40,7 +67,7 @@ impl RelaxedMemory {
         let Some(write) = self.histories[at].1.writes.last() else { return };
         let views = &mut self.fragments[fragment];
         for view in std::iter::once(&mut views.current).chain(&mut views.outside) {
-            view.join_where(&write.view, |key| key != clock(fragment));
+            view.join_where(&write.view, |key| !is_clock_of(key, fragment));
         }
     }
 
@@ -49,7 +76,7 @@ impl RelaxedMemory {
         let views = &mut self.fragments[fragment];
         if let Some(write) = self.histories[at].1.writes.last_mut() {
             write.view = views.current.clone();
-            write.view.raise(clock(fragment), views.epoch);
+            write.view.raise_clocks(fragment, views.epoch);
             views.epoch += 1;
         }
     }
@@ -94,12 +121,15 @@ impl RelaxedMemory {
             return;
         }
         for reader in 0..self.fragments.len() {
-            let key = clock(reader);
-            let others = self.fragments.iter().enumerate();
-            let others = others.filter(|(other, _)| *other != reader && is_running(*other));
-            let known = others.map(|(_, views)| views.lasting().get(key)).min();
+            let known = MemoryKind::ALL.map(|kind| {
+                let others = self.fragments.iter().enumerate();
+                let others = others.filter(|(other, _)| *other != reader && is_running(*other));
+                others.map(|(_, views)| views.lasting().get(clock(reader, kind))).min()
+            });
             let mut epochs: Vec<u32> = Vec::new();
-            for (_, history) in &mut self.histories {
+            let first_of_workgroups = self.first_of_workgroups;
+            for (word, history) in &mut self.histories {
+                let known = known[usize::from(*word >= first_of_workgroups)];
                 history.reads.retain(|read| {
                     usize::from(read.accessor.fragment) != reader || known.is_some_and(|known| read.epoch > known)
                 });
@@ -109,7 +139,9 @@ impl RelaxedMemory {
             epochs.sort_unstable();
             epochs.dedup();
             let dense = |epoch: u32| epochs.partition_point(|other| *other <= epoch) as u32;
-            self.each_view(|view| view.map(key, dense));
+            for kind in MemoryKind::ALL {
+                self.each_view(|view| view.map(clock(reader, kind), dense));
+            }
             let before = epochs.partition_point(|other| *other < self.fragments[reader].epoch) as u32;
             self.fragments[reader].epoch = before + 1;
             for (_, history) in &mut self.histories {

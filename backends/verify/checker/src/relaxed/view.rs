@@ -5,9 +5,33 @@
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct View(Vec<(u32, u32)>);
 
-/// The key of a fragment's clock. Words have lower keys.
-pub(crate) fn clock(fragment: usize) -> u32 {
-    1 << 31 | fragment as u32
+/// The memory that a workgroup barrier may order by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MemoryKind {
+    Storage,
+    Workgroup,
+}
+
+impl MemoryKind {
+    pub(crate) const ALL: [MemoryKind; 2] = [MemoryKind::Storage, MemoryKind::Workgroup];
+}
+
+/// The least key of a clock. Words have lower keys.
+const CLOCKS: u32 = 1 << 31;
+
+/// The key of a fragment's clock, which numbers its plain reads of one kind of memory.
+pub(crate) fn clock(fragment: usize, kind: MemoryKind) -> u32 {
+    CLOCKS | (kind as u32) << 16 | fragment as u32
+}
+
+/// Returns the kind of memory of a clock. `None`: the key is a word.
+pub(crate) fn kind_of_clock(key: u32) -> Option<MemoryKind> {
+    (key >= CLOCKS).then(|| MemoryKind::ALL[(key >> 16 & 1) as usize])
+}
+
+/// Returns whether a key is a clock of a fragment.
+pub(crate) fn is_clock_of(key: u32, fragment: usize) -> bool {
+    key >= CLOCKS && key & 0xffff == fragment as u32
 }
 
 impl View {
@@ -39,6 +63,11 @@ impl View {
         for (key, to) in other.0.iter().filter(|(key, _)| condition(*key)) {
             self.raise(*key, *to);
         }
+    }
+
+    /// Raises both clocks of a fragment to at least `epoch`.
+    pub(crate) fn raise_clocks(&mut self, fragment: usize, epoch: u32) {
+        MemoryKind::ALL.iter().for_each(|kind| self.raise(clock(fragment, *kind), epoch));
     }
 
     /// Returns whether no number of `other` is greater than that of the same key here, except for one key.

@@ -11,9 +11,8 @@ use crate::context::SearchContext;
 use crate::explore::explore;
 use crate::model::Model;
 use crate::reduced::explore_reduced;
-use crate::search::{Property, SearchResult, StateVerdict};
-use crate::state::State;
-use crate::test_program::{compiled, two_invocations};
+use crate::search::{Property, StateVerdict};
+use crate::test_program::{Search, compiled, two_invocations};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -97,9 +96,6 @@ impl Property for Collect {
         StateVerdict::Correct
     }
 }
-
-/// A search, such as [`explore`].
-type Search = fn(&SearchContext<'_>, State, &mut dyn Property, usize) -> SearchResult;
 
 /// Returns the outcomes that a search finds. `is_reduced`: it may leave out interleavings.
 fn found(shader: &Bytecode, program: &Program, search: Search, is_reduced: bool) -> BTreeSet<Outcome> {

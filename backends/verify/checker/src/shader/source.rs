@@ -1,0 +1,169 @@
+//! A shader's source: parsed, validated and compiled for the interpreter.
+//!
+//! Input: WGSL source. Output: the programs of the entry point and of the function `holds`, with the module that names its
+//! variables. Pipeline-overridable constants have their values.
+
+use fragbuf_codegen::{Profile, SourceMap};
+use fragbuf_interpreter::{Bytecode, Options, Unsupported};
+use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
+use fragbuf_targets::capabilities;
+use naga::back::{PipelineConstants, pipeline_constants::process_overrides};
+use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, ShaderStage, SourceLocation};
+
+use crate::programs::{CheckedSource, MARKERS};
+use crate::verdict::Error;
+
+use super::{HOLDS, Shader};
+
+/// An entry point that calls `holds`, so that it remains where overrides are replaced by constants.
+const CALLER: &str = "fragbuf_calls_holds";
+
+/// The programs of a shader.
+pub(super) struct ShaderSource<'a> {
+    pub(super) shader: &'a Shader<'a>,
+    /// The module of the entry point.
+    pub(super) module: Module,
+    pub(super) stage: ShaderStage,
+    pub(super) program: Bytecode,
+    pub(super) holds: Option<Bytecode>,
+    pub(super) text: CheckedSource,
+}
+
+impl<'a> ShaderSource<'a> {
+    pub(super) fn new(shader: &'a Shader<'a>) -> Result<Self, Error> {
+        let (module, info) = validated(shader, shader.source)?;
+        let stage = entry_stage(&module, shader)?;
+        let has_holds = module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(HOLDS));
+        let compiled = |module: &Module, info: &ModuleInfo, is_holds: bool| {
+            let options = Options { markers: &MARKERS, ..Options::default() };
+            let program = match is_holds {
+                true => Bytecode::function(module, info, HOLDS, &options).and_then(Bytecode::without_textures),
+                false => Bytecode::entry_point(module, info, shader.entry, &options),
+            };
+            program.map_err(|unsupported| unsupported_error(&unsupported, shader))
+        };
+        let text =
+            CheckedSource { text: shader.source.to_owned(), lines: SourceMap::default(), file: shader.file.to_owned() };
+        if module.overrides.is_empty() && shader.overrides.is_empty() {
+            let program = compiled(&module, &info, false)?;
+            let holds = has_holds.then(|| compiled(&module, &info, true)).transpose()?;
+            return Ok(ShaderSource { shader, module, stage, program, holds, text });
+        }
+        let values = override_values(&module, shader)?;
+        let (constant, constant_info) = without_overrides(&module, &info, (stage, shader.entry), &values, shader)?;
+        let program = compiled(&constant, &constant_info, false)?;
+        let mut holds = None;
+        if has_holds {
+            let called = format!("{}\n@compute @workgroup_size(1) fn {CALLER}() {{ _ = {HOLDS}(); }}", shader.source);
+            let (module, info) = validated(shader, &called)?;
+            let entry = (ShaderStage::Compute, CALLER);
+            let (module, info) = without_overrides(&module, &info, entry, &values, shader)?;
+            holds = Some(compiled(&module, &info, true)?);
+        }
+        Ok(ShaderSource { shader, module: constant, stage, program, holds, text })
+    }
+
+    /// Returns a note on functions that stand for what WGSL does not have.
+    pub(super) fn marker_note(&self) -> Option<String> {
+        let is_declared = |name: &str| self.module.functions.iter().any(|(_, one)| one.name.as_deref() == Some(name));
+        let names: Vec<String> = MARKERS
+            .iter()
+            .map(|(name, _)| *name)
+            .filter(|name| is_declared(name))
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let (last, before) = names.split_last()?;
+        let all = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
+        let verb = if before.is_empty() { "stands for an operation" } else { "stand for operations" };
+        Some(format!("{all} {verb} that WGSL does not have: a browser calls the function as it is written"))
+    }
+}
+
+/// Parses and validates source.
+fn validated(shader: &Shader<'_>, text: &str) -> Result<(Module, ModuleInfo), Error> {
+    let capabilities = capabilities(Profile::Native);
+    let options = naga::front::wgsl::Options { parse_doc_comments: false, capabilities };
+    let module = naga::front::wgsl::Frontend::new_with_options(options)
+        .parse(text)
+        .map_err(|error| invalid(shader, error.location(text), error.message().to_owned()))?;
+    let info = Validator::new(ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .map_err(|error| invalid(shader, error.location(text), causes(error.as_inner())))?;
+    Ok((module, info))
+}
+
+/// Returns an error and its causes on one line.
+fn causes(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
+}
+
+fn invalid(shader: &Shader<'_>, location: Option<SourceLocation>, message: String) -> Error {
+    let span = location.map_or(SourceSpan::new(shader.file, 1, 1), |at| {
+        let line = shader.source.lines().nth(at.line_number.saturating_sub(1) as usize).unwrap_or_default();
+        let before = line.get(..at.line_position.saturating_sub(1) as usize).map_or(0, |text| text.chars().count());
+        SourceSpan::new(shader.file, at.line_number, before as u32 + 1).with_length(at.length.max(1))
+    });
+    let help = "the checker reads WGSL as naga does";
+    Error::Description(Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into())
+}
+
+fn entry_stage(module: &Module, shader: &Shader<'_>) -> Result<ShaderStage, Error> {
+    let stages = [ShaderStage::Compute, ShaderStage::Fragment];
+    let known = module.entry_points.iter().filter(|entry| stages.contains(&entry.stage));
+    let known: Vec<(&str, ShaderStage)> = known.map(|entry| (entry.name.as_str(), entry.stage)).collect();
+    if let Some((_, stage)) = known.iter().find(|(name, _)| *name == shader.entry) {
+        return Ok(*stage);
+    }
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let others = match &names[..] {
+        [] => "it has none".to_owned(),
+        names => format!("it has {}", names.join(", ")),
+    };
+    let near = nearest_name(shader.entry, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let text = format!("{} has no compute or fragment entry point `{}`: {others}{near}", shader.file, shader.entry);
+    Err(Error::Unable(text))
+}
+
+/// Returns the values of overrides, by naga's keys.
+fn override_values(module: &Module, shader: &Shader<'_>) -> Result<PipelineConstants, Error> {
+    let mut values = PipelineConstants::default();
+    for (name, value) in shader.overrides {
+        let is_named = |id: Option<u16>, own: &Option<String>| {
+            own.as_deref() == Some(name) || id.is_some_and(|id| id.to_string() == *name)
+        };
+        let Some((_, found)) = module.overrides.iter().find(|(_, one)| is_named(one.id, &one.name)) else {
+            let text = format!("{} has no override `{name}`", shader.file);
+            return Err(Error::Unable(text));
+        };
+        let key = found.id.map_or(found.name.clone(), |id| Some(id.to_string()));
+        values.insert(key.unwrap_or_default(), *value);
+    }
+    Ok(values)
+}
+
+/// Replaces overrides by constants, in what an entry point uses.
+fn without_overrides(
+    module: &Module,
+    info: &ModuleInfo,
+    entry: (ShaderStage, &str),
+    values: &PipelineConstants,
+    shader: &Shader<'_>,
+) -> Result<(Module, ModuleInfo), Error> {
+    let (module, info) = process_overrides(module, info, Some(entry), values).map_err(|error| {
+        let text = format!("{}: {}: give overrides values with `--override NAME=VALUE`", shader.file, causes(&error));
+        Error::Unable(text)
+    })?;
+    Ok((module.into_owned(), info.into_owned()))
+}
+
+fn unsupported_error(unsupported: &[Unsupported], shader: &Shader<'_>) -> Error {
+    let message = |one: &Unsupported| match one.span.is_defined() {
+        true => format!("{}:{}: {one}", shader.file, one.span.location(shader.source).line_number),
+        false => format!("{}: {one}", shader.file),
+    };
+    let mut messages: Vec<String> = unsupported.iter().map(message).collect();
+    messages.dedup();
+    Error::Unable(messages.join("\n"))
+}
