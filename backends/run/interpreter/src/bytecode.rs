@@ -77,10 +77,25 @@ pub struct Buffer {
     /// Whether all accesses to it commute: one atomic operation whose result the program ignores and whose order does
     /// not matter.
     pub commutes: bool,
-    /// Whether it is declared as coherent or atomic.
+    /// Whether it is declared as coherent.
     pub is_coherent: bool,
+    /// The words of atomic types before the runtime-sized array at its end.
+    pub atomics: Vec<Range<u32>>,
+    /// The words of atomic types in an element of that array.
+    pub element_atomics: Vec<Range<u32>>,
     /// Whether the program accesses 64 bits of it at once.
     pub is_wide: bool,
+}
+
+impl Buffer {
+    /// Returns whether a word has an atomic type.
+    pub fn is_atomic(&self, word: u32) -> bool {
+        let contains = |ranges: &[Range<u32>], word: u32| ranges.iter().any(|range| range.contains(&word));
+        match word.checked_sub(self.words) {
+            Some(beyond) if self.element_words > 0 => contains(&self.element_atomics, beyond % self.element_words),
+            _ => contains(&self.atomics, word),
+        }
+    }
 }
 
 /// A texture that a program reads texel by texel.

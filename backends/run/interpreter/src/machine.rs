@@ -39,6 +39,9 @@ pub struct Machine<'p> {
     at: u32,
     /// Whether this is a helper invocation, as the marker reports it.
     pub is_helper: bool,
+    /// Whether an index out of bounds is that of the last element, as in WGSL that wgpu and browsers emit. Otherwise the access
+    /// reads 0 or writes nothing.
+    pub clamps: bool,
     /// The first access out of bounds since the caller last took this.
     pub out_of_bounds: Option<OutOfBoundsAccess>,
 }
@@ -46,7 +49,14 @@ pub struct Machine<'p> {
 impl<'p> Machine<'p> {
     /// Creates a machine at the first instruction, with zero inputs.
     pub fn new(program: &'p Bytecode) -> Self {
-        Machine { program, words: program.initial_words.clone(), at: 0, is_helper: false, out_of_bounds: None }
+        Machine {
+            program,
+            words: program.initial_words.clone(),
+            at: 0,
+            is_helper: false,
+            clamps: false,
+            out_of_bounds: None,
+        }
     }
 
     /// Returns the program.
@@ -165,11 +175,11 @@ impl<'p> Machine<'p> {
                     }
                 }
                 Op::Index { to, base, index, stride, bound } => {
-                    read!(to) = index_address(read!(base), read!(index), stride, bound);
+                    read!(to) = index_address(read!(base), read!(index), stride, bound, self.clamps);
                 }
                 Op::IndexRuntime { to, base, index, stride, buffer } => {
                     let bound = shared.length(buffer).saturating_sub(read!(base)) / stride.max(1);
-                    read!(to) = index_address(read!(base), read!(index), stride, bound);
+                    read!(to) = index_address(read!(base), read!(index), stride, bound, self.clamps);
                 }
                 Op::Length { to, buffer, offset, stride } => {
                     read!(to) = shared.length(buffer).saturating_sub(offset) / stride.max(1);
@@ -322,7 +332,8 @@ fn write_words(words: &mut [u32], at: u32, width: u32, value: u64) {
     }
 }
 
-fn index_address(base: u32, index: u32, stride: u32, bound: u32) -> u32 {
+fn index_address(base: u32, index: u32, stride: u32, bound: u32, clamps: bool) -> u32 {
+    let index = if clamps { index.min(bound.saturating_sub(1)) } else { index };
     if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { base + index * stride }
 }
 

@@ -3,7 +3,7 @@
 //! Input: a program, memory and a memory model. Output: the location of every buffer, in read-only memory or in the words
 //! of a state.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 
 use fragbuf_interpreter::{Buffer, Bytecode, Event, Space, WordAddress};
@@ -28,6 +28,10 @@ pub(crate) struct SearchContext<'p> {
     pub(crate) workgroups: Vec<u32>,
     /// The instructions whose index was out of bounds, if that is no failure.
     pub(crate) out_of_bounds: Option<RefCell<BTreeSet<u32>>>,
+    /// Whether such an index is that of the last element.
+    pub(crate) clamps: bool,
+    /// Whether a word has had more writes of the same value than memory keeps.
+    pub(crate) has_forgotten: Cell<bool>,
     pub(crate) model: Model,
     /// Per ordered word, whether it is neither atomic nor coherent: no fence makes it visible to another fragment.
     pub(crate) private: Vec<bool>,
@@ -91,6 +95,8 @@ impl<'p> SearchContext<'p> {
             first_of_workgroups,
             workgroups,
             out_of_bounds: None,
+            clamps: false,
+            has_forgotten: Cell::new(false),
             model,
             private: Vec::new(),
             has_fences: model == Model::Relaxed,
@@ -101,7 +107,9 @@ impl<'p> SearchContext<'p> {
             one_by_one: false,
             counts_samples: false,
         };
-        context.private = context.each_ordered(|buffer| !buffer.is_coherent && buffer.space == Space::Storage);
+        context.private = context.each_ordered(|buffer, word| {
+            buffer.space == Space::Storage && !buffer.is_coherent && !buffer.is_atomic(word)
+        });
         (context, words)
     }
 
@@ -136,13 +144,15 @@ impl<'p> SearchContext<'p> {
         Layout { locations, words, first_of_workgroups, ordered }
     }
 
-    /// Returns a property of its buffer for each ordered word.
-    fn each_ordered(&self, property: impl Fn(&Buffer) -> bool) -> Vec<bool> {
+    /// Returns a property of each ordered word, which depends on its buffer and its number there.
+    fn each_ordered(&self, property: impl Fn(&Buffer, u32) -> bool) -> Vec<bool> {
         let mut all = vec![false; self.ordered];
         for (buffer, location) in self.program.buffers.iter().zip(&self.locations) {
             if let BufferLocation::State { first, words, commutes: false } = location {
                 let copies = if buffer.space == Space::Workgroup { self.workgroup_count() } else { 1 };
-                all[*first..first + words * copies].fill(property(buffer));
+                for (at, word) in (0..words * copies).zip(0..) {
+                    all[first + at] = property(buffer, word);
+                }
             }
         }
         all

@@ -252,7 +252,9 @@ pub(crate) fn step_violation(
         StepError::OutOfBounds(at) => {
             format!("{fragment} accesses an index out of bounds at {}", code_location(context.program, at, source))
         }
-        StepError::Endless => format!("{fragment} loops without end and without accessing memory"),
+        StepError::Endless => {
+            format!("{fragment} loops without end, and no memory that it reads in the loop can change")
+        }
         StepError::Barrier { waits, at, missing } => format!(
             "divergent barrier: {} waits at {}, and {} of its workgroup does not reach this barrier",
             letter(waits),

@@ -142,6 +142,7 @@ impl SearchContext<'_> {
         words: &mut [u32],
     ) -> Result<Status, StepError> {
         machine.is_helper = self.helper == Some(fragment);
+        machine.clamps = self.clamps;
         let is_helper = machine.is_helper;
         let exit = machine.run(&mut Pausing { context: self, reply, words, is_helper });
         if let Some(access) = machine.out_of_bounds.take() {
@@ -245,7 +246,8 @@ impl SearchContext<'_> {
         next.fragments[fragment] = self.run(machine, fragment, Some(reply), &mut next.words)?;
         next.started = Some(fragment).filter(|at| self.one_by_one && !next.fragments[*at].has_ended());
         if !next.order.is_trivial() {
-            Rc::make_mut(&mut next.order).forget(|fragment| !next.fragments[fragment].has_ended());
+            let forgets = Rc::make_mut(&mut next.order).forget(|fragment| !next.fragments[fragment].has_ended());
+            self.has_forgotten.set(self.has_forgotten.get() | forgets);
         }
         self.check_barriers(&next)?;
         Ok((next, reply))

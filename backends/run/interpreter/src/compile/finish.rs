@@ -89,22 +89,17 @@ impl Compiler<'_> {
                     buffer.is_wide |= accessed == number;
                 }
                 match *op {
-                    Op::Store { buffer: accessed, is_atomic, .. } if accessed == number => {
+                    Op::Store { buffer: accessed, .. } if accessed == number => {
                         buffer.is_written = true;
-                        buffer.is_coherent |= is_atomic;
                         commutes = false;
                     }
                     Op::Atomic { buffer: accessed, function, .. } if accessed == number => {
                         buffer.is_written = true;
-                        buffer.is_coherent = true;
                         let is_commutative =
                             !matches!(function, Atomic::Exchange | Atomic::CompareExchange | Atomic::Subtract);
                         commutes &= is_commutative && *only.get_or_insert(function) == function && unread.contains(&at);
                     }
-                    Op::Load { buffer: accessed, is_atomic, .. } if accessed == number => {
-                        buffer.is_coherent |= is_atomic;
-                        commutes = false;
-                    }
+                    Op::Load { buffer: accessed, .. } if accessed == number => commutes = false,
                     _ => {}
                 }
             }

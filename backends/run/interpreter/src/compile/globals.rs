@@ -1,5 +1,7 @@
 //! Global variables: private variables become words, the others buffers and textures.
 
+use std::ops::Range;
+
 use naga::valid::FunctionInfo;
 use naga::{AddressSpace, ArraySize, GlobalVariable, MemoryDecorations, TypeInner};
 
@@ -50,16 +52,19 @@ impl Compiler<'_> {
             _ => return Err("a variable of this address space".to_owned()),
         };
         let number = u16::try_from(self.buffers.len()).map_err(|_| "more than 65536 buffers".to_owned())?;
+        let element = self.open_element(inner);
         self.buffers.push(Buffer {
             name: variable.name.clone().unwrap_or_default(),
             binding: variable.binding.map(|binding| (binding.group, binding.binding)),
             space,
             words: self.least_words(inner)?,
-            element_words: self.element_words(inner),
+            element_words: element.as_ref().map_or(0, |(_, words)| *words),
             is_written: false,
             commutes: false,
             is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
             is_wide: false,
+            atomics: self.atomics(inner),
+            element_atomics: element.map_or(Vec::new(), |(element, _)| self.atomics(element)),
         });
         Ok(Value::Pointer(Pointer::to_buffer(number)))
     }
@@ -70,15 +75,45 @@ impl Compiler<'_> {
         if variable.name.as_ref().is_some_and(is_written_first) { UNWRITTEN } else { 0 }
     }
 
-    /// Returns the words of an element of the runtime-sized array at the end of a buffer; 0 if it has none.
-    fn element_words(&self, inner: &TypeInner) -> u32 {
+    /// Returns the element of the runtime-sized array at the end of a buffer, and the distance between two in words.
+    fn open_element<'t>(&'t self, inner: &'t TypeInner) -> Option<(&'t TypeInner, u32)> {
         match inner {
-            TypeInner::Array { size: ArraySize::Dynamic, stride, .. } => stride / 4,
-            TypeInner::Struct { members, .. } => {
-                members.last().map_or(0, |member| self.element_words(self.layouts.inner(member.ty)))
+            TypeInner::Array { base, size: ArraySize::Dynamic, stride } => {
+                Some((self.layouts.inner(*base), stride / 4))
             }
-            _ => 0,
+            TypeInner::Struct { members, .. } => {
+                members.last().and_then(|member| self.open_element(self.layouts.inner(member.ty)))
+            }
+            _ => None,
         }
+    }
+
+    /// Returns the words of atomic types in a value in a buffer, without a runtime-sized array.
+    fn atomics(&self, inner: &TypeInner) -> Vec<Range<u32>> {
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        let mut add = |range: Range<u32>| match ranges.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => ranges.push(range),
+        };
+        match inner {
+            TypeInner::Atomic(scalar) => add(0..u32::from(scalar.width) / 4),
+            TypeInner::Struct { members, .. } => {
+                for member in members {
+                    let inside = self.atomics(self.layouts.inner(member.ty));
+                    let first = member.offset / 4;
+                    inside.into_iter().for_each(|range| add(first + range.start..first + range.end));
+                }
+            }
+            TypeInner::Array { base, size: ArraySize::Constant(length), stride } => {
+                let inside = self.atomics(self.layouts.inner(*base));
+                let count = if inside.is_empty() { 0 } else { length.get() };
+                for first in (0..count).map(|number| number * (stride / 4)) {
+                    inside.iter().for_each(|range| add(first + range.start..first + range.end));
+                }
+            }
+            _ => {}
+        }
+        ranges
     }
 
     /// Returns the words of a buffer without a runtime-sized array at its end.

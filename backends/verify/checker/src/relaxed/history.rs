@@ -1,6 +1,12 @@
 //! The history of one word: its writes in modification order, and the reads that a later plain write must not race with.
 
+use std::collections::HashMap;
+
 use super::view::View;
+
+/// How many writes of one value to one word memory keeps. A loop that writes the same values again and again would otherwise have
+/// infinitely many states. Only a load that observes a write from before the last ones of its value is left out.
+const REPEATED: usize = 4;
 
 /// The history of one word. Position 0 is the oldest write that a running fragment may still observe.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -55,6 +61,25 @@ impl History {
     /// Returns whether the write after a position is a read-modify-write of the write there.
     pub(crate) fn is_followed(&self, at: u32) -> bool {
         self.writes.get(at as usize + 1).is_some_and(|next| next.follows)
+    }
+
+    /// Returns the least position from which on no value was written more than [`REPEATED`] times. Plain writes stay, because a
+    /// later access may race with them.
+    pub(crate) fn repeated_before(&self) -> u32 {
+        if self.writes.len() <= REPEATED {
+            return 0;
+        }
+        let (mut counts, mut first) = (HashMap::new(), self.writes.len());
+        while first > 0 {
+            let count = counts.entry(self.writes[first - 1].value).or_insert(0);
+            *count += 1;
+            if *count > REPEATED {
+                break;
+            }
+            first -= 1;
+        }
+        let plain = self.writes[1..].iter().position(|write| write.plain.is_some());
+        first.min(plain.unwrap_or(first)) as u32
     }
 
     /// Removes the writes before a position.

@@ -81,8 +81,9 @@ impl RelaxedMemory {
         }
     }
 
-    /// Removes what no running fragment can observe, so that equal behaviour means equal memory.
-    pub(crate) fn forget(&mut self, is_running: impl Fn(usize) -> bool) {
+    /// Removes what no running fragment can observe, so that equal behaviour means equal memory. Returns whether it also
+    /// removed a write that one can observe, because the word has been given the same value too often since.
+    pub(crate) fn forget(&mut self, is_running: impl Fn(usize) -> bool) -> bool {
         if self.histories.is_empty() {
             // No word has more than one write, so views are empty.
             self.fragments.iter_mut().for_each(|views| views.epoch = 1);
@@ -93,25 +94,31 @@ impl RelaxedMemory {
             }
         }
         self.forget_reads(&is_running);
-        self.forget_writes(&is_running);
+        let forgets = self.forget_writes(&is_running);
         for views in &mut self.fragments {
             let Views { observed, outside, current, .. } = views;
             observed.keep_above(outside.as_ref().unwrap_or(current));
         }
         self.histories.retain(|(_, history)| !history.is_trivial());
+        forgets
     }
 
-    fn forget_writes(&mut self, is_running: impl Fn(usize) -> bool) {
+    fn forget_writes(&mut self, is_running: impl Fn(usize) -> bool) -> bool {
+        let mut forgets = false;
         for at in 0..self.histories.len() {
             let word = self.histories[at].0;
             let views = self.fragments.iter().enumerate().filter(|(fragment, _)| is_running(*fragment));
             let oldest = views.map(|(_, views)| views.lasting().get(word)).min();
-            let oldest = oldest.unwrap_or(self.histories[at].1.last());
+            let history = &self.histories[at].1;
+            let observable = oldest.unwrap_or(history.last());
+            let oldest = observable.max(history.repeated_before());
+            forgets |= oldest > observable;
             if oldest > 0 {
                 self.histories[at].1.forget_before(oldest);
                 self.each_view(|view| view.map(word, |position| position.saturating_sub(oldest)));
             }
         }
+        forgets
     }
 
     /// Removes plain reads that every other running fragment is ordered after, and numbers the epochs of the others densely.

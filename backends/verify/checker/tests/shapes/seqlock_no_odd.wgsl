@@ -1,0 +1,20 @@
+// entry: main; fragments: 2; sc: wrong; relaxed: wrong
+// why: The writer changes the number only after the data, so a reader between the two stores accepts a torn pair.
+// after: sequence lock without the odd phase
+@group(0) @binding(0) var<storage, read_write> seq: atomic<u32>;
+@group(0) @binding(1) var<storage, read_write> a: atomic<u32>;
+@group(0) @binding(2) var<storage, read_write> b: atomic<u32>;
+@group(0) @binding(3) var<storage, read_write> seen: array<vec2u, 4>;
+fn memory_fence() {}
+@compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x == 0u {
+        atomicStore(&a, 9u); atomicStore(&b, 9u);
+        memory_fence(); atomicStore(&seq, 2u);
+    } else {
+        let first = atomicLoad(&seq); memory_fence();
+        let pair = vec2u(atomicLoad(&a), atomicLoad(&b));
+        memory_fence();
+        if atomicLoad(&seq) == first { seen[id.x] = pair; }
+    }
+}
+fn holds() -> bool { return seen[1].x == seen[1].y; }
