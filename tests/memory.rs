@@ -69,6 +69,10 @@ fn the_opaque_scene_and_both_images_of_a_comparison_count() {
 fn a_frame_beyond_the_budget_is_refused_with_its_numbers() {
     let folder = folder("memory_refused");
     let out = folder.join("o.png");
+    let opaque = ["--opaque", "builtin:hairball,strands=100000", "--memory", "16MiB"];
+    let (code, text, _) = render("ab_array", &out, &opaque);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.contains("of 16777216 bytes are left"), "{text}");
     let (code, text, _) = render("ab_array", &out, &["--size", "20000x20000"]);
     assert_eq!(code, Some(3), "{text}");
     assert!(text.contains("a frame of 20000 x 20000 pixels") && text.contains("image 6400000000"), "{text}");
@@ -126,12 +130,22 @@ fn files_without_end_are_refused_by_every_command() {
     let pipe = folder.join("pipe.fragbuf");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     let [description, large, pipe] = [&description, &large, &pipe].map(|path| path.to_str().unwrap());
+    let out = folder.join("out");
+    let out = out.to_str().unwrap();
     let commands = [
         (vec!["show", "/dev/zero", "--dump", "plan"], "a device, a pipe or a socket is not a source"),
         (vec!["show", pipe, "--dump", "plan"], "a device, a pipe or a socket is not a source"),
         (vec!["show", description, "--dump", "plan"], "a device, a pipe or a socket is not a source"),
         (vec!["check", "/dev/zero"], "a device, a pipe or a socket is not a source"),
         (vec!["check", "--wgsl", "/dev/zero", "--entry", "main"], "a device, a pipe or a socket is not a source"),
+        (
+            vec!["generate", "kb", "--target", "wgsl", "--with", "/dev/zero", "--out", out],
+            "a device, a pipe or a socket is not a source",
+        ),
+        (
+            vec!["generate", "kb", "--target", "wgsl", "--with", pipe, "--out", out],
+            "a device, a pipe or a socket is not a source",
+        ),
         (vec!["show", large, "--dump", "plan"], "a source of 4194305 bytes or more: it can have 4194304"),
     ];
     for (arguments, expected) in commands {

@@ -37,14 +37,15 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Geo
     let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
     let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
     let columns: Vec<(usize, ReadWords)> = columns.collect::<Result<_, _>>()?;
-    let words = 3 + columns.iter().map(|(words, _)| *words as u64).sum::<u64>();
-    let words = words.saturating_mul(scene.vertices() as u64).saturating_add(3 * scene.triangles() as u64);
-    let memory = memory.without(words.saturating_mul(4), "the list of vertices and indices")?;
+    let stride = 3 + columns.iter().map(|(words, _)| words).sum::<usize>();
+    let words = stride.saturating_mul(scene.vertices());
+    let bytes = (words as u64).saturating_add(3 * scene.triangles() as u64).saturating_mul(4);
+    let memory = memory.without(bytes, "the list of vertices and indices")?;
     // Numbers of vertices and indices have 32 bits.
     if scene.vertices().max(3 * scene.triangles()) > u32::MAX as usize {
         return Err(Failure::Input("the scene has too many vertices or triangles".to_owned()));
     }
-    let (mut vertices, mut indices) = (Vec::new(), Vec::with_capacity(3 * scene.triangles()));
+    let (mut vertices, mut indices) = (Vec::with_capacity(words), Vec::with_capacity(3 * scene.triangles()));
     let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
     for (id, object) in (0..).zip(&scene.objects) {
         for vertex in 0..object.positions.len() {

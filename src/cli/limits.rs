@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use fragbuf::{Generation, Limit, Needed, Sharing};
+use fragbuf::{Generation, Limit, Needed, Sharing, source_file};
 use serde_json::Value;
 
 use super::output::{self, Failure};
@@ -19,7 +19,7 @@ pub(super) struct OtherLimits {
 /// Reads the limits of a manifest. Formulas are left out.
 pub(super) fn read(path: &Path) -> Result<OtherLimits, Failure> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::files(path, &error))?;
+    let text = source_file::read(path).map_err(|error| Failure::files(path, &error))?;
     let unknown =
         |what: &str| Failure::Usage(format!("`{file}` {what}: `--with` needs a manifest.json of `fragbuf generate`"));
     let manifest: Value = serde_json::from_str(&text).map_err(|error| unknown(&format!("is not JSON ({error})")))?;

@@ -21,6 +21,11 @@ impl Budget {
         self.left
     }
 
+    /// Returns the bytes of the whole budget.
+    pub(crate) fn whole(self) -> u64 {
+        self.whole
+    }
+
     /// Returns what is left beside `bytes` bytes.
     pub(crate) fn without(self, bytes: u64, what: &str) -> Result<Self, Failure> {
         let Budget { whole, left } = self;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fragbuf_cpu::FragmentOrder;
-use fragbuf_scene::{BUILTIN_SCENES, Camera, Limits, Scene};
+use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
 use super::device::{self, DeviceRequest, SelectedDevice};
 use super::memory::{self, Budget};
@@ -80,17 +80,27 @@ pub(crate) struct SceneView {
 impl View {
     /// Loads or generates the scene and the opaque scene, whose alpha becomes 1. The camera frames both.
     pub(crate) fn scene_views(&self) -> Result<(SceneView, Option<SceneView>), Failure> {
-        let scene = fragbuf_scene::open(&self.scene, self.color, &Limits { memory: self.memory.left() })?;
+        let scene = self.open(&self.scene, self.memory)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&[&scene]);
             return Ok((self.scene_view(scene, camera), None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
-        let mut opaque = fragbuf_scene::open(opaque, self.color, &Limits { memory: rest.left() })?;
+        let mut opaque = self.open(opaque, rest)?;
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let camera = self.camera(&[&scene, &opaque]);
         Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
+    }
+
+    /// Loads or generates a scene within the rest of a budget. An error has the whole budget as its limit.
+    fn open(&self, name: &str, memory: Budget) -> Result<Scene, Error> {
+        fragbuf_scene::open(name, self.color, &Limits { memory: memory.left() }).map_err(|error| match error {
+            Error::TooLarge { file, what, needed, left, .. } => {
+                Error::TooLarge { file, what, needed, left, limit: memory.whole() }
+            }
+            other => other,
+        })
     }
 
     /// Returns the memory that is left beside scenes.

@@ -42,19 +42,13 @@ pub(super) fn render(
     let (width, height) = view.size;
     loop {
         let sizing = redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
-        let slice = redraw.slice;
-        let settings = Settings { sizing, order, slice, memory, ..Settings::new(width, height) };
+        let settings = Settings { sizing, order, slice: redraw.slice, memory, ..Settings::new(width, height) };
         let mut device = match Device::new(code.clone(), settings) {
-            // A pool for all fragments of so many rows is too large.
-            Err(error) if is_too_large(&error) && redraw.pool_size.is_some() => {
-                if redraw.halve(slice.unwrap_or(height)) {
-                    continue;
-                }
-                return Err(error.into());
-            }
+            // The pool for all fragments of a slice is too large.
+            Err(error) if is_too_large(&error) && redraw.halve() => continue,
             created => created?,
         };
-        let rows = height.div_ceil(device.slices());
+        redraw.rows = Some(height.div_ceil(device.slices()));
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
         }
@@ -70,7 +64,7 @@ pub(super) fn render(
         });
         let picture = match drawn {
             // The slice has more fragments than the budget allows.
-            Err(error) if is_too_large(&error) && redraw.halve(rows) => continue,
+            Err(error) if is_too_large(&error) && redraw.halve() => continue,
             drawn => drawn?,
         };
         let overflow = picture.slice_counters.iter().map(|counters| counters.get(POOL_EXHAUSTED)).max().unwrap_or(0);
@@ -79,7 +73,7 @@ pub(super) fn render(
             let needed = device.pool_size_after(overflow);
             match u32::try_from(needed) {
                 Ok(fragments) => redraw.pool_size = Some(fragments),
-                Err(_) if redraw.halve(rows) => {}
+                Err(_) if redraw.halve() => {}
                 Err(_) => return Err(Failure::Device(format!("{needed} fragments in one row are too many"))),
             }
             continue;
@@ -110,7 +104,9 @@ pub(super) fn render(
 /// Returns whether half as many rows may fit.
 fn is_too_large(error: &Error) -> bool {
     use fragbuf_frame::Error as FrameError;
-    let is_size = |error: &FrameError| matches!(error, FrameError::TooLarge { .. } | FrameError::OverBudget(_));
+    let is_size = |error: &FrameError| {
+        matches!(error, FrameError::TooLarge { shrinks_with_rows: true, .. } | FrameError::OverBudget(_))
+    };
     matches!(error, Error::OutOfMemory { .. }) || matches!(error, Error::Frame(error) if is_size(error))
 }
 

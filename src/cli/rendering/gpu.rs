@@ -99,16 +99,10 @@ impl GpuRenderer {
         let stats = loop {
             let sizing =
                 redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
-            let slice = redraw.slice;
-            let settings = Settings { sizing, slice, ..settings.clone() };
+            let settings = Settings { sizing, slice: redraw.slice, ..settings.clone() };
             let mut renderer = match block_on(device, Renderer::with(device, queue, &pipelines, &settings))? {
-                // A pool for all fragments of so many rows is too large.
-                Err(error) if is_too_large(&error) && redraw.pool_size.is_some() => {
-                    if redraw.halve(slice.unwrap_or(height)) {
-                        continue;
-                    }
-                    return Err(error.into());
-                }
+                // The pool for all fragments of a slice is too large.
+                Err(error) if is_too_large(&error) && redraw.halve() => continue,
                 created => created?,
             };
             for (name, value) in &uniforms {
@@ -120,12 +114,12 @@ impl GpuRenderer {
             redraw.frames += 1;
             let (frame, slices) = (redraw.frames, renderer.slices());
             progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
-            let rows = height.div_ceil(slices);
+            redraw.rows = Some(height.div_ceil(slices));
             match self.frame(&mut renderer, scene, &mesh, view.size) {
                 Ok(FrameOutcome::PoolExhausted { needed }) => redraw.pool_size = Some(needed),
                 Ok(FrameOutcome::Complete(stats)) => break stats,
                 // The slice has more fragments than a buffer or the budget allows.
-                Err(error) if is_too_large(&error) && redraw.halve(rows) => {}
+                Err(error) if is_too_large(&error) && redraw.halve() => {}
                 Err(error) => return Err(error.into()),
             }
         };
@@ -203,6 +197,7 @@ impl GpuRenderer {
                 limit: u32::MAX.into(),
                 limit_name: "fragments",
                 help: "draw lower slices",
+                shrinks_with_rows: true,
             })?;
             return Ok(FrameOutcome::PoolExhausted { needed });
         }
@@ -220,7 +215,7 @@ impl GpuRenderer {
 
 /// Returns whether half as many rows may fit.
 fn is_too_large(error: &Error) -> bool {
-    matches!(error, Error::TooLarge { .. } | Error::OutOfMemory { .. } | Error::OverBudget(_))
+    matches!(error, Error::TooLarge { shrinks_with_rows: true, .. } | Error::OutOfMemory { .. } | Error::OverBudget(_))
 }
 
 /// The bytes per pixel of an image: four halves on the device, and four floats.

@@ -41,15 +41,17 @@ pub(super) struct RedrawState {
     pub(super) pool_size: Option<u32>,
     /// The rows of a slice; `None`: as many as fit.
     pub(super) slice: Option<u32>,
+    /// The rows of a slice of the last device; `None` before the first.
+    pub(super) rows: Option<u32>,
 }
 
 impl RedrawState {
-    /// Halves slices of `rows` rows, because what they hold does not fit; returns whether they can be halved. Half as many rows
-    /// have fewer fragments, so the former size of the pool is void.
-    pub(super) fn halve(&mut self, rows: u32) -> bool {
-        if rows > 1 {
-            (self.slice, self.pool_size) = (Some(rows.div_ceil(2)), None);
-        }
-        rows > 1
+    /// Halves the slices of the last device, because what they hold does not fit; returns whether they can be halved. Before the first
+    /// device they cannot: it has as many rows as fit. Half as many rows have fewer fragments, so the former size of the pool is void.
+    pub(super) fn halve(&mut self) -> bool {
+        let Some(rows) = self.rows.filter(|rows| *rows > 1) else { return false };
+        let half = Some(rows.div_ceil(2));
+        (self.rows, self.slice, self.pool_size) = (half, half, None);
+        true
     }
 }

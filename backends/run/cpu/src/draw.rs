@@ -27,32 +27,54 @@ pub(crate) struct DrawResult {
     pub(crate) out_of_bounds: Option<OutOfBoundsAccess>,
 }
 
+/// Why a draw call cannot run.
+pub(crate) enum DrawError {
+    /// An unsupported construct, or a shader that does not terminate.
+    Shader(String),
+    /// The triangles, or the lists of the tiles, do not fit into the memory of a draw call with a shuffled order. The number of bytes that
+    /// they need, as far as it is known.
+    Shuffled(u64),
+}
+
+impl From<String> for DrawError {
+    fn from(what: String) -> Self {
+        DrawError::Shader(what)
+    }
+}
+
 /// The number of triangles that are set up at a time. A shuffled pixel needs all triangles at once.
 const BATCH: usize = 1 << 17;
 
 /// The entries of the lists of triangles of all tiles at which a batch is divided.
 const ENTRIES: usize = 1 << 22;
 
-/// Runs a draw call; calls `done` for every tile. `Err`: an unsupported construct, or a shader that does not terminate.
-pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<DrawResult, String> {
+/// The bytes of the triangles of a batch and of the lists of all tiles.
+pub(crate) const BATCH_BYTES: u64 = (BATCH * size_of::<Triangle>()) as u64 + ENTRIES as u64 * Bins::ENTRY;
+
+/// Runs a draw call; calls `done` for every tile.
+pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<DrawResult, DrawError> {
     let layout = VertexOutputLayout::of(draw.vertex.0)?;
     let (inputs, rate) = fragment_inputs(draw.vertex.0, draw.fragment.0)?;
     let outputs = fragment_outputs(draw.fragment.0)?;
     let (numbers, count) = (draw.numbers(), draw.vertex_count());
-    let (batch, entries) = match draw.order {
-        FragmentOrder::Submission => (BATCH, ENTRIES),
-        FragmentOrder::Shuffled(_) => (numbers.len().max(1), usize::MAX),
+    let batch = match draw.order {
+        FragmentOrder::Submission => BATCH,
+        FragmentOrder::Shuffled(_) => numbers.len().max(1),
     };
     let results = TileResults::default();
     for instance in draw.arguments.instances.clone() {
         let mut words = vertices::run((draw.vertex.0, &draw.vertex.1), draw.vertices, count, instance)?;
         for numbers_of_batch in numbers.chunks(batch) {
             let share = numbers_of_batch.len() as f64 / numbers.len() as f64 / draw.arguments.instances.len() as f64;
-            let triangles = triangles(draw, &layout, &mut words, count, numbers_of_batch);
+            let triangles = triangles(draw, &layout, &mut words, count, numbers_of_batch)?;
+            let entries = max_entries(draw, &triangles)?;
             let stage = FragmentStage { program: draw.fragment.0, inputs: &inputs, vertices: &words };
             let (mut rest, all) = (triangles.as_slice(), triangles.len() as f64);
             while !rest.is_empty() {
                 let bins = Bins::of(rest, draw.size, &draw.rows, entries);
+                if is_shuffled(draw) && bins.sorted < rest.len() {
+                    return Err(DrawError::Shuffled((size_of_val(rest) + bins.bytes()) as u64));
+                }
                 let tiles = FragmentBatch {
                     draw,
                     stage,
@@ -65,7 +87,7 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
                 let part = share * bins.sorted as f64 / all / bins.tiles.len().max(1) as f64;
                 run(&tiles, &|| done(part));
                 if results.endless.load(Ordering::Relaxed) > 0 {
-                    return Err("a fragment shader that does not terminate".to_owned());
+                    return Err(DrawError::Shader("a fragment shader that does not terminate".to_owned()));
                 }
                 rest = rest.get(bins.sorted..).unwrap_or_default();
             }
@@ -86,6 +108,21 @@ fn run(batch: &FragmentBatch<'_>, done: &(dyn Fn() + Sync)) {
     );
 }
 
+fn is_shuffled(draw: &DrawCall<'_>) -> bool {
+    matches!(draw.order, FragmentOrder::Shuffled(_))
+}
+
+/// Checks the bytes of the triangles of a batch. Returns the number of entries of the lists of all tiles at which the batch is divided,
+/// or that a shuffled order may not exceed.
+fn max_entries(draw: &DrawCall<'_>, triangles: &[Triangle]) -> Result<usize, DrawError> {
+    if !is_shuffled(draw) {
+        return Ok(ENTRIES);
+    }
+    let bytes = size_of_val(triangles) as u64;
+    let left = draw.memory.checked_sub(bytes).ok_or(DrawError::Shuffled(bytes))?;
+    Ok(usize::try_from(left / Bins::ENTRY).unwrap_or(usize::MAX))
+}
+
 /// Sets up the triangles with these numbers. Appends the words of clipped corners to those of the vertices.
 fn triangles(
     draw: &DrawCall<'_>,
@@ -93,7 +130,7 @@ fn triangles(
     words: &mut Vec<u32>,
     count: usize,
     numbers: &[u32],
-) -> Vec<Triangle> {
+) -> Result<Vec<Triangle>, DrawError> {
     // Removes the clipped corners of the previous batch.
     words.truncate(count * layout.stride);
     let mut triangles = Vec::with_capacity(numbers.len());
@@ -118,10 +155,12 @@ fn triangles(
                     .map(|corner| vertex(corner.position, mix(words, layout, starts, corner.weights)))
                     .collect();
                 fan(&polygon).for_each(|corners| push(corners.map(|corner| clipped[corner])));
+                // Clipping makes more triangles than there are numbers.
+                max_entries(draw, &triangles)?;
             }
         }
     }
-    triangles
+    Ok(triangles)
 }
 
 fn vertex(position: [f32; 4], start: usize) -> Vertex {

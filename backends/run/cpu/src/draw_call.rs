@@ -25,6 +25,8 @@ pub(crate) struct DrawCall<'a> {
     pub(crate) attachments: Attachments<'a>,
     pub(crate) coverage: Coverage,
     pub(crate) order: FragmentOrder,
+    /// The bytes for the triangles and the lists of the tiles. They limit a shuffled order only.
+    pub(crate) memory: u64,
 }
 
 /// The triangles and instances to draw.
@@ -49,8 +51,17 @@ impl DrawArguments {
 impl DrawCall<'_> {
     /// Returns the numbers of all triangles within the index list.
     pub(crate) fn numbers(&self) -> Vec<u32> {
+        self.ranges().flatten().collect()
+    }
+
+    /// Returns how many numbers [`DrawCall::numbers`] returns.
+    pub(crate) fn triangle_count(&self) -> u64 {
+        self.ranges().map(|range| range.len() as u64).sum()
+    }
+
+    fn ranges(&self) -> impl Iterator<Item = Range<u32>> {
         let end = self.indices.map_or(u32::MAX, |indices| (indices.len() / 3) as u32);
-        self.arguments.triangles.iter().flat_map(|range| range.start.min(end)..range.end.min(end)).collect()
+        self.arguments.triangles.iter().map(move |range| range.start.min(end)..range.end.min(end))
     }
 
     /// Returns the number of vertices.

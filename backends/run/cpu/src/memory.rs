@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use fragbuf_codegen::{Plan, ResourceId};
-use fragbuf_frame::{MemoryLimits, Values};
+use fragbuf_frame::{BufferLimit, MemoryLimits, Values};
 use fragbuf_templates::vocabulary::Element;
 
 use crate::Error;
@@ -31,7 +31,11 @@ const IMAGE: u64 = size_of::<[f32; 4]>() as u64;
 pub(crate) fn memory_limits(budget: u64) -> MemoryLimits {
     MemoryLimits {
         budget,
-        buffer: (4 * (u32::MAX as u64 - 1), "addresses of 32 bits, in bytes"),
+        buffer: BufferLimit {
+            bytes: 4 * (u32::MAX as u64 - 1),
+            name: "addresses of 32 bits, in bytes",
+            help: "use a smaller frame or lower slices, keep fewer fragments, or reserve less",
+        },
         copies_external: true,
         per_pixel: IMAGE,
         per_slice_pixel: IMAGE,
@@ -61,7 +65,8 @@ impl Slice {
 
 impl Memory {
     /// Resizes every resource to its size under `values`. A resource whose size changes becomes zero; the others keep their
-    /// words. `Err`: the limits do not allow it; then nothing has changed.
+    /// words. `Err`: the limits do not allow it, and nothing has changed; or the system is out of memory, and the resource that the error
+    /// names is empty.
     pub(crate) fn resize(&mut self, plan: &Plan, values: &Values, limits: &MemoryLimits) -> Result<(), Error> {
         let sizes = limits.sizes(plan, values)?;
         self.resources.resize_with(sizes.len(), Vec::new);

@@ -16,8 +16,9 @@ pub struct Settings {
     /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole mesh. `None`: as many rows as
     /// `memory` allows.
     pub slice: Option<u32>,
-    /// The bytes that a frame may allocate: the plan's buffers and textures, and the image. The mesh, and the lists of one batch
-    /// of its triangles, are not part of them; with a shuffled order, a batch is the whole mesh and may not exceed them. Default: [`DEFAULT_MEMORY`], 2 GiB.
+    /// The bytes that a frame may allocate: the plan's buffers and textures, and the image. The mesh, its transformed vertices, and the
+    /// lists of one batch of its triangles, some tens of megabytes, are not part of them. With a shuffled order, a batch is the whole mesh;
+    /// if its triangles and the lists of the tiles are larger than that, they must fit into the rest. Default: [`DEFAULT_MEMORY`], 2 GiB.
     pub memory: u64,
 }
 

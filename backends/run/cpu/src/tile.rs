@@ -30,23 +30,25 @@ pub(crate) struct Bin {
 }
 
 impl Bins {
+    /// The bytes of an entry of the lists.
+    pub(crate) const ENTRY: u64 = size_of::<u32>() as u64;
+
     /// Sorts triangles into the tiles of the rows `slice` of a frame, until the lists of the tiles have `limit` entries or more: a
-    /// large frame has many tiles, and a triangle may touch all of them.
+    /// large frame has many tiles, and a triangle may touch all of them. Entries are counted before their list is allocated.
     pub(crate) fn of(triangles: &[Triangle], (width, height): (u32, u32), slice: &Range<u32>, limit: usize) -> Self {
         let columns = width.div_ceil(SIDE) as usize;
         let rows = (slice.len() as u32).div_ceil(SIDE) as usize;
         let mut ends = vec![0; columns * rows];
-        let mut touched = Vec::with_capacity((2 * triangles.len()).min(limit));
-        let mut sorted = 0;
-        for (number, triangle) in (0..).zip(triangles) {
-            if touched.len() >= limit {
+        let tile = |column: u32, row: u32| row as usize * columns + column as usize;
+        let (mut sorted, mut entries) = (0, 0);
+        for triangle in triangles {
+            if entries >= limit {
                 break;
             }
             sorted += 1;
             touch(triangle, (width, height), slice, |column, row| {
-                let tile = row as usize * columns + column as usize;
-                ends[tile] += 1;
-                touched.push((tile as u32, number));
+                ends[tile(column, row)] += 1;
+                entries += 1;
             });
         }
         let mut begin = 0;
@@ -54,10 +56,13 @@ impl Bins {
             begin += *end;
             *end = begin - *end;
         }
-        let mut numbers = vec![0; touched.len()];
-        for (tile, number) in touched {
-            numbers[ends[tile as usize]] = number;
-            ends[tile as usize] += 1;
+        let mut numbers = vec![0; entries];
+        for (number, triangle) in (0..).zip(triangles.iter().take(sorted)) {
+            touch(triangle, (width, height), slice, |column, row| {
+                let end = &mut ends[tile(column, row)];
+                numbers[*end] = number;
+                *end += 1;
+            });
         }
         let mut tiles = Vec::new();
         let mut begin = 0;
@@ -70,6 +75,11 @@ impl Bins {
             begin = end;
         }
         Bins { tiles, sorted, numbers }
+    }
+
+    /// Returns the bytes of the lists.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.numbers.as_slice())
     }
 
     /// Returns the numbers of the triangles of a tile, in submission order.

@@ -90,23 +90,43 @@ fn shuffled_slices_keep_the_order_of_each_pixel() {
     }
 }
 
-/// A shuffled pixel needs all triangles at once.
+/// A shuffled pixel needs all triangles at once, and the lists of all tiles. Beyond the size of one batch, they must fit into what the frame
+/// leaves of the budget.
 #[test]
 fn shuffled_triangles_beyond_the_budget_are_an_error() {
     let code = code(&Registry::builtin(), "kplus_array");
-    let (_, indices) = scene();
-    let many = indices.repeat(1000);
-    let draw = |order: FragmentOrder| {
-        let settings = Settings { order, memory: 1 << 20, ..Settings::new(1, 1) };
-        let mut device = Device::new(code.clone(), settings).unwrap();
-        device.render(&Mesh { vertices: &scene().0, indices: &many }, &|_| {})
+    let draw = |order: FragmentOrder, (size, rest): (u32, u64), (vertices, indices): &(Vec<u32>, Vec<u32>)| {
+        let whole = Settings { order, slice: Some(size), ..Settings::new(size, size) };
+        let frame = Device::new(code.clone(), whole).unwrap().allocated_bytes() + 2 * 16 * u64::from(size * size);
+        let mut device = Device::new(code.clone(), Settings { memory: frame + rest, ..whole }).unwrap();
+        device.render(&Mesh { vertices, indices }, &|_| {}).map(|picture| picture.samples)
     };
-    assert!(draw(FragmentOrder::Submission).is_ok());
-    let Err(Error::Frame(FrameError::TooLarge { what, needed, limit, .. })) = draw(FragmentOrder::Shuffled(1)) else {
-        panic!("it fits");
+    let refused = |frame: (u32, u64), mesh: &(Vec<u32>, Vec<u32>)| {
+        let result = draw(FragmentOrder::Shuffled(1), frame, mesh);
+        let Err(Error::Frame(FrameError::TooLarge { what, needed, limit, shrinks_with_rows, .. })) = result else {
+            panic!("{result:?}");
+        };
+        assert_eq!(what, format!("a shuffled order of {} triangles", mesh.1.len() / 3));
+        assert!(needed > limit && shrinks_with_rows, "{needed} of {limit}");
+        limit
     };
-    assert_eq!((what, limit), (format!("a shuffled order of {} triangles", many.len() / 3), 1 << 20));
-    assert!(needed > 1 << 20);
+    let repeated = |triangle: Triangle, count: usize| {
+        let (vertices, indices) = mesh(&[triangle]);
+        (vertices, indices.repeat(count))
+    };
+    let triangle = |corners: [[f32; 3]; 3]| Triangle { corners, color: [0.5; 4] };
+    // Triangles beside the frame, because they are cheap.
+    let beside = triangle([[17.0, 0.0, 0.5], [18.0, 0.0, 0.5], [17.0, 1.0, 0.5]]);
+    let many = repeated(beside, 500_000);
+    let batch = refused((1, 0), &many);
+    assert_eq!((refused((1, batch / 2), &many), refused((1, batch + 1000), &many)), (batch, batch + 1000));
+    assert!(draw(FragmentOrder::Submission, (1, 0), &many).is_ok());
+    assert!(draw(FragmentOrder::Shuffled(1), (1, 10 * batch), &many).is_ok());
+    // Triangles over most of 32 x 32 tiles: their lists do not fit. Those of triangles in one tile do.
+    let over_all = triangle([[-16.0, 0.0, 0.5], [32.0, 0.0, 0.5], [8.0, 32.0, 0.5]]);
+    assert_eq!(refused((512, 0), &repeated(over_all, 20_000)), batch);
+    let small = triangle([[0.0, 0.0, 0.5], [0.1, 0.0, 0.5], [0.0, 0.1, 0.5]]);
+    assert!(draw(FragmentOrder::Shuffled(1), (512, 0), &repeated(small, 200)).is_ok());
 }
 
 /// Returns the bytes of a frame in slices of `rows` rows: resources, the image and the output of a slice, four floats per pixel.
@@ -157,7 +177,10 @@ fn a_budget_below_one_row_is_an_error_with_its_numbers() {
     assert_eq!((need, need.total()), (expected, least));
     assert_eq!(refused(0).total(), least);
     let text = Error::Frame(FrameError::OverBudget(need)).to_string();
-    assert!(text.contains(&format!("a frame of 19 x 23 pixels in slices of 1 rows needs {least} bytes")), "{text}");
+    assert!(
+        text.contains(&format!("a frame of 19 x 23 pixels in slices of 19 x 1 pixels needs {least} bytes")),
+        "{text}"
+    );
     assert!(
         text.contains(&format!("the memory budget for it is {} bytes", least - 1)) && text.contains("--memory"),
         "{text}"

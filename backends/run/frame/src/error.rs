@@ -33,6 +33,8 @@ pub enum Error {
         limit_name: &'static str,
         /// The suggested fix.
         help: &'static str,
+        /// Whether lower slices may need less.
+        shrinks_with_rows: bool,
     },
     /// A frame needs more memory than the budget.
     OverBudget(MemoryNeed),
@@ -50,7 +52,7 @@ impl fmt::Display for Error {
         match self {
             Error::Unsupported { what, help } => write!(f, "the runtime does not support {what}: {help}"),
             Error::Formula { what, error } => write!(f, "the size of {what} has no value: {error}"),
-            Error::TooLarge { what, needed, limit, limit_name, help } => {
+            Error::TooLarge { what, needed, limit, limit_name, help, .. } => {
                 write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
             Error::OverBudget(need) => need.fmt(f),
@@ -90,7 +92,7 @@ impl fmt::Display for MemoryNeed {
         let MemoryNeed { size: (width, height), rows, image, textures, buffers, budget } = self;
         write!(
             f,
-            "a frame of {width} x {height} pixels in slices of {rows} rows needs {} bytes (image {image}, textures {textures}, \
+            "a frame of {width} x {height} pixels in slices of {width} x {rows} pixels needs {} bytes (image {image}, textures {textures}, \
              buffers of a slice {buffers}), and the memory budget for it is {budget} bytes: use a smaller frame, keep fewer fragments, or \
              raise the budget (`--memory`, `Settings::memory`)",
             self.total()

@@ -15,10 +15,11 @@ pub const DEFAULT_MEMORY: u64 = 2 << 30;
 /// The limits of a device, and the memory that it allocates for a frame beside the plan's resources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryLimits {
-    /// The bytes that the device may allocate for a frame at one time.
+    /// The bytes that the device may allocate for a frame. Where a host step resizes a buffer, a device may keep the former one until
+    /// the commands that use it have run; the former one is not counted.
     pub budget: u64,
-    /// The greatest size of a buffer in bytes, and the name of the limit.
-    pub buffer: (u64, &'static str),
+    /// The greatest size of a buffer.
+    pub buffer: BufferLimit,
     /// Whether the device has its own copy of external textures.
     pub copies_external: bool,
     /// The bytes per pixel of the frame: its image.
@@ -27,6 +28,17 @@ pub struct MemoryLimits {
     pub per_slice_pixel: u64,
     /// The bytes per slice.
     pub per_slice: u64,
+}
+
+/// The greatest size of a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BufferLimit {
+    /// The size in bytes.
+    pub bytes: u64,
+    /// The name of the limit, and its unit.
+    pub name: &'static str,
+    /// The suggested fix where a buffer exceeds it.
+    pub help: &'static str,
 }
 
 impl MemoryLimits {
@@ -57,11 +69,23 @@ impl MemoryLimits {
         self.check(plan, values, self.all_slices(values))
     }
 
+    /// Returns the bytes of the budget that are left beside slices of the rows of `values`.
+    pub fn left(&self, plan: &Plan, values: &Values) -> Result<u64, Error> {
+        let (need, _) = self.need(plan, values, self.all_slices(values))?;
+        Ok(self.budget.saturating_sub(need.total()))
+    }
+
     fn all_slices(&self, values: &Values) -> u64 {
         self.per_slice.saturating_mul(values.slices().into())
     }
 
     fn check(&self, plan: &Plan, values: &Values, all_slices: u64) -> Result<Vec<u64>, Error> {
+        let (need, sizes) = self.need(plan, values, all_slices)?;
+        if need.total() <= need.budget { Ok(sizes) } else { Err(Error::OverBudget(need)) }
+    }
+
+    /// Returns what slices of the rows of `values` need, and the bytes of every resource. `Err`: a buffer exceeds its limit.
+    fn need(&self, plan: &Plan, values: &Values, all_slices: u64) -> Result<(MemoryNeed, Vec<u64>), Error> {
         let size = (values.width(), values.height());
         let image = self.per_pixel.saturating_mul(u64::from(size.0) * u64::from(size.1));
         let slices = self.per_slice_pixel.saturating_mul(values.pixels()).saturating_add(all_slices);
@@ -79,21 +103,15 @@ impl MemoryLimits {
             }
             need.textures = need.textures.saturating_add(*bytes);
         }
-        if need.total() <= budget { Ok(sizes) } else { Err(Error::OverBudget(need)) }
+        Ok((need, sizes))
     }
 
     fn check_buffer(&self, name: &str, needed: u64) -> Result<(), Error> {
-        let (limit, limit_name) = self.buffer;
+        let BufferLimit { bytes: limit, name: limit_name, help } = self.buffer;
         if needed <= limit {
             return Ok(());
         }
-        Err(Error::TooLarge {
-            what: format!("`{name}`"),
-            needed,
-            limit,
-            limit_name,
-            help: "use a smaller frame or lower slices, keep fewer fragments, reserve less, or request a device with the adapter's own limits",
-        })
+        Err(Error::TooLarge { what: format!("`{name}`"), needed, limit, limit_name, help, shrinks_with_rows: true })
     }
 }
 

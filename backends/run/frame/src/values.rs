@@ -120,6 +120,7 @@ impl Values {
             limit: u32::MAX.into(),
             limit_name: "a 32-bit word",
             help: "use a smaller frame, or split it",
+            shrinks_with_rows: true,
         })
     }
 
@@ -172,6 +173,7 @@ impl Values {
                 limit: u32::MAX.into(),
                 limit_name: "a word of the frame's uniform buffer",
                 help: "use a smaller frame, or split it",
+                shrinks_with_rows: true,
             })
         };
         plan.fields.iter().map(word).collect()

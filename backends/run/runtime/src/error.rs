@@ -34,6 +34,8 @@ pub enum Error {
         limit_name: &'static str,
         /// The suggested fix.
         help: &'static str,
+        /// Whether lower slices may need less.
+        shrinks_with_rows: bool,
     },
     /// A frame needs more memory than the budget of the settings.
     OverBudget(MemoryNeed),
@@ -94,7 +96,7 @@ impl fmt::Display for Error {
         match self {
             Error::Unsupported { what, help } => write!(f, "the runtime does not support {what}: {help}"),
             Error::Formula { what, error } => write!(f, "the size of {what} has no value: {error}"),
-            Error::TooLarge { what, needed, limit, limit_name, help } => {
+            Error::TooLarge { what, needed, limit, limit_name, help, .. } => {
                 write!(f, "{what} needs {needed}, and the device allows {limit} ({limit_name}): {help}")
             }
             Error::OverBudget(need) => need.fmt(f),
@@ -135,8 +137,8 @@ impl From<fragbuf_frame::Error> for Error {
         match error {
             fragbuf_frame::Error::Unsupported { what, help } => Error::Unsupported { what, help },
             fragbuf_frame::Error::Formula { what, error } => Error::Formula { what, error },
-            fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, help } => {
-                Error::TooLarge { what, needed, limit, limit_name, help }
+            fragbuf_frame::Error::TooLarge { what, needed, limit, limit_name, help, shrinks_with_rows } => {
+                Error::TooLarge { what, needed, limit, limit_name, help, shrinks_with_rows }
             }
             fragbuf_frame::Error::OverBudget(need) => Error::OverBudget(need),
             fragbuf_frame::Error::BadValue { name, expected } => Error::BadValue { name, expected },

@@ -42,6 +42,7 @@ impl FrameBlocks {
                 limit,
                 limit_name: "max_buffer_size and offsets of 32 bits, in bytes",
                 help: "use a smaller frame, higher slices or fewer iterations",
+                shrinks_with_rows: false,
             });
         }
         let descriptor = wgpu::BufferDescriptor {

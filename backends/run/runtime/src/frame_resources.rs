@@ -129,6 +129,7 @@ fn check_size(device: &wgpu::Device, values: &Values) -> Result<(), Error> {
                 limit: limit.into(),
                 limit_name: "max_texture_dimension_2d",
                 help: "render the image in tiles",
+                shrinks_with_rows: false,
             });
         }
     }

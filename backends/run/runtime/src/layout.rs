@@ -134,5 +134,6 @@ pub(crate) fn check(device: &wgpu::Device, pass: &Pass, bindings: &[Binding]) ->
         limit,
         limit_name: "max_storage_buffers_per_shader_stage",
         help: "request a device with the adapter's own limit",
+        shrinks_with_rows: false,
     })
 }

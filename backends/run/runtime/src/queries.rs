@@ -29,6 +29,7 @@ impl Queries {
                 limit: wgpu::QUERY_SET_MAX_QUERIES.into(),
                 limit_name: "QUERY_SET_MAX_QUERIES",
                 help: "group several meshes into one object",
+                shrinks_with_rows: false,
             });
         }
         let make = || {

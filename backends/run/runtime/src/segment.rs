@@ -138,6 +138,7 @@ fn workgroups(inputs: &FrameInputs<'_>, pass: &PlannedPass, values: &Values) -> 
             limit: limit.into(),
             limit_name: "max_compute_workgroups_per_dimension",
             help: "use a smaller frame",
+            shrinks_with_rows: true,
         })?;
     }
     Ok(counts)

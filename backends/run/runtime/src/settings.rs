@@ -17,8 +17,9 @@ pub struct Settings {
     /// the device's limits and `memory` allow, which is the whole frame unless its buffers are too large.
     pub slice: Option<u32>,
     /// The bytes that a renderer may allocate on the device for a frame: the plan's buffers, its textures and the attachments of
-    /// passes without one, but not external textures and the view that the frame is resolved into. Slices are as high as it
-    /// allows. Default: [`DEFAULT_MEMORY`], 2 GiB.
+    /// passes without one, but not external textures and the view that the frame is resolved into. A buffer that is replaced by a
+    /// larger one within a frame is not counted, although it exists until the commands that use it have run. Slices are as high as
+    /// `memory` allows. Default: [`DEFAULT_MEMORY`], 2 GiB.
     pub memory: u64,
     /// Whether shaders check array bounds and limit loops at run time.
     pub checks: Checks,

@@ -5,10 +5,14 @@
 
 use std::fs::{File, Metadata};
 use std::io::{BufRead as _, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::{Error, FileError};
 use crate::limits::Budget;
+use crate::text::quoted;
+
+/// The greatest length of the name of a file in a model, in bytes.
+const MAX_NAME: usize = 4096;
 
 /// Returns the bytes of a file, decompressed.
 pub(crate) fn read(path: &Path, budget: &Budget) -> Result<Vec<u8>, Error> {
@@ -39,6 +43,15 @@ pub(crate) fn read(path: &Path, budget: &Budget) -> Result<Vec<u8>, Error> {
         ReadError::Io(error) => failed(error),
         ReadError::TooLarge(error) => error.in_file(&file),
     })
+}
+
+/// Returns the path of a file that a model names, in the model's folder.
+pub(crate) fn beside(folder: &Path, name: &str) -> Result<PathBuf, FileError> {
+    if name.len() > MAX_NAME {
+        let message = format!("the name of a file, {}, has {} bytes: it can have {MAX_NAME}", quoted(name), name.len());
+        return Err(FileError::whole(message));
+    }
+    Ok(folder.join(name))
 }
 
 enum ReadError {

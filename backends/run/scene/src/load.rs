@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, FileError};
-use crate::file::read;
+use crate::file::{beside, read};
 use crate::limits::Budget;
 use crate::{BuiltinScene, Limits, Scene, gltf, normals, obj, ply};
 
@@ -32,7 +32,7 @@ pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Erro
     let mut scene = match extension {
         "obj" => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            obj::parse(&bytes, &file, color, &|library| materials(folder, library, &budget), &budget)?
+            obj::parse(&bytes, &file, color, &|library| materials((&file, folder), library, &budget), &budget)?
         }
         "ply" => ply::parse(&bytes, color, &budget).map_err(|error| error.in_file(&file))?,
         _ => gltf::parse(&bytes, path, color, &budget)?,
@@ -47,8 +47,17 @@ pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Erro
 /// The extensions of models. Without one of them a file is not opened.
 const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
 
-/// Returns the name and the bytes of a material library in the folder of its model.
-fn materials(folder: &Path, library: &str, budget: &Budget) -> Result<(String, Vec<u8>), Error> {
-    let path = folder.join(library);
+/// Returns the name and the bytes of a material library in the folder of its model. A `#` in `library` may be part of the name or begin a
+/// comment: the longest name of a file that exists is read.
+fn materials((model, folder): (&str, &Path), library: &str, budget: &Budget) -> Result<(String, Vec<u8>), Error> {
+    let mut path = beside(folder, library).map_err(|error| error.in_file(model))?;
+    let mut name = library;
+    while !path.exists() {
+        let Some((shorter, _)) = name.rsplit_once('#').filter(|(shorter, _)| !shorter.trim_end().is_empty()) else {
+            break;
+        };
+        name = shorter.trim_end();
+        path = folder.join(name);
+    }
     Ok((path.display().to_string(), read(&path, budget)?))
 }

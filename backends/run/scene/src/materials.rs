@@ -16,10 +16,14 @@ pub(crate) struct Material {
 }
 
 /// The materials of all libraries of a model. A material replaces an earlier one of the same name.
+///
+/// A `#` in a name may be part of it or begin a comment. A whole name has precedence over the part before the `#`.
 #[derive(Default)]
 pub(crate) struct Materials {
     materials: Vec<Material>,
     by_name: HashMap<String, usize>,
+    /// By the part of the name before a `#`.
+    by_short_name: HashMap<String, usize>,
 }
 
 /// The bytes of a material without its name: its list entry and its map entry.
@@ -46,8 +50,8 @@ impl Materials {
             match keyword {
                 "Kd" => material.color = Some(color(values, line)?),
                 "d" => {
-                    let value = values.trim_start();
-                    material.alpha = unit_number(value.strip_prefix("-halo ").unwrap_or(value), line)?;
+                    let (option, value) = values.trim_start().split_once(char::is_whitespace).unwrap_or_default();
+                    material.alpha = unit_number(if option == "-halo" { value } else { values }, line)?;
                 }
                 "Tr" => material.alpha = 1.0 - unit_number(values, line)?,
                 _ => {}
@@ -62,11 +66,10 @@ impl Materials {
             return Err(FileError::line(line, "`newmtl` without a name"));
         }
         budget.take(1, MATERIAL + name.len() as u64, "the materials")?;
-        // A comment may follow the name; a `#` may also be a part of it.
         let short = single_spaces(without_comment(&name));
         if short != name && !short.is_empty() {
             budget.take(1, MATERIAL + short.len() as u64, "the materials")?;
-            self.by_name.entry(short).or_insert(self.materials.len());
+            self.by_short_name.insert(short, self.materials.len());
         }
         self.by_name.insert(name, self.materials.len());
         self.materials.push(Material { color: None, alpha: 1.0 });
@@ -76,19 +79,24 @@ impl Materials {
     /// Returns the index of the material `name`.
     pub(crate) fn find(&self, name: &str, line: usize) -> Result<usize, FileError> {
         let name = single_spaces(name);
-        let found = self.by_name.get(&name).or_else(|| self.by_name.get(&single_spaces(without_comment(&name))));
-        found.copied().ok_or_else(|| {
-            let mut names: Vec<&str> = self.by_name.keys().map(String::as_str).collect();
-            names.sort_unstable();
-            let more = names.len().saturating_sub(MAX_LISTED);
-            names.truncate(MAX_LISTED);
-            let available = match (names.len(), more) {
-                (0, _) => "no `mtllib` defines any".to_owned(),
-                (_, 0) => format!("the materials are {}", names.join(", ")),
-                _ => format!("the materials are {} and {more} more", names.join(", ")),
-            };
-            FileError::line(line, format!("unknown material {}: {available}", quoted(&name)))
-        })
+        let short = single_spaces(without_comment(&name));
+        let candidates = [(&self.by_name, &name), (&self.by_name, &short), (&self.by_short_name, &short)];
+        let found = candidates.iter().find_map(|(materials, name)| materials.get(*name));
+        let unknown = || format!("unknown material {}: {}", quoted(&name), self.available());
+        found.copied().ok_or_else(|| FileError::line(line, unknown()))
+    }
+
+    /// Returns a list of some materials for a message.
+    fn available(&self) -> String {
+        let mut names: Vec<&str> = self.by_name.keys().map(String::as_str).collect();
+        names.sort_unstable();
+        let more = names.len().saturating_sub(MAX_LISTED);
+        let listed: Vec<String> = names.into_iter().take(MAX_LISTED).map(quoted).collect();
+        match (listed.is_empty(), more) {
+            (true, _) => "no `mtllib` defines any".to_owned(),
+            (_, 0) => format!("the materials are {}", listed.join(", ")),
+            _ => format!("the materials are {} and {more} more", listed.join(", ")),
+        }
     }
 
     pub(crate) fn get(&self, index: usize) -> Option<&Material> {

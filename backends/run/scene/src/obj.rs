@@ -100,8 +100,6 @@ struct Reader<'a> {
     color: [f32; 4],
     scene: Scene,
     object: Object,
-    /// The corners of the current face.
-    corners: Vec<u32>,
     triangulator: Triangulator,
     /// The vertices of the object, by position, normal and material.
     known: HashMap<(usize, Option<usize>, Option<usize>), u32>,
@@ -119,7 +117,6 @@ impl<'a> Reader<'a> {
             color,
             scene: Scene::default(),
             object: Object::default(),
-            corners: Vec::new(),
             triangulator: Triangulator::new(),
             known: HashMap::new(),
         }
@@ -160,14 +157,12 @@ impl<'a> Reader<'a> {
             self.budget.take(1, OBJECT + self.object.name.len() as u64, "the scene's objects")?;
         }
         self.budget.triangles(count as u64 - 2)?;
-        let mut corners = std::mem::take(&mut self.corners);
-        corners.clear();
+        let _corners = self.triangulator.begin(count as u64, self.budget)?;
         for word in words.split_whitespace() {
-            corners.push(self.corner(word, line)?);
+            let vertex = self.corner(word, line)?;
+            self.triangulator.corner(vertex);
         }
-        let added = self.triangulator.add(&corners, &mut self.object);
-        self.corners = corners;
-        added.map_err(|message| FileError::line(line, message))
+        self.triangulator.end(&mut self.object).map_err(|message| FileError::line(line, message))
     }
 
     /// Returns the vertex of a corner, `position/texture/normal`.

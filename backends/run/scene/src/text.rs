@@ -10,8 +10,12 @@ const MAX_LINE: usize = 16 << 20;
 /// The greatest length of a part of a file that a message quotes, in characters.
 const MAX_QUOTED: usize = 60;
 
-/// The statements whose rest is a name. A `#` in it is part of the name, as 3ds Max writes `Material #1`.
-const NAMED: [&str; 6] = ["newmtl", "usemtl", "mtllib", "o", "g", "map_Kd"];
+/// The greatest length of a message of another crate, in characters: it may quote a part of a file.
+const MAX_MESSAGE: usize = 300;
+
+/// The statements whose rest is a name that must equal another name or that of a file. Whether a `#` in it is part of the name, as in
+/// `Material #1` of 3ds Max, or begins a comment, depends on these names.
+const NAMED: [&str; 4] = ["newmtl", "usemtl", "mtllib", "map_Kd"];
 
 /// Returns the first line without its end, and the rest of the bytes after it. A line ends with a line feed, a carriage return, or
 /// both. `None`: there is no line.
@@ -96,9 +100,24 @@ pub(crate) fn without_comment(line: &str) -> &str {
 
 /// Returns a part of a file for a message: in backquotes, and shortened if it is long.
 pub(crate) fn quoted(text: &str) -> String {
-    match text.char_indices().nth(MAX_QUOTED) {
-        Some((end, _)) => format!("`{}…`", text.get(..end).unwrap_or_default()),
-        None => format!("`{text}`"),
+    format!("`{}`", shortened(text, MAX_QUOTED))
+}
+
+/// Returns bytes of a file for a message, like [`quoted`]. Bytes that are not shown are not decoded.
+pub(crate) fn quoted_bytes(bytes: &[u8]) -> String {
+    // A character has at most four bytes.
+    quoted(&String::from_utf8_lossy(bytes.get(..4 * (MAX_QUOTED + 1)).unwrap_or(bytes)))
+}
+
+/// Returns a message of another crate, shortened if it is long.
+pub(crate) fn foreign_message(error: &dyn std::fmt::Display) -> String {
+    shortened(&error.to_string(), MAX_MESSAGE).into_owned()
+}
+
+fn shortened(text: &str, length: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(length) {
+        Some((end, _)) => Cow::Owned(format!("{}…", text.get(..end).unwrap_or_default())),
+        None => Cow::Borrowed(text),
     }
 }
 

@@ -108,7 +108,9 @@ fn vertices_and_triangles_of_an_obj_count() {
     // A polygon has two triangles less than corners.
     let (what, needed, _) = too_large(&[("m.obj", all(150_000).as_bytes())], SMALL);
     assert_eq!((what.as_str(), needed), ("the scene's triangles", 12 * 149_998));
-    assert!(loaded(&[("m.obj", all(30_000).as_bytes())], SMALL).is_ok());
+    let (what, needed, _) = too_large(&[("m.obj", all(30_000).as_bytes())], SMALL);
+    assert_eq!((what.as_str(), needed), ("the corners of a face", 44 * 30_000));
+    assert!(loaded(&[("m.obj", all(15_000).as_bytes())], SMALL).is_ok());
     let positions = "v 0 0 0\n".repeat(40_000);
     assert_eq!(too_large(&[("m.obj", positions.as_bytes())], SMALL).0, "the list of positions");
     let materials = "newmtl a\n".repeat(40_000);
@@ -132,6 +134,43 @@ fn lines_have_a_greatest_length() {
     // Messages quote the beginning of a long word.
     let (_, message) = malformed(&[("m.obj", "x".repeat(1000).as_bytes())]);
     assert_eq!(message, format!("unknown statement `{}…`", "x".repeat(60)));
+}
+
+#[test]
+fn messages_quote_the_beginning_of_a_long_name() {
+    let long = "x".repeat(1 << 16);
+    let quoted = format!("`{}…`", "x".repeat(60));
+    let elements = format!("element vertex 1\n{VERTEX}");
+    let materials = format!("mtllib l\n{TRIANGLE}usemtl a\n");
+    let library = format!("newmtl {long}\n");
+    let name = format!("mtllib {long}\n{TRIANGLE}");
+    let model = gltf(r#"[{"mesh": 0}]"#, URI);
+    let version = model.replace("2.0", &long);
+    let extension = model.replacen('{', &format!(r#"{{"extensionsRequired": ["{long}"], "#), 1);
+    let cases: [(&[(&str, &[u8])], String); 7] = [
+        (&[("m.ply", &ply("ascii", &elements, long.as_bytes()))], format!("{quoted} is not a number")),
+        (
+            &[("m.ply", &ply("ascii", &elements, &[0xff; 2000]))],
+            format!("`{}…` is not a number", "\u{fffd}".repeat(60)),
+        ),
+        (
+            &[("m.ply", &ply("ascii", &elements, format!("0 0 0 {long}").as_bytes()))],
+            format!("{quoted} follows the last element"),
+        ),
+        (
+            &[("m.obj", materials.as_bytes()), ("l", library.as_bytes())],
+            format!("unknown material `a`: the materials are {quoted}"),
+        ),
+        (&[("m.obj", name.as_bytes())], format!("the name of a file, {quoted}, has 65536 bytes: it can have 4096")),
+        (&[("m.gltf", version.as_bytes())], format!("glTF version {quoted}: version 2 is read")),
+        (&[("m.gltf", extension.as_bytes())], format!("the required extension {quoted} is not supported")),
+    ];
+    for (files, expected) in cases {
+        assert_eq!(malformed(files).1, expected);
+    }
+    let (_, message) =
+        malformed(&[("m.gltf", model.replace(r#""scene": 0"#, &format!(r#""scene": "{long}""#)).as_bytes())]);
+    assert!(message.chars().count() <= 301 && message.contains("xxx"), "{message}");
 }
 
 fn ply(format: &str, elements: &str, body: &[u8]) -> Vec<u8> {
@@ -197,7 +236,7 @@ fn lists_of_a_ply_beyond_the_file_are_errors() {
 
 #[test]
 fn a_polygon_of_a_ply_counts() {
-    // A byte per corner in the file, and 16 bytes in memory.
+    // A byte per corner in the file; 44 bytes in memory while the face is divided, and 12 for its triangle.
     let face = "property list uint uchar vertex_indices\n";
     let elements = format!("element vertex 3\n{VERTEX}element face 1\n{face}");
     let mut file = ply("binary_little_endian", &elements, &body()[..36]);
@@ -206,7 +245,25 @@ fn a_polygon_of_a_ply_counts() {
     file.push(0);
     let (what, needed, _) = too_large(&[("m.ply", &file)], SMALL);
     assert_eq!((what.as_str(), needed), ("the scene's triangles", 12 * 99_998));
-    assert_eq!(loaded(&[("m.ply", &file)], 4 << 20).unwrap().triangles(), 99_998);
+    assert_eq!(too_large(&[("m.ply", &file)], 4 << 20).0, "the corners of a face");
+    assert_eq!(loaded(&[("m.ply", &file)], 6 << 20).unwrap().triangles(), 99_998);
+}
+
+#[test]
+fn binary_bodies_begin_after_the_line_end_of_the_header() {
+    let elements = format!("element first 1\nproperty uchar a\nelement vertex 3\n{VERTEX}element face 1\n{FACE}");
+    let header = String::from_utf8(ply("binary_little_endian", &elements, b"")).unwrap();
+    for end in ["\n", "\r\n", "\r"] {
+        for first in [b'\n', b'\r', 0] {
+            // A long file has bytes after its body, which are ignored, and no further line end.
+            for rest in [0, 1 << 20] {
+                let header = header.replace('\n', end).into_bytes();
+                let file = [header, vec![first], body(), vec![0; rest]].concat();
+                let scene = loaded(&[("m.ply", &file)], 2 * SMALL);
+                assert_eq!(scene.map(|scene| scene.triangles()), Ok(1), "{end:?}, {first}, {rest}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -428,6 +485,28 @@ fn sparse_elements_replace_others() {
     assert_eq!(failed(&zeros), "accessor 0: the numbers of its sparse elements do not increase at 1");
     let absent = gltf(r#"[{"mesh": 0}]"#, URI).replacen(r#""bufferView": 0, "componentType""#, r#""componentType""#, 1);
     assert_eq!(gltf_message(&absent), "accessor 0: it has neither a buffer view nor sparse elements");
+}
+
+#[test]
+fn morph_targets_count() {
+    let sparse = r#""count": 10000, "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5125},
+        "values": {"bufferView": 0}}"#;
+    let model = gltf(r#"[{"mesh": 0}]"#, URI).replacen(r#""count": 3"#, sparse, 1);
+    let model = model.replacen(r#"{"bufferView": 0, "componentType""#, r#"{"componentType""#, 1);
+    let loaded = |targets: usize, weight: &str| {
+        let list = |word: &str| vec![word; targets].join(", ");
+        let targets = format!(r#""indices": 1, "targets": [{}]"#, list(r#"{"POSITION": 0}"#));
+        let weights = format!(r#""mesh": 0, "weights": [{}]"#, list(weight));
+        let model = model.replace(r#""indices": 1"#, &targets).replace(r#""mesh": 0"#, &weights);
+        loaded(&[("m.gltf", model.as_bytes()), ("b.bin", &buffer())], SMALL)
+    };
+    // All targets share one accessor of 10 000 positions.
+    let error = loaded(20, "1").unwrap_err();
+    let Error::TooLarge { what, needed, .. } = &error else { panic!("{error}") };
+    assert_eq!((what.as_str(), *needed), ("the morph targets", 12 * 10_000));
+    assert_eq!(loaded(2, "1").unwrap().vertices(), 10_000);
+    // A target without weight is not read.
+    assert_eq!(loaded(20, "0").unwrap().vertices(), 10_000);
 }
 
 #[test]

@@ -126,6 +126,61 @@ fn comments_end_with_their_line_and_names_have_any_letter() {
     assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]);
 }
 
+#[test]
+fn a_number_sign_begins_a_comment_unless_it_is_part_of_a_name() {
+    let library = |red: f32| format!("newmtl a\nKd {red} 0 0\n").into_bytes();
+    let red = |statement: &str, files: &[(&str, &[u8])]| {
+        let model = format!("{statement}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+        let scene = loaded(&[&[("m.obj", model.as_bytes())], files].concat()).unwrap();
+        scene.objects[0].colors[0][0]
+    };
+    let [plain, numbered] = [library(0.25), library(0.5)];
+    let both: [(&str, &[u8]); 2] = [("a.mtl", &plain), ("a.mtl #1", &numbered)];
+    for (statement, expected) in [
+        ("mtllib a.mtl", 0.25),
+        ("mtllib a.mtl # a comment", 0.25),
+        ("mtllib a.mtl#", 0.25),
+        ("mtllib a.mtl #1", 0.5),
+        ("mtllib a.mtl #1 # a comment # and another", 0.5),
+    ] {
+        assert_eq!(red(statement, &both), expected, "{statement}");
+    }
+    let (file, ..) = match loaded(&[("m.obj", b"mtllib none.mtl # a comment\n")]) {
+        Err(Error::Unreadable { file, reason }) => (file, reason),
+        other => panic!("{other:?}"),
+    };
+    assert!(file.ends_with("none.mtl"), "{file}");
+    // A backslash at the end of a comment does not continue it.
+    let model = b"v 0 0 0\no cube # from C:\\models\\\nv 1 0 0\nv 0 1 0\ng  a  part # of it\nf 1 2 3\n";
+    let scene = loaded(&[("m.obj", model)]).unwrap();
+    assert_eq!((scene.objects[0].name.as_str(), scene.vertices()), ("a part", 3));
+}
+
+#[test]
+fn a_later_material_replaces_one_of_the_same_name() {
+    let red = |name: &str, library: &str| {
+        let model = format!("mtllib l\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl {name}\nf 1 2 3\n");
+        let scene = loaded(&[("m.obj", model.as_bytes()), ("l", library.as_bytes())]).unwrap();
+        scene.objects[0].colors[0][0]
+    };
+    let twice = |first: &str, second: &str| format!("newmtl {first}\nKd 0.25 0 0\nnewmtl {second}\nKd 0.5 0 0\n");
+    assert_eq!(red("a", &twice("a", "a")), 0.5);
+    assert_eq!(red("a", &twice("a # one", "a # two")), 0.5);
+    assert_eq!([red("a #1", &twice("a #1", "a #2")), red("a #2", &twice("a #1", "a #2"))], [0.25, 0.5]);
+    // The whole name has precedence.
+    assert_eq!([red("a", &twice("a", "a #2")), red("a # b", &twice("a", "a #2"))], [0.25, 0.25]);
+}
+
+#[test]
+fn opacities_may_have_an_option() {
+    for line in ["d 0.25", "d -halo 0.25", "d -halo\t0.25", "d\t-halo \t 0.25", "Tr 0.75"] {
+        let library = format!("newmtl a\n{line}\n");
+        let model = b"mtllib l\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+        let scene = loaded(&[("m.obj", model), ("l", library.as_bytes())]).unwrap();
+        assert_eq!(scene.objects[0].colors[0][3], 0.25, "{line:?}");
+    }
+}
+
 /// Returns how many triangles cover a point of the xy plane.
 fn layers(scene: &Scene, [x, y]: [f32; 2]) -> usize {
     let object = &scene.objects[0];

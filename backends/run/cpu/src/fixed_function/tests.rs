@@ -9,7 +9,7 @@ use fragbuf_templates::vocabulary::{Blend, Compare, Coverage, StencilOperation, 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::attachment::{Attachments, ColorAttachment, DepthAttachment, StencilAttachment};
-use crate::draw::draw;
+use crate::draw::{DrawError, draw};
 use crate::draw_call::{DrawArguments, DrawCall};
 use crate::memory::{Words, read, words};
 use crate::settings::FragmentOrder;
@@ -82,8 +82,13 @@ impl TestDraw<'_> {
             attachments: self.attachments.clone(),
             coverage: self.coverage,
             order: FragmentOrder::Submission,
+            memory: 0,
         };
-        Ok(draw(&call, &|_| {})?.samples)
+        match draw(&call, &|_| {}) {
+            Ok(drawn) => Ok(drawn.samples),
+            Err(DrawError::Shader(what)) => Err(what),
+            Err(DrawError::Shuffled(bytes)) => panic!("{bytes} bytes in the order of submission"),
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::attachment::Attachments;
 use crate::bound_texture::BoundTexture;
 use crate::code::PassCode;
 use crate::compute::compute;
-use crate::draw::{DrawResult, draw};
+use crate::draw::{BATCH_BYTES, DrawError, DrawResult, draw};
 use crate::draw_call::{DrawArguments, DrawCall};
 use crate::interface::VertexOutputLayout;
 use crate::memory::{Words, words};
@@ -87,31 +87,14 @@ impl Frame<'_> {
             arguments: draw_arguments(self, pass)?,
             ..self.empty_draw(pass, values, stages, uniforms)?
         };
-        self.check_shuffled(&call)?;
+        check_shuffled(&call)?;
         // In millionths, so that threads can add atomically.
         let done = AtomicU64::new(0);
         let report = |part: f64| {
             let before = done.fetch_add((1.0e6 * part) as u64, Ordering::Relaxed);
             (self.progress)(PassProgress { pass: &pass.name, share: 1.0e-6 * before as f64 + part });
         };
-        draw(&call, &report).map_err(|what| shader_error(pass, what))
-    }
-
-    /// Checks that the triangles of a draw call fit into the memory of the settings where all of them are set up at once.
-    fn check_shuffled(&self, call: &DrawCall<'_>) -> Result<(), Error> {
-        let count: u64 = call.arguments.triangles.iter().map(|range| range.len() as u64).sum();
-        let (needed, limit) = (count.saturating_mul(size_of::<Triangle>() as u64), self.device.settings.memory);
-        if call.order == FragmentOrder::Submission || needed <= limit {
-            return Ok(());
-        }
-        Err(fragbuf_frame::Error::TooLarge {
-            what: format!("a shuffled order of {count} triangles"),
-            needed,
-            limit,
-            limit_name: "the memory budget, in bytes",
-            help: "use the order of submission, a smaller scene or a larger budget",
-        }
-        .into())
+        draw(&call, &report).map_err(|error| draw_error(pass, &call, error))
     }
 
     /// Draws the box of every object that is not dropped, and keeps the result per object for the cursor.
@@ -148,7 +131,7 @@ impl Frame<'_> {
                 fragment: empty.fragment.clone(),
                 ..empty
             };
-            let drawn = draw(&call, &|_| {}).map_err(|what| shader_error(pass, what))?;
+            let drawn = draw(&call, &|_| {}).map_err(|error| draw_error(pass, &call, error))?;
             all.samples += drawn.samples;
             all.out_of_bounds = all.out_of_bounds.or(drawn.out_of_bounds);
             visible[number] = u32::from(drawn.samples > 0 || crosses);
@@ -191,6 +174,7 @@ impl Frame<'_> {
             attachments: Attachments::of(pass, numbers, &textures, (&self.output, &self.slice))?,
             coverage,
             order: settings.order,
+            memory: self.device.limits.left(plan, &self.device.values)?.max(BATCH_BYTES),
         })
     }
 
@@ -220,6 +204,34 @@ impl Frame<'_> {
         });
         let textures = textures.collect::<Result<_, fragbuf_frame::Error>>()?;
         Ok(View { buffers: buffers.collect(), textures, wide: &self.wide })
+    }
+}
+
+/// Checks that the triangles of a draw call fit into its memory where all of them are set up at once.
+fn check_shuffled(call: &DrawCall<'_>) -> Result<(), Error> {
+    let needed = call.triangle_count().saturating_mul(size_of::<Triangle>() as u64);
+    if call.order == FragmentOrder::Submission || needed <= call.memory {
+        return Ok(());
+    }
+    Err(shuffled_error(call, needed))
+}
+
+fn shuffled_error(call: &DrawCall<'_>, needed: u64) -> Error {
+    fragbuf_frame::Error::TooLarge {
+        what: format!("a shuffled order of {} triangles", call.triangle_count()),
+        needed,
+        limit: call.memory,
+        limit_name: "the greater of the rest of the memory budget and the size of one batch, in bytes",
+        help: "use the order of submission, a smaller scene, lower slices or a larger budget",
+        shrinks_with_rows: true,
+    }
+    .into()
+}
+
+fn draw_error(pass: &Pass, call: &DrawCall<'_>, error: DrawError) -> Error {
+    match error {
+        DrawError::Shader(what) => shader_error(pass, what),
+        DrawError::Shuffled(needed) => shuffled_error(call, needed),
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn read(
                 None => {
                     let name = String::from_utf8(percent_decoded(uri));
                     let name = name.map_err(|_| error_at("its URI is not UTF-8 after decoding".to_owned()))?;
-                    file::read(&folder.join(name), budget)?
+                    file::read(&file::beside(folder, &name).map_err(|error| error.in_file(&file))?, budget)?
                 }
             },
         };

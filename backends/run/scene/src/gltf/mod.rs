@@ -20,7 +20,7 @@ use gltf::{Gltf, Node};
 
 use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
-use crate::text::without_mark;
+use crate::text::{foreign_message, without_mark};
 use crate::{Object, Scene};
 use primitive::Reader;
 
@@ -38,8 +38,10 @@ pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget)
 fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
     json::take(bytes, budget)?;
     let model = Gltf::from_slice_without_validation(bytes).map_err(|error| match error {
-        gltf::Error::Deserialize(error) => FileError::Malformed(FilePosition::Line(error.line()), error.to_string()),
-        other => FileError::whole(other.to_string()),
+        gltf::Error::Deserialize(error) => {
+            FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error))
+        }
+        other => FileError::whole(foreign_message(&other)),
     })?;
     validate::validate(model.as_json())?;
     Ok(model)

@@ -28,6 +28,9 @@ const COLORS: Types = Types {
 const INDICES: Types =
     Types { dimensions: &[Dimensions::Scalar], components: &[DataType::U8, DataType::U16, DataType::U32] };
 
+/// The bytes of the offset of a vertex in a morph target.
+const MORPH_OFFSET: u64 = 12;
+
 /// The buffers of a model and the settings for its primitives.
 pub(super) struct Reader<'a> {
     pub(super) buffers: &'a [Vec<u8>],
@@ -93,6 +96,8 @@ impl Reader<'_> {
                 let message = format!("primitive {number}: a morph target of {found} of {count} positions");
                 return Err(FileError::whole(message));
             }
+            // Offsets are read where they are. They count as if they were copied, so that the time for them is limited, too.
+            self.budget.take(count as u64, MORPH_OFFSET, "the morph targets")?;
             morphs.push((*weight, offsets));
         }
         Ok(morphs)

@@ -13,6 +13,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
 use crate::error::FileError;
+use crate::text::quoted;
 
 /// Extensions that may be required: those of lights, textures and materials do not change what is read, and the others are read.
 const SUPPORTED: [&str; 8] = [
@@ -35,12 +36,12 @@ const STRIDES: RangeInclusive<usize> = 4..=252;
 /// Checks a model.
 pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     if !root.asset.version.starts_with("2.") {
-        let message = format!("glTF version {}: version 2 is read", root.asset.version);
+        let message = format!("glTF version {}: version 2 is read", quoted(&root.asset.version));
         return Err(FileError::whole(message));
     }
     for extension in &root.extensions_required {
         if !SUPPORTED.contains(&extension.as_str()) && !extension.starts_with(MATERIALS) {
-            return Err(FileError::whole(format!("the required extension `{extension}` is not supported")));
+            return Err(FileError::whole(format!("the required extension {} is not supported", quoted(extension))));
         }
     }
     in_range(root.scene.iter(), root.scenes.len(), "the default scene")?;

@@ -5,7 +5,7 @@
 
 use super::header::{Encoding, Header, Kind};
 use crate::error::{FileError, FilePosition};
-use crate::text::quoted;
+use crate::text::quoted_bytes;
 
 /// A reader of the body.
 pub(super) struct Body<'a> {
@@ -38,10 +38,7 @@ impl<'a> Body<'a> {
             return Ok(());
         }
         match self.word() {
-            Some(word) => {
-                let word = quoted(&String::from_utf8_lossy(word));
-                Err(self.error(format!("{word} follows the last element")))
-            }
+            Some(word) => Err(self.error(format!("{} follows the last element", quoted_bytes(word)))),
             None => Ok(()),
         }
     }
@@ -85,10 +82,10 @@ impl<'a> Body<'a> {
         let Some(word) = self.word() else {
             return Err(self.error("the file ends before its last element"));
         };
-        let word = String::from_utf8_lossy(word);
-        let value: f64 = word.parse().map_err(|_| self.error(format!("{} is not a number", quoted(&word))))?;
+        let value: Option<f64> = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        let value = value.ok_or_else(|| self.error(format!("{} is not a number", quoted_bytes(word))))?;
         let is_valid = matches!(kind, Kind::F32 | Kind::F64) || value.fract() == 0.0;
-        if is_valid { Ok(value) } else { Err(self.error(format!("{} is not an integer", quoted(&word)))) }
+        if is_valid { Ok(value) } else { Err(self.error(format!("{} is not an integer", quoted_bytes(word)))) }
     }
 
     /// Reads the next bytes, the least significant first.

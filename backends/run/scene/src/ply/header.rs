@@ -92,6 +92,7 @@ impl Kind {
 impl Header {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileError> {
         let (mut encoding, mut elements, mut length) = (None, Vec::<Element>::new(), 0);
+        let line_end = LineEnd::of(bytes);
         let head = head(bytes);
         let (mut rest, mut line) = (head, 0);
         while let Some((text, after)) = first_line(rest) {
@@ -120,7 +121,7 @@ impl Header {
                 }
                 ["end_header"] => {
                     let encoding = encoding.ok_or_else(|| FileError::line(line, "the header has no `format`"))?;
-                    return Ok(Header { encoding, elements, length, lines: line });
+                    return Ok(Header { encoding, elements, length: line_end.body(bytes, length), lines: line });
                 }
                 _ => return Err(FileError::line(line, format!("unknown header line {}", quoted(text.trim())))),
             }
@@ -133,11 +134,38 @@ impl Header {
     }
 }
 
+/// The ends of the lines of a header, as that of its first line.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum LineEnd {
+    CarriageReturn,
+    /// A line feed, or a carriage return and a line feed.
+    LineFeed,
+}
+
+impl LineEnd {
+    fn of(bytes: &[u8]) -> Self {
+        let mut ends = bytes.iter().skip_while(|byte| !matches!(byte, b'\n' | b'\r'));
+        match (ends.next(), ends.next()) {
+            (Some(b'\r'), Some(b'\n')) | (Some(b'\n'), _) | (None, _) => LineEnd::LineFeed,
+            _ => LineEnd::CarriageReturn,
+        }
+    }
+
+    /// Returns the first byte of the body of a file whose header ends before `end`, including a line feed. Where lines end with a
+    /// carriage return alone, a line feed after `end_header` is the first byte of a binary body.
+    fn body(self, bytes: &[u8], end: usize) -> usize {
+        let header = bytes.get(..end).unwrap_or(bytes);
+        if self == LineEnd::CarriageReturn && header.ends_with(b"\r\n") { end - 1 } else { end }
+    }
+}
+
 /// Returns the lines that may belong to a header.
 fn head(bytes: &[u8]) -> &[u8] {
     let Some(head) = bytes.get(..MAX_HEADER) else { return bytes };
-    let end = head.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-    bytes.get(..end).unwrap_or(bytes)
+    let end = head.iter().rposition(|byte| matches!(byte, b'\n' | b'\r')).map_or(0, |last| last + 1);
+    // A carriage return and a line feed are one line end.
+    let is_divided = head.get(..end).is_some_and(|head| head.ends_with(b"\r")) && bytes.get(end) == Some(&b'\n');
+    bytes.get(..end + usize::from(is_divided)).unwrap_or(bytes)
 }
 
 fn encoding_of(name: &str, line: usize) -> Result<Encoding, FileError> {

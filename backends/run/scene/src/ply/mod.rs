@@ -10,6 +10,7 @@ mod header;
 use crate::error::FileError;
 use crate::limits::{Budget, OBJECT};
 use crate::polygon::Triangulator;
+use crate::text::quoted;
 use crate::{Object, Scene};
 use body::Body;
 use header::{Element, Header, Property};
@@ -19,11 +20,11 @@ pub(crate) fn parse(bytes: &[u8], color: [f32; 4], budget: &Budget) -> Result<Sc
     let header = Header::parse(bytes)?;
     budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
-    let mut object = Object::default();
+    let (mut object, mut triangulator) = (Object::default(), Triangulator::new());
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => vertices(element, &mut body, color, (&mut object, budget))?,
-            "face" => faces(element, &mut body, (&mut object, budget))?,
+            "face" => faces(element, &mut body, &mut triangulator, (&mut object, budget))?,
             "tristrips" => return Err(FileError::line(element.line, "triangle strips are not supported: use faces")),
             _ => skip(element, &mut body)?,
         }
@@ -63,7 +64,7 @@ fn vertices(
                 let scale = if *slot >= 6 { property.kind.greatest() } else { 1.0 };
                 let value = (value / scale) as f32;
                 if !value.is_finite() {
-                    return Err(body.error(format!("`{}` is not finite", property.name)));
+                    return Err(body.error(format!("{} is not finite", quoted(&property.name))));
                 }
                 values[*slot] = value;
             } else {
@@ -77,34 +78,37 @@ fn vertices(
     Ok(())
 }
 
-fn faces(element: &Element, body: &mut Body<'_>, (object, budget): (&mut Object, &Budget)) -> Result<(), FileError> {
+fn faces(
+    element: &Element,
+    body: &mut Body<'_>,
+    triangulator: &mut Triangulator,
+    (object, budget): (&mut Object, &Budget),
+) -> Result<(), FileError> {
     let indices = |property: &Property| ["vertex_indices", "vertex_index"].contains(&property.name.as_str());
     if !element.properties.iter().any(|property| indices(property) && property.list.is_some()) {
         return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
     }
     let count = object.positions.len();
-    let (mut corners, mut triangulator) = (Vec::new(), Triangulator::new());
     for _ in 0..element.count {
         for property in &element.properties {
             let Some(length) = property.list.filter(|_| indices(property)) else {
                 skip_property(property, body)?;
                 continue;
             };
-            corners.clear();
             let length = body.length(length, property.kind)?;
             if length < 3 {
                 return Err(body.error(format!("a face with {length} vertices: it needs 3 or more")));
             }
-            let _corners = budget.hold(length, size_of::<u32>() as u64, "the corners of a face")?;
             budget.triangles(length - 2)?;
+            let _corners = triangulator.begin(length, budget)?;
             for _ in 0..length {
                 let index = body.scalar(property.kind)?;
                 if index.fract() != 0.0 || index < 0.0 || index >= count as f64 {
                     return Err(body.error(format!("no vertex {index}: the file has {count}, counted from 0")));
                 }
-                corners.push(index as u32);
+                triangulator.corner(index as u32);
             }
-            triangulator.add(&corners, object).map_err(|message| body.error(message))?;
+            triangulator.end(object).map_err(|message| body.error(message))?;
         }
     }
     Ok(())
