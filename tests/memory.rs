@@ -39,6 +39,27 @@ fn a_small_budget_draws_the_same_image_in_slices() {
     }
 }
 
+/// The pool of a slice is too large for the budget once its fragments are counted, so slices become lower than those that were drawn first.
+#[test]
+fn slices_are_halved_after_an_overflow() {
+    let folder = folder("memory_overflow");
+    let draw = |out: &str, memory: &str| {
+        let out = folder.join(out);
+        let scene = ["--scene", "builtin:slabs,n=200", "--size", "128x128", "--device", "cpu", "--json"];
+        let view = ["render", "ab_ll", "--memory", memory, "--out", out.to_str().unwrap()];
+        let output = fragbuf(&[&view[..], &scene].concat());
+        assert_eq!(output.status.code(), Some(0), "{memory}: {}", stderr(&output));
+        let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (std::fs::read(&out).unwrap(), statistics["slices"].as_u64().unwrap(), statistics["frames"].as_u64().unwrap())
+    };
+    let (whole, slices, _) = draw("whole.png", "2GiB");
+    assert_eq!(slices, 1);
+    for memory in ["900KiB", "700KiB", "600KiB"] {
+        let (image, slices, frames) = draw("sliced.png", memory);
+        assert!(image == whole && slices > 3 && frames > 2, "{memory}: {slices} slices, {frames} frames");
+    }
+}
+
 #[test]
 fn the_opaque_scene_and_both_images_of_a_comparison_count() {
     let folder = folder("memory_of_images");

@@ -399,7 +399,7 @@ fn failures_have_their_exit_codes_and_write_nothing() {
     let broken = path("broken.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
     let lacking = path("lacking.fragbuf", "buffer B from kb { fragment { color: rgba8, depth: f32, heat: f32 } }");
     let cases: [(&[&str], i32, &str); 9] = [
-        (&["kb", "--scene", &broken], 1, "broken.obj:4: no position 4: 3 are defined so far"),
+        (&["kb", "--scene", &broken], 1, "broken.obj:4: no position 4: the file has 3"),
         (&[&lacking, "--scene", "builtin:cubes"], 1, "`heat: f32`"),
         (&["no_such", "--scene", "builtin:cubes"], 1, "unknown technique"),
         (&["kb", "--scene", "nowhere.obj"], 3, "nowhere.obj"),
@@ -456,4 +456,38 @@ fn devices_are_listed() {
     let output = fragbuf(&["devices"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(String::from_utf8(output.stdout).unwrap().lines().any(|line| line.contains("Cpu")));
+}
+
+/// A model of which a part is missing is drawn with a default and a warning, and `--strict` rejects it with the same words.
+#[test]
+fn missing_parts_of_models_are_warnings_or_errors() {
+    let folder = folder("missing_parts");
+    let (model, out) = (folder.join("m.obj"), folder.join("m.png"));
+    let text =
+        "mtllib none.mtl\nv -1 -1 0.5\nv 1 -1 0.5\nv 1 1 0.5\nv -1 1 0.5\nusemtl a\nf 1 2\nf 1//1 2//1 3//1 4//1\n";
+    std::fs::write(&model, text).unwrap();
+    let arguments =
+        ["render", "ab_array", "--device", "cpu", "--camera", "clip", "--shading", "unlit", "--size", "4x4"];
+    let color = ["--color", "0,0,1,1", "--scene", model.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let messages = [
+        "[missing-file]: FILE:1: no file `none.mtl`: its materials have the default colour",
+        "[missing-material]: FILE:6: unknown material `a`: no `mtllib` defines any: the default colour is used",
+        "[degenerate-face]: FILE:7: a face with 2 vertices is skipped: it needs 3 or more",
+        "[invalid-normal]: FILE:8: no normal 1: the file has 0; it is computed (and 3 more)",
+    ];
+    let lines = |kind: &str| {
+        let lines = messages.map(|message| format!("{kind}{message}\n").replace("FILE", model.to_str().unwrap()));
+        lines.concat()
+    };
+    let drawn = fragbuf(&[&arguments[..], &color].concat());
+    assert_eq!((drawn.status.code(), stderr(&drawn)), (Some(0), lines("warning")));
+    assert!(read(&out).2.iter().all(|pixel| *pixel == [0, 0, 255, 255]));
+    std::fs::remove_file(&out).unwrap();
+    let refused = fragbuf(&[&arguments[..], &color, &["--strict"]].concat());
+    assert_eq!((refused.status.code(), stderr(&refused)), (Some(1), lines("error")));
+    assert!(!out.exists());
+    // A model that is complete has no warnings.
+    std::fs::write(&model, "v -1 -1 0.5\nv 1 -1 0.5\nv 1 1 0.5\nf 1 2 3\n").unwrap();
+    let drawn = fragbuf(&[&arguments[..], &color, &["--strict"]].concat());
+    assert_eq!((drawn.status.code(), stderr(&drawn)), (Some(0), String::new()));
 }

@@ -17,6 +17,9 @@ pub(crate) enum Failure {
     Files(String),
     /// An error in a scene or a shader.
     Input(String),
+    /// Parts of a model that are missing, malformed or not read.
+    #[cfg(feature = "pictures")]
+    Model(Vec<fragbuf_scene::Warning>),
     /// A limit or a failure of the device.
     #[cfg(feature = "pictures")]
     Device(String),
@@ -35,6 +38,11 @@ impl Failure {
             Failure::Usage(text) => (format!("error: {text}\n"), 2),
             Failure::Files(text) => (format!("error: {text}\n"), 3),
             Failure::Input(text) => (format!("error: {text}\n"), 1),
+            #[cfg(feature = "pictures")]
+            Failure::Model(warnings) => {
+                let lines = warnings.iter().map(|warning| format!("error[{}]: {warning}\n", warning.kind.code()));
+                (lines.collect(), 1)
+            }
             #[cfg(feature = "pictures")]
             Failure::Device(text) => (format!("error: {text}\n"), 3),
         };
@@ -88,6 +96,13 @@ impl From<fragbuf_runtime::Error> for Failure {
 pub(crate) fn warn(text: &str) {
     // Ignore the error: there is no other stream to report it on.
     let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// Prints a warning with its code on stderr.
+#[cfg(feature = "pictures")]
+pub(crate) fn warn_code(code: &str, text: &str) {
+    // Ignore the error: there is no other stream to report it on.
+    let _ = writeln!(std::io::stderr(), "warning[{code}]: {text}");
 }
 
 /// Writes to stdout. A closed pipe (`| head`) is not a failure.

@@ -7,7 +7,7 @@ use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
 use super::device::{self, DeviceRequest, SelectedDevice};
 use super::memory::{self, Budget};
-use super::output::Failure;
+use super::output::{self, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct View {
@@ -51,6 +51,9 @@ pub(crate) struct View {
     /// slices of rows
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
     memory: Budget,
+    /// Reject a model if a part of it is missing, malformed or not read. Without it, a warning reports what replaces the part
+    #[arg(long)]
+    strict: bool,
     /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
@@ -80,27 +83,39 @@ pub(crate) struct SceneView {
 impl View {
     /// Loads or generates the scene and the opaque scene, whose alpha becomes 1. The camera frames both.
     pub(crate) fn scene_views(&self) -> Result<(SceneView, Option<SceneView>), Failure> {
-        let scene = self.open(&self.scene, self.memory)?;
+        let mut scene = self.open(&self.scene, self.memory)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&[&scene]);
             return Ok((self.scene_view(scene, camera), None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
         let mut opaque = self.open(opaque, rest)?;
+        scene.share_placement(&mut opaque);
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let camera = self.camera(&[&scene, &opaque]);
         Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
     }
 
-    /// Loads or generates a scene within the rest of a budget. An error has the whole budget as its limit.
-    fn open(&self, name: &str, memory: Budget) -> Result<Scene, Error> {
-        fragbuf_scene::open(name, self.color, &Limits { memory: memory.left() }).map_err(|error| match error {
+    /// Loads or generates a scene within the rest of a budget, and prints its warnings. An error has the whole budget as its limit.
+    fn open(&self, name: &str, memory: Budget) -> Result<Scene, Failure> {
+        let opened = fragbuf_scene::open(name, self.color, &Limits { memory: memory.left() });
+        let mut scene = opened.map_err(|error| match error {
             Error::TooLarge { file, what, needed, left, .. } => {
                 Error::TooLarge { file, what, needed, left, limit: memory.whole() }
             }
             other => other,
-        })
+        })?;
+        if self.strict && !scene.warnings.is_empty() {
+            return Err(Failure::Model(scene.warnings));
+        }
+        for warning in &scene.warnings {
+            output::warn_code(warning.kind.code(), &warning.to_string());
+        }
+        if matches!(self.camera, CameraArgument::Clip) {
+            scene.use_model_coordinates();
+        }
+        Ok(scene)
     }
 
     /// Returns the memory that is left beside scenes.

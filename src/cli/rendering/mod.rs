@@ -64,7 +64,7 @@ pub(crate) fn render(
         match result.more_layers().filter(|_| !has_fixed_layers) {
             Some((option, layers)) => set.push((option, layers.to_string())),
             None => {
-                result.warn(request.description);
+                result.warn(request.description, &scene.scene);
                 if let Some(background) = result.opaque.take() {
                     blend_over(&mut result.stats.pixels, &background);
                 }

@@ -3,6 +3,7 @@
 use fragbuf::Plan;
 use fragbuf::vocabulary::Capability;
 use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime};
+use fragbuf_scene::Scene;
 
 use crate::cli::output::warn;
 
@@ -68,10 +69,14 @@ impl RenderResult {
     }
 
     /// Prints a warning for everything that the image lacks.
-    pub(super) fn warn(&self, description: &str) {
+    pub(super) fn warn(&self, description: &str, scene: &Scene) {
         let warn = |text: &str| warn(&format!("{description}: {text}"));
         if self.stats.pixels.iter().all(|[_, _, _, alpha]| *alpha == 0.0) {
-            warn("the image is empty: check the camera, the `where` constraints and the uniforms (default 0)");
+            let mut colors = scene.objects.iter().flat_map(|object| &object.colors);
+            warn(match colors.all(|[_, _, _, alpha]| *alpha == 0.0) {
+                true => "the image is empty, because all colours of the scene have the alpha 0",
+                false => "the image is empty: check the camera, the `where` constraints and the uniforms (default 0)",
+            });
         }
         if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_external()) {
             warn("it does not read the opaque depth buffer, so fragments behind opaque surfaces are visible");

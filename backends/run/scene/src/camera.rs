@@ -59,7 +59,8 @@ impl Camera {
         let eye = centre + distance * THREE_QUARTER.normalize();
         let (near, far) = (distance - depths.1 - 0.005 * thickness, distance - depths.0 + 0.005 * thickness);
         let projection = directx::perspective(2.0 * HALF_ANGLE, aspect, near, far);
-        let view = view::look_at_mat4(eye, centre, Vec3::Y);
+        // The same as a view from the eye, which may round to the centre if the scene is a point.
+        let view = Mat4::from_translation(-distance * Vec3::Z) * turned;
         Camera { view_projection: (projection * view).to_cols_array(), eye: Eye::At(eye.to_array()) }
     }
 }

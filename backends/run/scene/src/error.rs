@@ -53,13 +53,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Error::Unreadable { file, reason } => write!(f, "{file}: {reason}"),
-            Error::Malformed { file, position: FilePosition::Line(line), message } => {
-                write!(f, "{file}:{line}: {message}")
-            }
-            Error::Malformed { file, position: FilePosition::Byte(byte), message } => {
-                write!(f, "{file}: at byte {byte}: {message}")
-            }
-            Error::Malformed { file, position: FilePosition::Whole, message } => write!(f, "{file}: {message}"),
+            Error::Malformed { file, position, message } => located(f, file, *position, message),
             Error::TooLarge { file, what, needed, left, limit } => write!(
                 f,
                 "{file}: out of the memory budget: {what} needs {needed} bytes or more, and {left} of {limit} bytes are left: use a smaller model or a larger budget"
@@ -70,6 +64,15 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Writes a message with its position.
+pub(crate) fn located(f: &mut fmt::Formatter<'_>, file: &str, position: FilePosition, message: &str) -> fmt::Result {
+    match position {
+        FilePosition::Line(line) => write!(f, "{file}:{line}: {message}"),
+        FilePosition::Byte(byte) => write!(f, "{file}: at byte {byte}: {message}"),
+        FilePosition::Whole => write!(f, "{file}: {message}"),
+    }
+}
 
 /// An error in a file whose name is not known yet.
 #[derive(Clone, Debug, PartialEq, Eq)]

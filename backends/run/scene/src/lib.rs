@@ -2,29 +2,35 @@
 //!
 //! Input: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
 //! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex. A malformed model is never corrected
-//! silently; it is an [`Error`] with its position, and a scene beyond the [`Limits`] is an error before its memory is allocated. This
-//! crate is independent of fragment buffers and devices.
+//! silently: it is an [`Error`] with its position, or a [`Warning`] where other readers of the format go on, too. A scene beyond the
+//! [`Limits`] is an error before its memory is allocated. This crate is independent of fragment buffers and devices.
 
 mod builtin;
 mod camera;
+mod color_range;
 mod error;
 mod file;
 mod gltf;
 mod limits;
 mod load;
 mod materials;
+mod model;
 mod normals;
 mod obj;
+mod placement;
 mod ply;
 mod polygon;
 mod scene;
 mod shading;
 mod text;
+mod warnings;
 
 pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
 pub use camera::{Camera, Eye};
 pub use error::{Error, FilePosition};
 pub use limits::Limits;
 pub use load::{load, open};
+pub use placement::Placement;
 pub use scene::{Object, Scene};
 pub use shading::light;
+pub use warnings::{Warning, WarningKind};

@@ -6,6 +6,7 @@
 use std::cell::Cell;
 
 use crate::error::FileError;
+use crate::model::ModelObject;
 
 /// The limits of one scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,14 +22,17 @@ impl Default for Limits {
     }
 }
 
-/// The bytes of a vertex of a scene, and of the sum of its triangles' normals.
+/// The bytes of a vertex of a generated scene, and of the sum of its triangles' normals.
 const VERTEX: u64 = 12 + 12 + 16 + 12;
+
+/// The bytes of a vertex of a model while its positions are converted from doubles, which are dropped before the sums of normals.
+const MODEL_VERTEX: u64 = 24 + 12 + 12 + 16;
 
 /// The bytes of a triangle of a scene.
 pub(crate) const TRIANGLE: u64 = 12;
 
 /// The bytes of an object of a scene without its lists.
-pub(crate) const OBJECT: u64 = size_of::<crate::Object>() as u64;
+pub(crate) const OBJECT: u64 = (size_of::<crate::Object>() + size_of::<ModelObject>()) as u64;
 
 /// The memory that one scene may still use.
 #[derive(Debug)]
@@ -78,12 +82,12 @@ impl Budget {
     }
 
     /// Takes the memory of `count` more vertices of `object`. It can have 2³² - 1 of them, because indices have 32 bits.
-    pub(crate) fn vertices(&self, object: &crate::Object, count: u64) -> Result<(), FileError> {
+    pub(crate) fn vertices(&self, object: &ModelObject, count: u64) -> Result<(), FileError> {
         let total = (object.positions.len() as u64).saturating_add(count);
         if total > u64::from(u32::MAX) {
             return Err(FileError::whole(format!("an object with {total} vertices: it can have {}", u32::MAX)));
         }
-        self.take(count, VERTEX, "the scene's vertices")
+        self.take(count, MODEL_VERTEX, "the scene's vertices")
     }
 
     /// Takes the memory of triangles of the scene.

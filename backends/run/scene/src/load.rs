@@ -1,11 +1,12 @@
 //! Opens a scene by its name: a path, or `builtin:…`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::{Error, FileError};
 use crate::file::{beside, read};
 use crate::limits::Budget;
-use crate::{BuiltinScene, Limits, Scene, gltf, normals, obj, ply};
+use crate::warnings::{FileWarnings, WarningKind, Warnings};
+use crate::{BuiltinScene, Limits, Scene, Warning, gltf, normals, obj, placement, ply, text};
 
 /// Opens the scene `name`. `color` is the colour of parts for which the model gives none: linear, straight alpha.
 pub fn open(name: &str, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
@@ -27,37 +28,116 @@ pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Erro
             FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz").in_file(&file)
         );
     };
-    let budget = Budget::new(limits);
+    let (budget, warnings) = (Budget::new(limits), Warnings::default());
     let bytes = read(path, &budget)?;
-    let mut scene = match extension {
+    let objects = match extension {
         "obj" => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            obj::parse(&bytes, &file, color, &|library| materials((&file, folder), library, &budget), &budget)?
+            let libraries =
+                |statement: &str, line: usize| libraries(folder, (statement, line), warnings.in_file(&file), &budget);
+            let model = obj::Model { bytes: &bytes, file: &file, libraries: &libraries, warnings: &warnings };
+            obj::parse(&model, color, &budget)?
         }
-        "ply" => ply::parse(&bytes, color, &budget).map_err(|error| error.in_file(&file))?,
-        _ => gltf::parse(&bytes, path, color, &budget)?,
+        "ply" => ply::parse(&bytes, color, (&budget, warnings.in_file(&file))).map_err(|error| error.in_file(&file))?,
+        _ => gltf::parse(&bytes, path, color, (&budget, warnings.in_file(&file)))?,
     };
+    drop(bytes);
+    let mut scene = placement::place(objects);
+    scene.warnings = warnings.into_list();
     if scene.triangles() == 0 {
-        return Err(FileError::whole("the model has no triangles").in_file(&file));
+        return Err(without_triangles(&file, &scene.warnings));
     }
     scene.objects.iter_mut().for_each(normals::complete);
     Ok(scene)
 }
 
+/// Returns the error about a model without triangles. The first warning is the most likely reason.
+fn without_triangles(file: &str, warnings: &[Warning]) -> Error {
+    match warnings.first() {
+        None => FileError::whole("the model has no triangles").in_file(file),
+        Some(Warning { file, position, message, .. }) => {
+            FileError::Malformed(*position, format!("the model has no triangles: {message}")).in_file(file)
+        }
+    }
+}
+
 /// The extensions of models. Without one of them a file is not opened.
 const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
 
-/// Returns the name and the bytes of a material library in the folder of its model. A `#` in `library` may be part of the name or begin a
-/// comment: the longest name of a file that exists is read.
-fn materials((model, folder): (&str, &Path), library: &str, budget: &Budget) -> Result<(String, Vec<u8>), Error> {
-    let mut path = beside(folder, library).map_err(|error| error.in_file(model))?;
-    let mut name = library;
-    while !path.exists() {
-        let Some((shorter, _)) = name.rsplit_once('#').filter(|(shorter, _)| !shorter.trim_end().is_empty()) else {
-            break;
-        };
-        name = shorter.trim_end();
-        path = folder.join(name);
+/// The greatest number of parts that are removed from the end of a statement to find the name of its first library.
+const MAX_PARTS: usize = 16;
+
+/// The greatest number of libraries of a statement.
+const MAX_LIBRARIES: usize = 64;
+
+/// Returns the names and the bytes of the material libraries that a statement names. A file that does not exist is a warning.
+fn libraries(
+    folder: &Path,
+    (statement, line): (&str, usize),
+    warnings: FileWarnings<'_>,
+    budget: &Budget,
+) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    beside(folder, statement).map_err(|error| error.in_file(warnings.file()))?;
+    let mut found = Vec::new();
+    let mut rest = statement;
+    while !rest.is_empty() {
+        let (path, after) = first_library(folder, rest);
+        match path {
+            Some(_) if found.len() == MAX_LIBRARIES => {
+                let message = format!("more than {MAX_LIBRARIES} libraries in one statement");
+                return Err(FileError::line(line, message).in_file(warnings.file()));
+            }
+            Some(path) => {
+                let bytes = read(&path, budget)?;
+                found.push((path.display().to_string(), bytes));
+                rest = after;
+            }
+            None => {
+                let name = text::without_comment(rest);
+                warnings.line(WarningKind::MissingFile, name, line, || {
+                    format!("no file {}: its materials have the default colour", text::quoted(name))
+                });
+                break;
+            }
+        }
     }
-    Ok((path.display().to_string(), read(&path, budget)?))
+    Ok(found)
+}
+
+/// Returns the path of the first library of a statement, and what follows its name. Names may contain spaces, and are separated by them; a
+/// `#` may be part of a name or begin a comment: the longest part that names a file is a name. `None`: there is no such file.
+fn first_library<'s>(folder: &Path, statement: &'s str) -> (Option<PathBuf>, &'s str) {
+    let shorter = |name: &&'s str| {
+        let end = name.rfind(|letter: char| letter.is_whitespace() || letter == '#')?;
+        name.get(..end).map(str::trim_end)
+    };
+    let first_word = statement.split_whitespace().next();
+    let names: Vec<&str> = std::iter::successors(Some(statement), shorter).take(MAX_PARTS).chain(first_word).collect();
+    let as_written = names.iter().find_map(|name| Some((existing(folder, name)?, *name)));
+    // A part before a space may be a whole path, so the shortest is first.
+    let found =
+        as_written.or_else(|| names.iter().rev().find_map(|name| Some((of_another_computer(folder, name)?, *name))));
+    let Some((path, name)) = found else { return (None, "") };
+    let rest = statement.get(name.len()..).unwrap_or_default().trim_start();
+    (Some(path), if rest.starts_with('#') { "" } else { rest })
+}
+
+/// Returns the path of a library if there is such a file: its name as it is, or with the separators of Windows.
+fn existing(folder: &Path, name: &str) -> Option<PathBuf> {
+    let slashes = name.replace('\\', "/");
+    [name, &slashes]
+        .into_iter()
+        .filter(|name| !name.is_empty())
+        .map(|name| folder.join(name))
+        .find(|path| is_file(path))
+}
+
+/// Returns the path of a library in the folder of the model, if its name is a path of another computer.
+fn of_another_computer(folder: &Path, name: &str) -> Option<PathBuf> {
+    let last = name.rsplit(['/', '\\']).next().filter(|last| !last.is_empty() && last.len() < name.len())?;
+    Some(folder.join(last)).filter(|path| is_file(path))
+}
+
+fn is_file(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
 }

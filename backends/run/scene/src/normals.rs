@@ -23,6 +23,11 @@ pub(crate) fn complete(object: &mut Object) {
     for (normal, sum) in object.normals.iter_mut().zip(sums) {
         let given = Vec3::from_array(*normal);
         let normal_or_mean = if given == Vec3::ZERO { sum } else { given };
-        *normal = normal_or_mean.normalize_or(Vec3::Z).to_array();
+        *normal = unit(normal_or_mean).to_array();
     }
+}
+
+/// Returns a vector of length 1. It is divided by its greatest component first, because the squares of small or large ones have no `f32`.
+fn unit(vector: Vec3) -> Vec3 {
+    (vector / vector.abs().max_element()).normalize_or(Vec3::Z)
 }

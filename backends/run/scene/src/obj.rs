@@ -1,39 +1,32 @@
 //! Wavefront OBJ: `v` (with a colour and alpha, if present), `vn`, `f`, `o` and `g`, `mtllib` and `usemtl`.
 //!
 //! The reader is our own because every error needs its line: `tobj` reports no lines, ignores unknown statements and materials,
-//! and panics on a short `Kd`. Curves, surfaces and display statements are ignored; an unknown statement is an error.
+//! and panics on a short `Kd`. The lines are read twice: first vertices and libraries, then faces, because a face may name a vertex or
+//! a material that a later line defines.
 
 use std::collections::{HashMap, HashSet};
 
-use crate::error::{Error, FileError};
+use crate::color_range::ColorRange;
+use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
-use crate::materials::{Materials, single_spaces};
+use crate::materials::{Material, Materials, single_spaces};
+use crate::model::{ModelObject, normal};
 use crate::polygon::Triangulator;
-use crate::text::{lines, numbers, quoted};
-use crate::{Object, Scene};
+use crate::text::{lines, number, numbers, quoted};
+use crate::warnings::{FileWarnings, WarningKind, Warnings};
 
 /// Statements without effect on the triangles.
-const IGNORED: [&str; 37] = [
+const IGNORED: [&str; 22] = [
     "vt",
     "vp",
     "s",
-    "l",
-    "p",
     "mg",
-    "cstype",
     "deg",
     "bmat",
     "step",
-    "curv",
-    "curv2",
-    "surf",
     "parm",
-    "trim",
-    "hole",
-    "scrv",
-    "sp",
-    "end",
     "con",
+    "end",
     "bevel",
     "c_interp",
     "d_interp",
@@ -44,114 +37,197 @@ const IGNORED: [&str; 37] = [
     "trace_obj",
     "ctech",
     "stech",
-    "call",
     "csh",
     "res",
-    "bsp",
-    "bzp",
-    "cdc",
-    "cdp",
 ];
 
-/// A function from the name of a library in the model to its file name and bytes.
-type Library<'a> = dyn Fn(&str) -> Result<(String, Vec<u8>), Error> + 'a;
+/// Statements of geometry that is not read.
+const NOT_READ: [(&[&str], &str); 3] = [
+    (&["l", "p"], "lines and points are not read"),
+    (
+        &["cstype", "curv", "curv2", "surf", "trim", "hole", "scrv", "sp", "bsp", "bzp", "cdc", "cdp"],
+        "curves and surfaces are not read",
+    ),
+    (&["call"], "files of `call` are not read"),
+];
+
+/// A function from the libraries that a line names to their file names and bytes.
+type Libraries<'a> = dyn Fn(&str, usize) -> Result<Vec<(String, Vec<u8>)>, Error> + 'a;
+
+/// A model, and the function that reads its libraries.
+pub(crate) struct Model<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) file: &'a str,
+    pub(crate) libraries: &'a Libraries<'a>,
+    pub(crate) warnings: &'a Warnings,
+}
+
+/// The greatest number of different `mtllib` statements.
+const MAX_LIBRARIES: usize = 256;
 
 /// The bytes of a `v` or a `vn` in the lists of the reader, at most.
-const LISTED: u64 = 12 + 20;
+const LISTED: u64 = 24 + 20;
 
 /// The bytes of an entry of [`Reader::known`].
 const KNOWN: u64 = 64;
 
-/// Reads a model. `library` returns a material library by its name in the model; `color` is the colour of vertices without
-/// one.
-pub(crate) fn parse(
-    bytes: &[u8],
-    file: &str,
-    color: [f32; 4],
-    library: &Library<'_>,
-    budget: &Budget,
-) -> Result<Scene, Error> {
-    let mut reader = Reader::new(color, budget);
+/// Reads a model. `color` is the colour of vertices without one.
+pub(crate) fn parse(model: &Model<'_>, color: [f32; 4], budget: &Budget) -> Result<Vec<ModelObject>, Error> {
+    let mut reader = Reader::new(color, model.warnings.in_file(model.file), budget);
     // A library that the model names twice is read once.
     let mut libraries: HashSet<String> = HashSet::new();
-    for statement in lines(bytes) {
-        let (line, statement) = statement.map_err(|error| error.in_file(file))?;
-        let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
-        if keyword == "mtllib" {
-            if libraries.insert(rest.trim().to_owned()) {
-                let (name, bytes) = library(rest.trim())?;
-                reader.materials.add(&bytes, budget).map_err(|error| error.in_file(&name))?;
+    for statement in lines(model.bytes) {
+        let (line, statement) = statement.map_err(|error| error.in_file(model.file))?;
+        let (keyword, words) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
+        if keyword != "mtllib" {
+            reader.define(keyword, words, line).map_err(|error| error.in_file(model.file))?;
+        } else if libraries.insert(words.trim().to_owned()) {
+            if libraries.len() > MAX_LIBRARIES {
+                let message = format!("more than {MAX_LIBRARIES} different `mtllib`");
+                return Err(FileError::line(line, message).in_file(model.file));
             }
-            continue;
+            for (name, bytes) in (model.libraries)(words.trim(), line)? {
+                let added = reader.materials.add(&bytes, model.warnings.in_file(&name), budget);
+                added.map_err(|error| error.in_file(&name))?;
+            }
         }
-        reader.statement(keyword, rest, line).map_err(|error| error.in_file(file))?;
+    }
+    reader.color_range.apply(reader.colors.iter_mut().flatten(), reader.warnings);
+    for statement in lines(model.bytes) {
+        let added = statement.and_then(|(line, statement)| {
+            let (keyword, words) = statement.split_once(char::is_whitespace).unwrap_or((&statement, ""));
+            reader.statement(keyword, words, line)
+        });
+        added.map_err(|error| error.in_file(model.file))?;
     }
     Ok(reader.finish())
 }
 
 struct Reader<'a> {
     budget: &'a Budget,
-    positions: Vec<[f32; 3]>,
+    warnings: FileWarnings<'a>,
+    positions: Vec<[f64; 3]>,
     /// Per position, if the model gives one.
     colors: Vec<Option<[f32; 4]>>,
+    color_range: ColorRange,
+    /// Zero: the normal is computed.
     normals: Vec<[f32; 3]>,
+    /// The numbers of positions and normals in the lines so far, for indices that count backwards.
+    defined: (usize, usize),
     materials: Materials,
     material: Option<usize>,
     color: [f32; 4],
-    scene: Scene,
-    object: Object,
+    objects: Vec<ModelObject>,
+    object: ModelObject,
     triangulator: Triangulator,
     /// The vertices of the object, by position, normal and material.
     known: HashMap<(usize, Option<usize>, Option<usize>), u32>,
 }
 
 impl<'a> Reader<'a> {
-    fn new(color: [f32; 4], budget: &'a Budget) -> Self {
+    fn new(color: [f32; 4], warnings: FileWarnings<'a>, budget: &'a Budget) -> Self {
         Reader {
             budget,
+            warnings,
             positions: Vec::new(),
             colors: Vec::new(),
+            color_range: ColorRange::default(),
             normals: Vec::new(),
+            defined: (0, 0),
             materials: Materials::default(),
             material: None,
             color,
-            scene: Scene::default(),
-            object: Object::default(),
+            objects: Vec::new(),
+            object: ModelObject::default(),
             triangulator: Triangulator::new(),
             known: HashMap::new(),
         }
     }
 
-    fn statement(&mut self, keyword: &str, words: &str, line: usize) -> Result<(), FileError> {
+    /// Reads a vertex. Other statements have no effect.
+    fn define(&mut self, keyword: &str, words: &str, line: usize) -> Result<(), FileError> {
         match keyword {
             "v" => {
                 let ([x, y, z, r, g, b, a], count) = numbers(words, &[3, 4, 6, 7], line)?;
                 self.budget.take(1, LISTED, "the list of positions")?;
                 self.positions.push([x, y, z]);
-                // A single number after the position is its weight in curves, which are ignored.
+                // A single number after the position is its weight in curves, which are not read.
                 let alpha = if count == 7 { a } else { 1.0 };
-                self.colors.push((count >= 6).then_some([r, g, b, alpha]));
+                let color = (count >= 6).then(|| self.color_range.add([r, g, b, alpha], FilePosition::Line(line)));
+                self.colors.push(color);
             }
             "vn" => {
                 self.budget.take(1, LISTED, "the list of normals")?;
-                self.normals.push(numbers(words, &[3], line)?.0);
+                self.normals.push(self.normal(words, line));
             }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Returns a normal; zero if it is not three finite numbers, which a tool writes as `nan` or `-1.#IND` for a face without area.
+    fn normal(&self, words: &str, line: usize) -> [f32; 3] {
+        let mut values = words.split_whitespace().map(|word| number(word, line).ok());
+        let mut next = || values.next().flatten();
+        let found = match (next(), next(), next()) {
+            (Some(x), Some(y), Some(z)) => normal([x, y, z]),
+            _ => None,
+        };
+        found.unwrap_or_else(|| {
+            let message = || format!("a normal {} is not three finite numbers: it is computed", quoted(words.trim()));
+            self.warnings.line(WarningKind::InvalidNormal, "vn", line, message);
+            [0.0; 3]
+        })
+    }
+
+    fn statement(&mut self, keyword: &str, words: &str, line: usize) -> Result<(), FileError> {
+        match keyword {
+            "v" => self.defined.0 += 1,
+            "vn" => self.defined.1 += 1,
             "f" | "fo" => self.face(words, line)?,
             "o" | "g" => {
                 self.end_object();
                 self.object.name = single_spaces(words);
             }
-            "usemtl" => self.material = Some(self.materials.find(words, line)?),
+            "usemtl" => self.use_material(words, line),
+            "mtllib" => {}
             _ if IGNORED.contains(&keyword) => {}
-            _ => return Err(FileError::line(line, format!("unknown statement {}", quoted(keyword)))),
+            _ => match NOT_READ.iter().find(|(keywords, _)| keywords.contains(&keyword)) {
+                Some((_, message)) => {
+                    self.warnings.line(WarningKind::NotRead, message, line, || (*message).to_owned());
+                }
+                None => self.warnings.line(WarningKind::UnknownStatement, keyword, line, || {
+                    format!("unknown statement {}", quoted(keyword))
+                }),
+            },
         }
         Ok(())
+    }
+
+    fn use_material(&mut self, name: &str, line: usize) {
+        let found = self.materials.find(name);
+        self.material = found.as_ref().ok().copied();
+        if let Err(message) = found {
+            self.warnings
+                .line(WarningKind::MissingMaterial, "", line, || format!("{message}: the default colour is used"));
+        }
+        let material = self.material.and_then(|index| self.materials.get(index));
+        if material.is_some_and(Material::is_doubtful) {
+            self.warnings.line(WarningKind::Invisible, &single_spaces(name), line, || {
+                let name = quoted(name.trim());
+                format!(
+                    "material {name} is invisible by `Tr 1`, which some tools write for opaque materials: give it a `d`"
+                )
+            });
+        }
     }
 
     fn face(&mut self, words: &str, line: usize) -> Result<(), FileError> {
         let count = words.split_whitespace().count();
         if count < 3 {
-            return Err(FileError::line(line, format!("a face with {count} vertices: it needs 3 or more")));
+            let message = || format!("a face with {count} vertices is skipped: it needs 3 or more");
+            self.warnings.line(WarningKind::DegenerateFace, "", line, message);
+            return Ok(());
         }
         if self.object.triangles.is_empty() {
             self.budget.take(1, OBJECT + self.object.name.len() as u64, "the scene's objects")?;
@@ -168,21 +244,27 @@ impl<'a> Reader<'a> {
     /// Returns the vertex of a corner, `position/texture/normal`.
     fn corner(&mut self, word: &str, line: usize) -> Result<u32, FileError> {
         let mut parts = word.split('/');
-        let position = index(parts.next().unwrap_or(""), self.positions.len(), "position", line)?;
+        let number = index_number(parts.next().unwrap_or(""), "position", line)?;
+        let count = self.positions.len();
+        let position = index(number, (self.defined.0, count))
+            .ok_or_else(|| FileError::line(line, format!("no position {number}: the file has {count}")))?;
         // Texture coordinates are checked, but not kept.
         if let Some(texture) = parts.next().filter(|part| !part.is_empty()) {
-            texture
-                .parse::<i64>()
-                .map_err(|_| FileError::line(line, format!("{} is not an index", quoted(texture))))?;
+            index_number(texture, "texture coordinate", line)?;
         }
-        let normal = parts
-            .next()
-            .filter(|part| !part.is_empty())
-            .map(|part| index(part, self.normals.len(), "normal", line))
-            .transpose()?;
+        let normal = parts.next().filter(|part| !part.is_empty());
+        let normal = normal.map(|part| index_number(part, "normal", line)).transpose()?;
         if parts.next().is_some() {
             return Err(FileError::line(line, format!("{} has more than position/texture/normal", quoted(word))));
         }
+        let normal = normal.and_then(|number| {
+            let found = index(number, (self.defined.1, self.normals.len()));
+            if found.is_none() {
+                let message = || format!("no normal {number}: the file has {}; it is computed", self.normals.len());
+                self.warnings.line(WarningKind::InvalidNormal, "f", line, message);
+            }
+            found
+        });
         self.vertex(position, normal)
     }
 
@@ -217,23 +299,22 @@ impl<'a> Reader<'a> {
         self.known = HashMap::new();
         let object = std::mem::take(&mut self.object);
         if !object.triangles.is_empty() {
-            self.scene.objects.push(object);
+            self.objects.push(object);
         }
     }
 
-    fn finish(mut self) -> Scene {
+    fn finish(mut self) -> Vec<ModelObject> {
         self.end_object();
-        self.scene
+        self.objects
     }
 }
 
-/// Converts an index from 1, or from -1 backwards, to one from 0.
-fn index(word: &str, count: usize, of: &str, line: usize) -> Result<usize, FileError> {
-    let number: i64 =
-        word.parse().map_err(|_| FileError::line(line, format!("{} is not an index of a {of}", quoted(word))))?;
-    let from_zero = if number < 0 { (count as i64).checked_add(number) } else { number.checked_sub(1) };
-    match from_zero.map(usize::try_from) {
-        Some(Ok(index)) if index < count => Ok(index),
-        _ => Err(FileError::line(line, format!("no {of} {number}: {count} are defined so far"))),
-    }
+fn index_number(word: &str, of: &str, line: usize) -> Result<i64, FileError> {
+    word.parse().map_err(|_| FileError::line(line, format!("{} is not an index of a {of}", quoted(word))))
+}
+
+/// Converts an index from 1, or from -1 backwards from those `defined` so far, to one from 0. `None`: there is none of `count`.
+fn index(number: i64, (defined, count): (usize, usize)) -> Option<usize> {
+    let from_zero = if number < 0 { (defined as i64).checked_add(number) } else { number.checked_sub(1) };
+    from_zero.and_then(|index| usize::try_from(index).ok()).filter(|index| *index < count)
 }

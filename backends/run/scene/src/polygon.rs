@@ -7,9 +7,9 @@
 use earcut::Earcut;
 use earcut::utils3d::project3d_to_2d;
 
-use crate::Object;
 use crate::error::FileError;
 use crate::limits::{Budget, Held};
+use crate::model::ModelObject;
 
 /// The greatest number of corners of a concave face: cutting ears may take the square of their number.
 const MAX_CONCAVE: usize = 4096;
@@ -63,8 +63,16 @@ impl Triangulator {
         self.face.push(vertex);
     }
 
+    /// Replaces every vertex of the face.
+    pub(crate) fn replace<E>(&mut self, mut vertex: impl FnMut(u32) -> Result<u32, E>) -> Result<(), E> {
+        for corner in &mut self.face {
+            *corner = vertex(*corner)?;
+        }
+        Ok(())
+    }
+
     /// Ends the face, and adds its triangles to the object of its vertices. `Err`: a message.
-    pub(crate) fn end(&mut self, object: &mut Object) -> Result<(), String> {
+    pub(crate) fn end(&mut self, object: &mut ModelObject) -> Result<(), String> {
         let face = std::mem::take(&mut self.face);
         let divided = self.divide(&face, object);
         self.face = face;
@@ -82,7 +90,7 @@ impl Triangulator {
         self.plane.shrink_to(KEPT);
     }
 
-    fn divide(&mut self, face: &[u32], object: &mut Object) -> Result<(), String> {
+    fn divide(&mut self, face: &[u32], object: &mut ModelObject) -> Result<(), String> {
         if face.len() < 4 || !self.project(face, object) || is_convex(&self.plane) {
             object.polygon(face);
             return Ok(());
@@ -119,13 +127,13 @@ impl Triangulator {
     }
 
     /// Projects a face to a plane in which it runs counter-clockwise, at a size of about 1. Returns whether it has an area.
-    fn project(&mut self, face: &[u32], object: &Object) -> bool {
+    fn project(&mut self, face: &[u32], object: &ModelObject) -> bool {
         let positions = face.iter().map(|index| object.positions.get(*index as usize).copied().unwrap_or_default());
         self.corners.clear();
         self.corners.reserve_exact(face.len());
         self.plane.clear();
         self.plane.reserve_exact(face.len());
-        self.corners.extend(positions.map(|position| position.map(f64::from)));
+        self.corners.extend(positions);
         let Some(first) = self.corners.first().copied() else { return false };
         let distance = |corner: &[f64; 3]| (0..3).map(|axis| (corner[axis] - first[axis]).abs()).fold(0.0, f64::max);
         let size = self.corners.iter().map(distance).fold(0.0, f64::max);
@@ -157,16 +165,16 @@ mod tests {
     use crate::Limits;
 
     /// Returns a comb with `corners` corners, and its vertices.
-    fn comb(corners: u32) -> Object {
-        let mut object = Object::default();
+    fn comb(corners: u32) -> ModelObject {
+        let mut object = ModelObject::default();
         for at in 0..corners - 1 {
-            object.vertex([at as f32, (at % 2) as f32, 0.0], [0.0; 3], [1.0; 4]);
+            object.vertex([at.into(), (at % 2).into(), 0.0], [0.0; 3], [1.0; 4]);
         }
-        object.vertex([corners as f32 / 2.0, -9.0, 0.0], [0.0; 3], [1.0; 4]);
+        object.vertex([f64::from(corners) / 2.0, -9.0, 0.0], [0.0; 3], [1.0; 4]);
         object
     }
 
-    fn add(triangulator: &mut Triangulator, object: &mut Object, budget: &Budget) -> Result<(), String> {
+    fn add(triangulator: &mut Triangulator, object: &mut ModelObject, budget: &Budget) -> Result<(), String> {
         let count = object.positions.len() as u32;
         let _corners = triangulator.begin(count.into(), budget).map_err(|error| format!("{error:?}"))?;
         (0..count).for_each(|vertex| triangulator.corner(vertex));
@@ -211,7 +219,7 @@ mod tests {
         let message = add(&mut triangulator, &mut comb(5), &budget).unwrap_err();
         assert!(message.contains("is 8589934617, and it can be 8589934592"), "{message}");
         // Convex faces have no limit.
-        let mut square = Object::default();
+        let mut square = ModelObject::default();
         for [x, y] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
             square.vertex([x, y, 0.0], [0.0; 3], [1.0; 4]);
         }

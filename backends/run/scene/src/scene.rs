@@ -1,10 +1,16 @@
 //! A scene: indexed triangles per object.
 
+use crate::{Placement, Warning};
+
 /// The triangles of a scene, object after object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The index of an object is its id.
     pub objects: Vec<Object>,
+    /// The coordinates of the objects, relative to those of the model.
+    pub placement: Placement,
+    /// What was replaced by a default, and what was not read.
+    pub warnings: Vec<Warning>,
 }
 
 /// A named part of a scene. Its three vertex lists have equal lengths.
@@ -12,7 +18,7 @@ pub struct Scene {
 pub struct Object {
     /// Its name in the model; empty if it has none.
     pub name: String,
-    /// Positions, finite.
+    /// Positions, finite, in the coordinates of the scene's placement.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
@@ -75,8 +81,12 @@ impl Object {
 
     /// Adds a convex polygon as a fan.
     pub(crate) fn polygon(&mut self, corners: &[u32]) {
-        if let [first, rest @ ..] = corners {
-            self.triangles.extend(rest.windows(2).filter_map(|pair| Some([*first, *pair.first()?, *pair.last()?])));
-        }
+        self.triangles.extend(fan(corners));
     }
+}
+
+/// Returns the triangles of a convex polygon.
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let (first, rest) = corners.split_first().map_or((0, &[][..]), |(first, rest)| (*first, rest));
+    rest.windows(2).filter_map(move |pair| Some([first, *pair.first()?, *pair.last()?]))
 }

@@ -17,6 +17,9 @@ const MAX_MESSAGE: usize = 300;
 /// `Material #1` of 3ds Max, or begins a comment, depends on these names.
 const NAMED: [&str; 4] = ["newmtl", "usemtl", "mtllib", "map_Kd"];
 
+/// The greatest number: differences of two numbers are finite.
+pub(crate) const MAX_NUMBER: f64 = 1.0e300;
+
 /// Returns the first line without its end, and the rest of the bytes after it. A line ends with a line feed, a carriage return, or
 /// both. `None`: there is no line.
 pub(crate) fn first_line(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
@@ -115,16 +118,24 @@ pub(crate) fn foreign_message(error: &dyn std::fmt::Display) -> String {
 }
 
 fn shortened(text: &str, length: usize) -> Cow<'_, str> {
-    match text.char_indices().nth(length) {
-        Some((end, _)) => Cow::Owned(format!("{}…", text.get(..end).unwrap_or_default())),
-        None => Cow::Borrowed(text),
+    match beginning(text, length) {
+        all if all.len() == text.len() => Cow::Borrowed(text),
+        part => Cow::Owned(format!("{part}…")),
     }
 }
 
+/// Returns the first `length` characters of a text.
+pub(crate) fn beginning(text: &str, length: usize) -> &str {
+    text.char_indices().nth(length).and_then(|(end, _)| text.get(..end)).unwrap_or(text)
+}
+
 /// Parses a finite number.
-pub(crate) fn number(word: &str, line: usize) -> Result<f32, FileError> {
-    match word.parse::<f32>() {
-        Ok(value) if value.is_finite() => Ok(value),
+pub(crate) fn number(word: &str, line: usize) -> Result<f64, FileError> {
+    match word.parse::<f64>() {
+        Ok(value) if value.abs() <= MAX_NUMBER => Ok(value),
+        Ok(value) if value.is_finite() => {
+            Err(FileError::line(line, format!("{} is not from -1e300 to 1e300", quoted(word))))
+        }
         Ok(_) => Err(FileError::line(line, format!("{} is not finite", quoted(word)))),
         Err(_) => Err(FileError::line(line, format!("{} is not a number", quoted(word)))),
     }
@@ -136,7 +147,7 @@ pub(crate) fn numbers<const N: usize>(
     words: &str,
     counts: &[usize],
     line: usize,
-) -> Result<([f32; N], usize), FileError> {
+) -> Result<([f64; N], usize), FileError> {
     let found = words.split_whitespace().count();
     if !counts.contains(&found) {
         let expected: Vec<String> = counts.iter().map(usize::to_string).collect();

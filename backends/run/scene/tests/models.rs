@@ -79,17 +79,15 @@ fn obj_errors_have_lines() {
             ("v 0 0\n", 1, "found 2"),
             ("\n# x\nv 0 0 x\n", 3, "`x` is not a number"),
             ("v 0 0 nan\n", 1, "not finite"),
-            ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "2 vertices"),
-            ("v 0 0 0\nf 1 1 2\nv 0 0 0\n", 2, "no position 2"),
+            ("v 0 0 1e301\n", 1, "not from -1e300 to 1e300"),
+            ("v 0 0 0\nf 1 1 3\nv 0 0 0\n", 2, "no position 3: the file has 2"),
             ("v 0 0 0\nf 1 1 0\n", 2, "no position 0"),
             ("v 0 0 0\nf 1 1 -2\n", 2, "no position -2"),
-            ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "no normal 1"),
-            ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "no normal 3"),
+            ("v 0 0 0\nf 1 1 -2\nv 0 0 0\n", 2, "no position -2"),
+            ("v 0 0 0\nf 1 1 1/2/3/4\n", 2, "more than position/texture/normal"),
+            ("v 0 0 0\nf 1 1 1//a\n", 2, "`a` is not an index of a normal"),
             ("v 0 0 0\nf 1 1 a\n", 2, "`a` is not an index"),
             ("v 0 0 0\nf 1 1 1/a\n", 2, "`a` is not an index"),
-            ("usemtl red\n", 1, "unknown material `red`"),
-            ("v 0 0 0\nnonsense\n", 2, "`nonsense`"),
-            ("\u{1}\u{2}\n", 1, "unknown statement"),
         ],
     );
     let (_, position, message) = malformed(&[("m.obj", b"v 0 0 0\n")]);
@@ -98,12 +96,10 @@ fn obj_errors_have_lines() {
 
 #[test]
 fn mtl_errors_have_their_file_and_line() {
-    let cases: [(&str, usize, &str); 6] = [
-        ("Kd 1 1 1\n", 1, "before the first `newmtl`"),
-        ("newmtl\n", 1, "without a name"),
+    let cases: [(&str, usize, &str); 4] = [
         ("newmtl a\nKd 1 1\n", 2, "found 2"),
-        ("newmtl a\nKd 1 1 2\n", 2, "2 is not from 0 to 1"),
-        ("newmtl a\n\nd -0.5\n", 3, "-0.5 is not from 0 to 1"),
+        ("newmtl a\nKd 1 1 nan\n", 2, "`nan` is not finite"),
+        ("newmtl a\n\nd x\n", 3, "`x` is not a number"),
         ("newmtl a\nd\n", 2, "found 0"),
     ];
     for (text, line, part) in cases {
@@ -111,7 +107,6 @@ fn mtl_errors_have_their_file_and_line() {
         assert_eq!((file.as_str(), position), ("l.mtl", FilePosition::Line(line)), "{text}");
         assert!(message.contains(part), "{text}: {message}");
     }
-    assert!(matches!(loaded(&[("m.obj", b"mtllib none.mtl\n")]), Err(Error::Unreadable { .. })));
 }
 
 #[test]
@@ -145,11 +140,6 @@ fn a_number_sign_begins_a_comment_unless_it_is_part_of_a_name() {
     ] {
         assert_eq!(red(statement, &both), expected, "{statement}");
     }
-    let (file, ..) = match loaded(&[("m.obj", b"mtllib none.mtl # a comment\n")]) {
-        Err(Error::Unreadable { file, reason }) => (file, reason),
-        other => panic!("{other:?}"),
-    };
-    assert!(file.ends_with("none.mtl"), "{file}");
     // A backslash at the end of a comment does not continue it.
     let model = b"v 0 0 0\no cube # from C:\\models\\\nv 1 0 0\nv 0 1 0\ng  a  part # of it\nf 1 2 3\n";
     let scene = loaded(&[("m.obj", model)]).unwrap();
@@ -208,6 +198,7 @@ fn concave_faces_keep_their_notches() {
             let lines: String = arrow.map(|[x, y]| format!("v {} {} 0\n", x * scale, y * scale)).concat();
             let scene = loaded(&[("m.obj", format!("{lines}f {}\n", face.join(" ")).as_bytes())]).unwrap();
             assert_eq!(scene.triangles(), 2);
+            let scale = (f64::from(scale) / scene.placement.unit) as f32;
             let at = |point: [f32; 2]| layers(&scene, point.map(|axis| axis * scale));
             assert_eq!([at([0.05, -0.5]), at([0.1, 0.5]), at([-0.6, -0.5]), at([0.6, -0.5])], [0, 1, 1, 1], "{first}");
         }
@@ -342,7 +333,6 @@ fn ply_errors_have_lines() {
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), 13, "no vertex 3"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), 13, "no vertex -1"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), 13, "not an integer"),
-        (body("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), 13, "a face with 2"),
         (body("0 0 0\n1 0 0\n0 1 0\n"), 12, "ends before its last"),
         (body("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n9\n"), 14, "`9` follows the last"),
     ];

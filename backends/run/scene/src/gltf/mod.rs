@@ -1,6 +1,6 @@
 //! glTF 2.0, as JSON or GLB: the triangles of the default scene, with the transforms of nodes, normals, vertex colours and base
 //! colour factors of materials in their alpha modes, and the default weights of morph targets. Textures, the pose of a skin and
-//! animations are ignored.
+//! instances by an extension are not read, which is a warning; animations are ignored.
 //!
 //! Everything is checked before it is used: the memory of the JSON, the length of every buffer, the type and range of every
 //! accessor that is read, and that the nodes are a forest.
@@ -9,69 +9,103 @@ mod accessor;
 mod buffers;
 mod json;
 mod material;
+mod missing;
 mod nodes;
 mod primitive;
 mod validate;
 
 use std::path::Path;
 
-use glam::Mat4;
-use gltf::{Gltf, Node};
+use glam::DMat4;
+use gltf::{Document, Gltf, Mesh, Node};
 
 use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
+use crate::model::ModelObject;
 use crate::text::{foreign_message, without_mark};
-use crate::{Object, Scene};
+use crate::warnings::{FileWarnings, WarningKind};
 use primitive::Reader;
 
 /// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
-pub(crate) fn parse(bytes: &[u8], path: &Path, color: [f32; 4], budget: &Budget) -> Result<Scene, Error> {
+pub(crate) fn parse(
+    bytes: &[u8],
+    path: &Path,
+    color: [f32; 4],
+    (budget, warnings): (&Budget, FileWarnings<'_>),
+) -> Result<Vec<ModelObject>, Error> {
     let (file, bytes) = (path.display().to_string(), without_mark(bytes));
     let mut model = document(bytes, budget).map_err(|error| error.in_file(&file))?;
+    missing::warn(model.as_json(), warnings);
     let blob = model.blob.take();
     let buffers = buffers::read(&model, blob, path, budget)?;
-    let reader = Reader { buffers: &buffers, color, budget };
-    scene(&model, &reader).map_err(|error| error.in_file(&file))
+    let reader = Reader { buffers: &buffers, color, budget, warnings };
+    objects(&model, &reader).map_err(|error| error.in_file(&file))
 }
 
 /// Parses and validates the JSON.
 fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
     json::take(bytes, budget)?;
-    let model = Gltf::from_slice_without_validation(bytes).map_err(|error| match error {
-        gltf::Error::Deserialize(error) => {
-            FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error))
-        }
-        other => FileError::whole(foreign_message(&other)),
-    })?;
+    let parsed = Gltf::from_slice_without_validation(bytes);
+    let model = match parsed {
+        Err(gltf::Error::Deserialize(error)) => match missing::repaired(bytes, &error, budget)? {
+            Some((root, blob)) => Gltf { document: Document::from_json_without_validation(root), blob },
+            None => {
+                return Err(FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error)));
+            }
+        },
+        parsed => parsed.map_err(|error| FileError::whole(foreign_message(&error)))?,
+    };
     validate::validate(model.as_json())?;
     Ok(model)
 }
 
-/// Returns the objects of the default scene: one per node with a mesh.
-fn scene(model: &Gltf, reader: &Reader<'_>) -> Result<Scene, FileError> {
+/// Returns the nodes of the default scene and its name in messages. If it has none, the nodes without a parent.
+fn roots<'a>(model: &'a Gltf, reader: &Reader<'_>) -> (Vec<Node<'a>>, String) {
+    let scene = model.default_scene().or_else(|| model.scenes().next());
+    let nodes: Vec<Node<'_>> = scene.iter().flat_map(gltf::Scene::nodes).collect();
+    let name = scene.as_ref().map_or("the file".to_owned(), |scene| format!("scene {}", scene.index()));
+    if !nodes.is_empty() {
+        return (nodes, name);
+    }
+    let message = || match scene.is_some() {
+        true => format!("{name} has no nodes: all nodes of the file are drawn"),
+        false => "the file has no scene: all its nodes are drawn".to_owned(),
+    };
+    reader.warnings.add(WarningKind::MissingScene, "", FilePosition::Whole, message);
+    let mut is_root = vec![true; model.nodes().len()];
+    for child in model.nodes().flat_map(|node| node.children()) {
+        if let Some(is_root) = is_root.get_mut(child.index()) {
+            *is_root = false;
+        }
+    }
+    (model.nodes().zip(is_root).filter(|(_, is_root)| *is_root).map(|(node, _)| node).collect(), name)
+}
+
+/// Returns the objects: one per node with a mesh, or one per mesh if the file has no nodes.
+fn objects(model: &Gltf, reader: &Reader<'_>) -> Result<Vec<ModelObject>, FileError> {
     nodes::check(model)?;
-    let roots = model.default_scene().or_else(|| model.scenes().next());
-    let roots = roots.ok_or_else(|| FileError::whole("the file has no scene"))?;
-    let mut scene = Scene::default();
+    let mut objects = Vec::new();
     let mut visited = vec![false; model.nodes().len()];
-    let mut pending: Vec<(Node<'_>, Mat4)> = roots.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+    let (roots, scene) = roots(model, reader);
+    let mut pending: Vec<(Node<'_>, DMat4)> = roots.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
+    if model.nodes().len() == 0 {
+        for mesh in model.meshes() {
+            let weights = mesh.weights().unwrap_or_default();
+            objects.push(object(&mesh, mesh.name(), (&DMat4::IDENTITY, weights), reader)?);
+        }
+    }
     pending.reverse();
     while let Some((node, outer)) = pending.pop() {
         if visited.get_mut(node.index()).is_some_and(|visited| std::mem::replace(visited, true)) {
-            return Err(FileError::whole(format!("node {} occurs twice in scene {}", node.index(), roots.index())));
+            return Err(FileError::whole(format!("node {} occurs twice in {scene}", node.index())));
         }
-        let transform = outer * Mat4::from_cols_array_2d(&node.transform().matrix());
+        let transform =
+            outer * DMat4::from_cols_array_2d(&node.transform().matrix().map(|column| column.map(f64::from)));
         if let Some(mesh) = node.mesh() {
-            let name = node.name().or(mesh.name()).unwrap_or_default().to_owned();
-            reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
-            let mut object = Object { name, ..Object::default() };
             // The joints of a skin place its mesh, and not the node.
-            let placed = if node.skin().is_some() { Mat4::IDENTITY } else { transform };
+            let placed = if node.skin().is_some() { DMat4::IDENTITY } else { transform };
             let weights = node.weights().or(mesh.weights()).unwrap_or_default();
-            for primitive in mesh.primitives() {
-                reader.primitive(&primitive, (&placed, weights), &mut object)?;
-            }
-            scene.objects.push(object);
+            objects.push(object(&mesh, node.name().or(mesh.name()), (&placed, weights), reader)?);
         }
         let first = pending.len();
         pending.extend(node.children().map(|child| (child, transform)));
@@ -79,5 +113,20 @@ fn scene(model: &Gltf, reader: &Reader<'_>) -> Result<Scene, FileError> {
             children.reverse();
         }
     }
-    Ok(scene)
+    Ok(objects)
+}
+
+fn object(
+    mesh: &Mesh<'_>,
+    name: Option<&str>,
+    (transform, weights): (&DMat4, &[f32]),
+    reader: &Reader<'_>,
+) -> Result<ModelObject, FileError> {
+    let name = name.unwrap_or_default().to_owned();
+    reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
+    let mut object = ModelObject { name, ..ModelObject::default() };
+    for primitive in mesh.primitives() {
+        reader.primitive(&primitive, (transform, weights), &mut object)?;
+    }
+    Ok(object)
 }

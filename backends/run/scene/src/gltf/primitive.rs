@@ -1,15 +1,17 @@
 //! The vertices and triangles of a primitive.
 
-use glam::{Mat3, Mat4, Vec3};
+use glam::{DMat3, DMat4, DVec3};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 use gltf::{Primitive, Semantic};
 
 use super::accessor::{Elements, Types};
 use super::material::{factor, visible};
-use crate::Object;
-use crate::error::FileError;
+use crate::error::{FileError, FilePosition};
 use crate::limits::Budget;
+use crate::model::{ModelObject, normal};
+use crate::text::MAX_NUMBER;
+use crate::warnings::{FileWarnings, WarningKind};
 
 const POSITIONS: Types = Types {
     dimensions: &[Dimensions::Vec3],
@@ -36,6 +38,7 @@ pub(super) struct Reader<'a> {
     pub(super) buffers: &'a [Vec<u8>],
     pub(super) color: [f32; 4],
     pub(super) budget: &'a Budget,
+    pub(super) warnings: FileWarnings<'a>,
 }
 
 impl Reader<'_> {
@@ -43,8 +46,8 @@ impl Reader<'_> {
     pub(super) fn primitive(
         &self,
         primitive: &Primitive<'_>,
-        (transform, weights): (&Mat4, &[f32]),
-        object: &mut Object,
+        (transform, weights): (&DMat4, &[f32]),
+        object: &mut ModelObject,
     ) -> Result<(), FileError> {
         let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
         let corners_of = match primitive.mode() {
@@ -52,8 +55,11 @@ impl Reader<'_> {
             // Every second triangle of a strip is turned, so that all have the same front.
             Mode::TriangleStrip => |turn: usize| [turn + turn % 2, turn + 1 - turn % 2, turn + 2],
             Mode::TriangleFan => |turn: usize| [0, turn + 1, turn + 2],
-            // Points and lines beside the triangles have no effect, as `p` and `l` in an OBJ.
-            _ => return Ok(()),
+            _ => {
+                let message = || "lines and points are not read".to_owned();
+                self.warnings.add(WarningKind::NotRead, "lines", FilePosition::Whole, message);
+                return Ok(());
+            }
         };
         let first = object.positions.len() as u32;
         let vertices = self.vertices(primitive, (transform, weights), object)?;
@@ -107,8 +113,8 @@ impl Reader<'_> {
     fn vertices(
         &self,
         primitive: &Primitive<'_>,
-        (transform, weights): (&Mat4, &[f32]),
-        object: &mut Object,
+        (transform, weights): (&DMat4, &[f32]),
+        object: &mut ModelObject,
     ) -> Result<usize, FileError> {
         let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
         let read = |semantic: Semantic, types: &Types| {
@@ -127,29 +133,36 @@ impl Reader<'_> {
         let material = primitive.material();
         let factor = factor(&material, colors.is_some(), self.color);
         let morphs = self.morphs(primitive, weights, positions.count)?;
-        let directions = Mat3::from_mat4(*transform).inverse().transpose();
+        let directions = DMat3::from_mat4(*transform).inverse().transpose();
         for index in 0..positions.count {
-            let moved = morphs.iter().map(|(weight, offsets)| *weight * vector(offsets, index)).sum::<Vec3>();
-            let position = transform.transform_point3(vector(&positions, index) + moved);
-            if !position.is_finite() {
+            let moved = morphs.iter().map(|(weight, offsets)| f64::from(*weight) * vector(offsets, index));
+            let position = transform.transform_point3(vector(&positions, index) + moved.sum::<DVec3>());
+            // The comparison is false if a coordinate is not a number.
+            if !(position.abs().max_element() <= MAX_NUMBER && position.is_finite()) {
                 return Err(error(format!("position {index} is not finite")));
             }
-            let normal = normals.as_ref().map_or(Vec3::ZERO, |normals| directions * vector(normals, index));
-            let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
+            let given = normals.as_ref().map_or(DVec3::ZERO, |normals| vector(normals, index));
+            if !given.is_finite() {
+                let message =
+                    || format!("primitive {}: normal {index} is not finite: it is computed", primitive.index());
+                self.warnings.add(WarningKind::InvalidNormal, "", FilePosition::Whole, message);
+            }
+            // A transform without an inverse has no normals, either.
+            let direction = normal((directions * given).to_array()).unwrap_or_default();
             let color = colors.as_ref().map_or([1.0; 4], |colors| rgba(colors, index));
             let color: [f32; 4] = std::array::from_fn(|channel| factor[channel] * color[channel]);
             if !color.iter().all(|channel| channel.is_finite()) {
                 return Err(error(format!("colour {index} is not finite")));
             }
             let color = visible(&material, color);
-            object.vertex(position.to_array(), normal.to_array(), color);
+            object.vertex(position.to_array(), direction, color);
         }
         Ok(positions.count)
     }
 }
 
-fn vector(elements: &Elements<'_>, index: usize) -> Vec3 {
-    Vec3::new(elements.float(index, 0), elements.float(index, 1), elements.float(index, 2))
+fn vector(elements: &Elements<'_>, index: usize) -> DVec3 {
+    DVec3::new(elements.float(index, 0).into(), elements.float(index, 1).into(), elements.float(index, 2).into())
 }
 
 fn rgba(elements: &Elements<'_>, index: usize) -> [f32; 4] {

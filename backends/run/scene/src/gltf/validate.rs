@@ -12,6 +12,7 @@ use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
+use super::missing::unsupported_version;
 use crate::error::FileError;
 use crate::text::quoted;
 
@@ -36,8 +37,7 @@ const STRIDES: RangeInclusive<usize> = 4..=252;
 /// Checks a model.
 pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     if !root.asset.version.starts_with("2.") {
-        let message = format!("glTF version {}: version 2 is read", quoted(&root.asset.version));
-        return Err(FileError::whole(message));
+        return Err(unsupported_version(&root.asset.version));
     }
     for extension in &root.extensions_required {
         if !SUPPORTED.contains(&extension.as_str()) && !extension.starts_with(MATERIALS) {

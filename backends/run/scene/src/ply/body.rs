@@ -8,6 +8,7 @@ use crate::error::{FileError, FilePosition};
 use crate::text::quoted_bytes;
 
 /// A reader of the body.
+#[derive(Clone)]
 pub(super) struct Body<'a> {
     encoding: Encoding,
     bytes: &'a [u8],
@@ -24,12 +25,17 @@ impl<'a> Body<'a> {
         Body { encoding: header.encoding, bytes, at: header.length, line }
     }
 
+    /// Returns the current position.
+    pub(super) fn position(&self) -> FilePosition {
+        match self.encoding {
+            Encoding::Ascii => FilePosition::Line(self.line),
+            Encoding::Little | Encoding::Big => FilePosition::Byte(self.at),
+        }
+    }
+
     /// Returns an error at the current position.
     pub(super) fn error(&self, message: impl Into<String>) -> FileError {
-        match self.encoding {
-            Encoding::Ascii => FileError::line(self.line, message),
-            Encoding::Little | Encoding::Big => FileError::Malformed(FilePosition::Byte(self.at), message.into()),
-        }
+        FileError::Malformed(self.position(), message.into())
     }
 
     /// Checks that the file has no more records. Bytes after a binary body are ignored.

@@ -1,117 +1,147 @@
-//! PLY, ASCII and binary in both byte orders: the positions, normals and colours of `vertex`, the polygons of `face`.
-//! Other elements and properties are skipped.
+//! PLY, ASCII or binary in both byte orders: the positions, normals and colours of `vertex`, the polygons and colours of `face`, and
+//! triangle strips. Other elements and properties are skipped.
 //!
 //! The reader is our own because every error needs its line, or its byte: `ply-rs-bw` reports no bytes in binary files.
-//! Integer colours are divided by their greatest value; float colours are used unchanged.
+//! Integer colours are divided by their greatest value. Elements may have any order: faces before the vertices are read after them.
 
 mod body;
+mod faces;
 mod header;
 
+use crate::color_range::ColorRange;
 use crate::error::FileError;
 use crate::limits::{Budget, OBJECT};
-use crate::polygon::Triangulator;
-use crate::text::quoted;
-use crate::{Object, Scene};
+use crate::model::{ModelObject, normal};
+use crate::text::{MAX_NUMBER, quoted};
+use crate::warnings::{FileWarnings, WarningKind};
 use body::Body;
+use faces::Faces;
 use header::{Element, Header, Property};
 
 /// Reads a model. `color` is the colour of vertices without one.
-pub(crate) fn parse(bytes: &[u8], color: [f32; 4], budget: &Budget) -> Result<Scene, FileError> {
+pub(crate) fn parse(
+    bytes: &[u8],
+    color: [f32; 4],
+    (budget, warnings): (&Budget, FileWarnings<'_>),
+) -> Result<Vec<ModelObject>, FileError> {
     let header = Header::parse(bytes)?;
     budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
-    let (mut object, mut triangulator) = (Object::default(), Triangulator::new());
+    let mut object = ModelObject::default();
+    // The elements with faces, each with its position in the body.
+    let mut face_elements = Vec::new();
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => vertices(element, &mut body, color, (&mut object, budget))?,
-            "face" => faces(element, &mut body, &mut triangulator, (&mut object, budget))?,
-            "tristrips" => return Err(FileError::line(element.line, "triangle strips are not supported: use faces")),
+            "vertex" => Vertices::of(element, color)?.read(&mut body, (&mut object, budget), warnings)?,
+            "face" | "tristrips" => {
+                face_elements.push((element, body.clone()));
+                skip(element, &mut body)?;
+            }
             _ => skip(element, &mut body)?,
         }
     }
     body.end()?;
-    Ok(Scene { objects: vec![object] })
+    let mut faces = Faces::new(&mut object, budget, warnings, has_colors(&header));
+    for (element, mut body) in face_elements {
+        faces.read(element, &mut body)?;
+    }
+    Ok(vec![object])
 }
 
 /// The names of the properties of a vertex.
 const PROPERTIES: [&str; 10] = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "alpha"];
 
-fn vertices(
-    element: &Element,
-    body: &mut Body<'_>,
-    color: [f32; 4],
-    (object, budget): (&mut Object, &Budget),
-) -> Result<(), FileError> {
-    let slots: Vec<Option<usize>> = element
-        .properties
-        .iter()
-        .map(|property| {
-            PROPERTIES.iter().position(|name| property.name == *name || property.name == format!("diffuse_{name}"))
-        })
-        .collect();
-    if let Some(axis) = (0..3).find(|axis| !slots.contains(&Some(*axis))) {
-        return Err(FileError::line(element.line, format!("vertices have no `{}`", PROPERTIES[axis])));
-    }
-    let has_colors = (6..9).any(|slot| slots.contains(&Some(slot)));
-    let [r, g, b, a] = color;
-    // A colour without alpha is opaque.
-    let defaults = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, r, g, b, if has_colors { 1.0 } else { a }];
-    for _ in 0..element.count {
-        let mut values: [f32; 10] = defaults;
-        for (property, slot) in element.properties.iter().zip(&slots) {
-            if let (None, Some(slot)) = (property.list, slot) {
-                let value = body.scalar(property.kind)?;
-                let scale = if *slot >= 6 { property.kind.greatest() } else { 1.0 };
-                let value = (value / scale) as f32;
-                if !value.is_finite() {
-                    return Err(body.error(format!("{} is not finite", quoted(&property.name))));
-                }
-                values[*slot] = value;
-            } else {
-                skip_property(property, body)?;
-            }
-        }
-        budget.vertices(object, 1)?;
-        let [x, y, z, nx, ny, nz, r, g, b, a] = values;
-        object.vertex([x, y, z], [nx, ny, nz], [r, g, b, a]);
-    }
-    Ok(())
+/// The index of red in [`PROPERTIES`].
+const RED: usize = 6;
+
+/// Returns the index of a property in [`PROPERTIES`]. Colours have several names.
+fn slot(property: &Property) -> Option<usize> {
+    let name = property.name.as_str();
+    let plain = name.strip_prefix("diffuse_").unwrap_or(name);
+    let slot = PROPERTIES.iter().position(|known| *known == name || (*known == plain)).or_else(|| {
+        let short = ["r", "g", "b", "a"].iter().position(|known| *known == name)?;
+        Some(RED + short)
+    });
+    slot.filter(|_| property.list.is_none())
 }
 
-fn faces(
-    element: &Element,
-    body: &mut Body<'_>,
-    triangulator: &mut Triangulator,
-    (object, budget): (&mut Object, &Budget),
-) -> Result<(), FileError> {
-    let indices = |property: &Property| ["vertex_indices", "vertex_index"].contains(&property.name.as_str());
-    if !element.properties.iter().any(|property| indices(property) && property.list.is_some()) {
-        return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
+/// Whether the vertices of a file have colours.
+fn has_colors(header: &Header) -> bool {
+    let vertices = header.elements.iter().filter(|element| element.name == "vertex");
+    vertices.flat_map(|element| &element.properties).any(|property| slot(property).is_some_and(is_color))
+}
+
+/// Whether a property is red, green or blue.
+fn is_color(slot: usize) -> bool {
+    (RED..RED + 3).contains(&slot)
+}
+
+/// Returns a channel of a colour from its value.
+fn channel(value: f64, property: &Property, body: &Body<'_>) -> Result<f64, FileError> {
+    if value.is_finite() {
+        return Ok(value / property.kind.greatest());
     }
-    let count = object.positions.len();
-    for _ in 0..element.count {
-        for property in &element.properties {
-            let Some(length) = property.list.filter(|_| indices(property)) else {
-                skip_property(property, body)?;
-                continue;
-            };
-            let length = body.length(length, property.kind)?;
-            if length < 3 {
-                return Err(body.error(format!("a face with {length} vertices: it needs 3 or more")));
-            }
-            budget.triangles(length - 2)?;
-            let _corners = triangulator.begin(length, budget)?;
-            for _ in 0..length {
-                let index = body.scalar(property.kind)?;
-                if index.fract() != 0.0 || index < 0.0 || index >= count as f64 {
-                    return Err(body.error(format!("no vertex {index}: the file has {count}, counted from 0")));
-                }
-                triangulator.corner(index as u32);
-            }
-            triangulator.end(object).map_err(|message| body.error(message))?;
+    Err(body.error(format!("{} is not finite", quoted(&property.name))))
+}
+
+/// The vertices of an element.
+struct Vertices<'a> {
+    element: &'a Element,
+    /// The index of each property in [`PROPERTIES`].
+    slots: Vec<Option<usize>>,
+    color: [f32; 4],
+}
+
+impl<'a> Vertices<'a> {
+    fn of(element: &'a Element, color: [f32; 4]) -> Result<Self, FileError> {
+        let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
+        if let Some(name) = PROPERTIES.iter().take(3).zip(0..).find(|(_, axis)| !slots.contains(&Some(*axis))) {
+            return Err(FileError::line(element.line, format!("vertices have no `{}`", name.0)));
         }
+        let has_colors = slots.iter().flatten().any(|slot| is_color(*slot));
+        let [r, g, b, a] = color;
+        // A colour without alpha is opaque.
+        Ok(Vertices { element, slots, color: [r, g, b, if has_colors { 1.0 } else { a }] })
     }
-    Ok(())
+
+    fn read(
+        &self,
+        body: &mut Body<'_>,
+        (object, budget): (&mut ModelObject, &Budget),
+        warnings: FileWarnings<'_>,
+    ) -> Result<(), FileError> {
+        let (first, mut range) = (object.colors.len(), ColorRange::default());
+        for _ in 0..self.element.count {
+            let (mut position, mut direction, mut color) = ([0.0; 3], [0.0; 3], self.color.map(f64::from));
+            for (property, slot) in self.element.properties.iter().zip(&self.slots) {
+                let Some(slot) = slot else {
+                    skip_property(property, body)?;
+                    continue;
+                };
+                let value = body.scalar(property.kind)?;
+                match slot {
+                    0..3 if !value.is_finite() => {
+                        return Err(body.error(format!("{} is not finite", quoted(&property.name))));
+                    }
+                    0..3 if value.abs() > MAX_NUMBER => {
+                        return Err(body.error(format!("{} is not from -1e300 to 1e300", quoted(&property.name))));
+                    }
+                    0..3 => position[*slot] = value,
+                    3..RED => direction[*slot - 3] = value,
+                    _ => color[*slot - RED] = channel(value, property, body)?,
+                }
+            }
+            budget.vertices(object, 1)?;
+            let direction = normal(direction).unwrap_or_else(|| {
+                let message = || "a normal is not finite: it is computed".to_owned();
+                warnings.add(WarningKind::InvalidNormal, "", body.position(), message);
+                [0.0; 3]
+            });
+            object.vertex(position, direction, range.add(color, body.position()));
+        }
+        range.apply(object.colors.iter_mut().skip(first), warnings);
+        Ok(())
+    }
 }
 
 fn skip(element: &Element, body: &mut Body<'_>) -> Result<(), FileError> {

@@ -1,0 +1,45 @@
+//! The range of the colours of a model's vertices. The formats have numbers from 0 to 1; some tools write numbers from 0 to 255.
+
+use crate::error::FilePosition;
+use crate::warnings::{FileWarnings, WarningKind};
+
+/// A number above this means that the numbers are from 0 to 255.
+const BYTES: f32 = 2.0;
+
+/// The greatest number that is kept, so that all have a finite `f32`.
+const GREATEST: f64 = 1.0e9;
+
+/// The numbers of the colours so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ColorRange {
+    /// The greatest red, green or blue, and the greatest alpha.
+    greatest: (f32, f32),
+    /// The first number that is not from 0 to 1, and its position.
+    first: Option<(f64, FilePosition)>,
+}
+
+impl ColorRange {
+    /// Returns a colour as it is in the file, which [`ColorRange::apply`] will change.
+    pub(crate) fn add(&mut self, color: [f64; 4], position: FilePosition) -> [f32; 4] {
+        let outside = color.iter().copied().find(|value| !(0.0..=1.0).contains(value));
+        self.first = self.first.or(outside.map(|value| (value, position)));
+        let color = color.map(|value| value.clamp(-GREATEST, GREATEST) as f32);
+        let [r, g, b, alpha] = color;
+        self.greatest = (self.greatest.0.max(r).max(g).max(b), self.greatest.1.max(alpha));
+        color
+    }
+
+    /// Changes all colours that were added to numbers from 0 to 1, with a warning if this changes any.
+    pub(crate) fn apply<'c>(self, colors: impl Iterator<Item = &'c mut [f32; 4]>, warnings: FileWarnings<'_>) {
+        let Some((value, position)) = self.first else { return };
+        let scale = |greatest: f32| if greatest > BYTES { 1.0 / 255.0 } else { 1.0 };
+        let (color, alpha) = (scale(self.greatest.0), scale(self.greatest.1));
+        for channels in colors {
+            let [r, g, b, a] = *channels;
+            *channels = [r * color, g * color, b * color, a * alpha].map(|channel| channel.clamp(0.0, 1.0));
+        }
+        let change = if color.min(alpha) < 1.0 { "all are divided by 255" } else { "it is clamped" };
+        let message = || format!("a colour of a vertex, {value}, is not from 0 to 1: {change}");
+        warnings.add(WarningKind::OutOfRange, "colours", position, message);
+    }
+}

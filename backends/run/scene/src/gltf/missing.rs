@@ -1,0 +1,70 @@
+//! What a model lacks, and what it has that is not read.
+
+use std::borrow::Cow;
+
+use gltf::json::{Root, Value, deserialize};
+use gltf::{Glb, json};
+
+use super::json::take;
+use crate::error::{FileError, FilePosition};
+use crate::limits::Budget;
+use crate::text::quoted;
+use crate::warnings::{FileWarnings, WarningKind};
+
+/// The extension of instances.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Adds warnings about parts that change the image and are not read.
+pub(super) fn warn(root: &Root, warnings: FileWarnings<'_>) {
+    let warn = |subject: &str, message: String| {
+        warnings.add(WarningKind::NotRead, subject, FilePosition::Whole, || message);
+    };
+    for (number, material) in root.materials.iter().enumerate() {
+        let glossiness = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
+        let base = &material.pbr_metallic_roughness.base_color_texture;
+        if base.is_some() || glossiness.is_some_and(|glossiness| glossiness.diffuse_texture.is_some()) {
+            let message = "textures are not read: the factor of its base colour is used without them";
+            warn("textures", format!("material {number}: {message}"));
+        }
+    }
+    if root.extensions_used.iter().any(|extension| extension == INSTANCING) {
+        warn("instances", format!("the instances of `{INSTANCING}` are not read: each node is drawn once"));
+    }
+    if let Some(number) = root.nodes.iter().position(|node| node.skin.is_some()) {
+        warn("skins", format!("node {number}: the joints of skins are not read: its mesh is drawn in its own pose"));
+    }
+}
+
+/// Parses the JSON of a model in which a scene has no `nodes`, which the format allows and the `gltf` crate does not. `None`: this is not
+/// the reason of the error. `Err`: the model has another version.
+pub(super) fn repaired(
+    bytes: &[u8],
+    error: &json::Error,
+    budget: &Budget,
+) -> Result<Option<(Root, Option<Vec<u8>>)>, FileError> {
+    if !error.is_data() {
+        return Ok(None);
+    }
+    // The JSON is parsed once more, and the parsed value exists beside the result.
+    take(bytes, budget)?;
+    let (json, blob) = match bytes.starts_with(b"glTF").then(|| Glb::from_slice(bytes).ok()).flatten() {
+        Some(glb) => (glb.json, glb.bin.map(Cow::into_owned)),
+        None => (bytes.into(), None),
+    };
+    let Ok(mut value) = deserialize::from_slice::<Value>(&json) else { return Ok(None) };
+    let version = value.pointer("/asset/version").and_then(Value::as_str);
+    if let Some(version) = version.filter(|version| !version.starts_with("2.")) {
+        return Err(unsupported_version(version));
+    }
+    for scene in value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
+        if let Some(scene) = scene.as_object_mut().filter(|scene| !scene.contains_key("nodes")) {
+            scene.insert("nodes".to_owned(), Value::Array(Vec::new()));
+        }
+    }
+    Ok(deserialize::from_value(value).ok().map(|root| (root, blob)))
+}
+
+/// Returns the error about a version.
+pub(super) fn unsupported_version(version: &str) -> FileError {
+    FileError::whole(format!("glTF version {}: version 2 is read", quoted(version)))
+}
