@@ -39,7 +39,7 @@ impl ColorRange {
             *channels = [r * color, g * color, b * color, a * alpha].map(|channel| channel.clamp(0.0, 1.0));
         }
         let change = if color.min(alpha) < 1.0 { "all are divided by 255" } else { "it is clamped" };
-        let message = || format!("a colour of a vertex, {value}, is not from 0 to 1: {change}");
-        warnings.add(WarningKind::OutOfRange, "colours", position, message);
+        let message = format!("a colour of a vertex, {value}, is not from 0 to 1: {change}");
+        warnings.add(WarningKind::OutOfRange, "colours", || (position, message));
     }
 }

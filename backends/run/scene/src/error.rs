@@ -79,6 +79,8 @@ pub(crate) fn located(f: &mut fmt::Formatter<'_>, file: &str, position: FilePosi
 pub(crate) enum FileError {
     /// The position and the message.
     Malformed(FilePosition, String),
+    /// The message about an element of a list of glTF, whose position is not known yet.
+    InElement { list: &'static str, index: usize, message: String },
     /// A part of the scene exceeds the limits.
     TooLarge { what: String, needed: u64, left: u64, limit: u64 },
 }
@@ -92,11 +94,20 @@ impl FileError {
         FileError::Malformed(FilePosition::Whole, message.into())
     }
 
+    /// Returns an error about a whole file as one about an element of a list of glTF.
+    pub(crate) fn in_element(self, list: &'static str, index: usize) -> Self {
+        match self {
+            FileError::Malformed(FilePosition::Whole, message) => FileError::InElement { list, index, message },
+            other => other,
+        }
+    }
+
     /// Adds the name of the file.
     pub(crate) fn in_file(self, file: &str) -> Error {
         let file = file.to_owned();
         match self {
             FileError::Malformed(position, message) => Error::Malformed { file, position, message },
+            FileError::InElement { message, .. } => Error::Malformed { file, position: FilePosition::Whole, message },
             FileError::TooLarge { what, needed, left, limit } => Error::TooLarge { file, what, needed, left, limit },
         }
     }

@@ -16,7 +16,7 @@ use crate::text::{lines, number, numbers, quoted};
 use crate::warnings::{FileWarnings, WarningKind, Warnings};
 
 /// Statements without effect on the triangles.
-const IGNORED: [&str; 22] = [
+const IGNORED: [&str; 20] = [
     "vt",
     "vp",
     "s",
@@ -31,8 +31,6 @@ const IGNORED: [&str; 22] = [
     "c_interp",
     "d_interp",
     "lod",
-    "maplib",
-    "usemap",
     "shadow_obj",
     "trace_obj",
     "ctech",
@@ -41,8 +39,9 @@ const IGNORED: [&str; 22] = [
     "res",
 ];
 
-/// Statements of geometry that is not read.
-const NOT_READ: [(&[&str], &str); 3] = [
+/// Statements of what is not read.
+const NOT_READ: [(&[&str], &str); 4] = [
+    (&["maplib", "usemap"], "textures are not read"),
     (&["l", "p"], "lines and points are not read"),
     (
         &["cstype", "curv", "curv2", "surf", "trim", "hole", "scrv", "sp", "bsp", "bzp", "cdc", "cdp"],

@@ -43,9 +43,8 @@ impl Placement {
         let far = axes().map(|(least, greatest)| least.abs().max(greatest.abs())).fold(0.0, f64::max);
         // Of a model without size, only the position matters.
         let is_moved = size > 0.0 && far > FAR * size;
-        let mut axes = axes();
-        let mut centre = || axes.next().map_or(0.0, |(least, greatest)| 0.5 * least + 0.5 * greatest);
-        let origin = if is_moved { [centre(), centre(), centre()] } else { [0.0; 3] };
+        let centre = std::array::from_fn(|axis| 0.5 * least[axis] + 0.5 * greatest[axis]);
+        let origin = if is_moved { centre } else { [0.0; 3] };
         let reach = if is_moved { size } else { far };
         let is_scaled = reach > 0.0 && !SIZES.contains(&reach);
         Placement { origin, unit: if is_scaled { reach.log2().floor().exp2() } else { 1.0 } }

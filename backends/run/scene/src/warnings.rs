@@ -109,14 +109,8 @@ impl<'a> FileWarnings<'a> {
         self.file
     }
 
-    /// Adds a warning, or counts it if there is one of this kind about the same subject.
-    pub(crate) fn add(
-        self,
-        kind: WarningKind,
-        subject: &str,
-        position: FilePosition,
-        message: impl FnOnce() -> String,
-    ) {
+    /// Adds a warning with the position and the message that `found` returns, or counts it if there is one of this kind about the same subject.
+    pub(crate) fn add(self, kind: WarningKind, subject: &str, found: impl FnOnce() -> (FilePosition, String)) {
         let subject = beginning(subject, MAX_SUBJECT);
         let mut list = self.warnings.list.borrow_mut();
         let is_full = list.len() >= MAX_WARNINGS;
@@ -126,7 +120,8 @@ impl<'a> FileWarnings<'a> {
         match list.iter_mut().find(is_equal) {
             Some((_, warning)) => warning.more = warning.more.saturating_add(1),
             None => {
-                let warning = Warning { kind, file: self.file.to_owned(), position, message: message(), more: 0 };
+                let (position, message) = found();
+                let warning = Warning { kind, file: self.file.to_owned(), position, message, more: 0 };
                 list.push((subject.to_owned(), warning));
             }
         }
@@ -134,6 +129,6 @@ impl<'a> FileWarnings<'a> {
 
     /// Adds a warning about a line, or counts it.
     pub(crate) fn line(self, kind: WarningKind, subject: &str, line: usize, message: impl FnOnce() -> String) {
-        self.add(kind, subject, FilePosition::Line(line), message);
+        self.add(kind, subject, || (FilePosition::Line(line), message()));
     }
 }

@@ -70,7 +70,7 @@ const GLTF: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nod
 "bufferViews": [{"buffer": 0, "byteLength": 36, "byteStride": 12}, {"buffer": 0, "byteOffset": 36, "byteLength": 12}],
 "buffers": [{"byteLength": 48BUFFER}]}"#;
 
-/// The file of a model, a second file that it names, and whether the changes go to the second.
+/// The name and the bytes of a model, and of a file that it names.
 type Model = (&'static str, Vec<u8>, Option<(&'static str, Vec<u8>)>);
 
 fn models() -> Vec<Model> {
@@ -194,7 +194,7 @@ fn replace_word(bytes: &mut Vec<u8>, rng: &mut Rng) {
 }
 
 /// Writes the model with this number, and loads it.
-fn attempt(number: u64, models: &[Model], folder: &Path) -> (String, Result<Scene, Error>) {
+fn attempt(number: u64, models: &[Model], folder: &Path) -> Result<Scene, Error> {
     let mut rng = Rng(number.wrapping_mul(0x2545_f491_4f6c_dd1d));
     let (name, mut bytes, second) = models[rng.below(models.len())].clone();
     let changes = 1 + rng.below(4);
@@ -207,7 +207,7 @@ fn attempt(number: u64, models: &[Model], folder: &Path) -> (String, Result<Scen
     (0..changes).for_each(|_| change(&mut bytes, &mut rng));
     let path = folder.join(name);
     std::fs::write(&path, &bytes).unwrap();
-    (name.to_owned(), load(&path, [0.5; 4], &LIMITS))
+    load(&path, [0.5; 4], &LIMITS)
 }
 
 fn check_scene(scene: &Scene) {
@@ -229,21 +229,10 @@ fn check_scene(scene: &Scene) {
     assert!(camera.view_projection.iter().all(|value| value.is_finite()), "{camera:?}");
 }
 
-/// Checks that an error has a position: a line, a byte, or the part of a glTF by its number.
-fn check_error(name: &str, error: &Error) {
+/// Checks that an error has a position: a line or a byte.
+fn check_error(error: &Error) {
     let text = error.to_string();
     match error {
-        Error::Malformed { position: FilePosition::Whole, message, .. }
-            if name.ends_with("gltf") || name.ends_with("glb") =>
-        {
-            let without_parts =
-                ["triangles", "version", "magic", "header", "chunk", "extension", "length", "Unexpected"];
-            let has_number = message.bytes().any(|byte| byte.is_ascii_digit());
-            assert!(
-                has_number || without_parts.iter().any(|part| message.to_lowercase().contains(&part.to_lowercase())),
-                "{text}"
-            );
-        }
         Error::Malformed { position: FilePosition::Whole, message, .. } => {
             assert!(message == "the model has no triangles" || message.starts_with("the name of a file"), "{text}");
         }
@@ -282,10 +271,10 @@ fn changed_models_are_scenes_or_errors() {
     let mut scenes = 0;
     for number in first..first + count {
         let checked = std::panic::catch_unwind(|| {
-            let (name, result) = attempt(number, &models, folder.path());
+            let result = attempt(number, &models, folder.path());
             match &result {
                 Ok(scene) => check_scene(scene),
-                Err(error) => check_error(&name, error),
+                Err(error) => check_error(error),
             }
             result.is_ok()
         });

@@ -93,8 +93,9 @@ fn materials_may_lack_a_name_and_follow_their_use() {
 
 #[test]
 fn unknown_statements_and_degenerate_faces_are_skipped() {
-    let text =
-        format!("vw 1 0 1\n{QUAD}#@ x\nvw 2 0 1\nf 1 2\nf\nf 1 2 3 4\nf 3\nxyz\nl 1 2\np 1\ncurv 0 1\nsurf 0 1\n");
+    let text = format!(
+        "vw 1 0 1\n{QUAD}#@ x\nvw 2 0 1\nf 1 2\nf\nf 1 2 3 4\nf 3\nxyz\nl 1 2\np 1\ncurv 0 1\nsurf 0 1\nusemap a\n"
+    );
     let (scene, warnings) = loaded(&[("m.obj", &text)]);
     assert_eq!(scene.triangles(), 2);
     assert_eq!(
@@ -104,7 +105,8 @@ fn unknown_statements_and_degenerate_faces_are_skipped() {
             "[degenerate-face] m.obj:8: a face with 2 vertices is skipped: it needs 3 or more (and 2 more)",
             "[unknown-statement] m.obj:12: unknown statement `xyz`",
             "[not-read] m.obj:13: lines and points are not read (and 1 more)",
-            "[not-read] m.obj:15: curves and surfaces are not read (and 1 more)"
+            "[not-read] m.obj:15: curves and surfaces are not read (and 1 more)",
+            "[not-read] m.obj:17: textures are not read"
         ]
     );
 }
@@ -296,6 +298,8 @@ fn faces_of_a_ply_have_colours_and_strips() {
     assert_eq!(colors(&scene), [RED, [0.0, 0.0, 1.0, 1.0], RED]);
     // The first and the last face share their vertices.
     assert_eq!(scene.objects[0].positions.len(), 4 + 6);
+    let textured = text.replace("element face", "comment TextureFile a.png\nelement face");
+    assert_eq!(loaded(&[("m.ply", &textured)]).1, ["[not-read] m.ply:7: textures are not read"]);
     let strips = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
     let scene = clean(&[("m.ply", &format!("{vertices}{strips}{positions}9 0 1 2 3 -1 3 2 1 -1\n"))]);
     assert_eq!(scene.objects[0].triangles, [[0, 1, 2], [2, 1, 3], [3, 2, 1]]);
@@ -323,7 +327,7 @@ fn a_gltf_without_scene_or_nodes_is_drawn() {
         warnings
     };
     let no_scene = "[missing-scene] m.gltf: the file has no scene: all its nodes are drawn";
-    let no_nodes = "[missing-scene] m.gltf: scene 0 has no nodes: all nodes of the file are drawn";
+    let no_nodes = "[missing-scene] m.gltf:1: scene 0 has no nodes: all nodes of the file are drawn";
     assert_eq!(first(nodes, 1), [no_scene]);
     assert_eq!(first("", 1), [no_scene]);
     assert_eq!(first(&format!(r#""scene": 0, "scenes": [{{}}], {nodes}"#), 1), [no_nodes]);
@@ -341,21 +345,55 @@ fn what_a_gltf_has_beyond_the_scene_is_reported() {
     };
     assert_eq!(warnings("NODE", ""), [""; 0]);
     assert_eq!(
-        warnings("USED", r#""EXT_mesh_gpu_instancing""#),
-        ["[not-read] m.gltf: the instances of `EXT_mesh_gpu_instancing` are not read: each node is drawn once"]
+        warnings("USED", r#""KHR_materials_unlit", "EXT_mesh_gpu_instancing""#),
+        ["[not-read] m.gltf:1: `EXT_mesh_gpu_instancing` is not read: each node is drawn once"]
     );
     assert_eq!(
         warnings("NODE", r#", "skin": 0"#),
-        ["[not-read] m.gltf: node 0: the joints of skins are not read: its mesh is drawn in its own pose"]
+        ["[not-read] m.gltf:1: node 0: the joints of skins are not read: its mesh is drawn in its own pose"]
     );
     let texture = r#""textures": [{"source": 0}], "images": [{"uri": "a.png"}], "materials": [{"pbrMetallicRoughness":
         {"baseColorTexture": {"index": 0}, "#;
     assert_eq!(
         warnings(r#""materials": [{"pbrMetallicRoughness": {"#, texture),
-        ["[not-read] m.gltf: material 0: textures are not read: the factor of its base colour is used without them"]
+        ["[not-read] m.gltf:2: material 0: textures are not read: the factor of its base colour is used without them"]
     );
     let lines = r#""primitives": [{"attributes": {"POSITION": 0}, "mode": 1}, "#;
-    assert_eq!(warnings(r#""primitives": ["#, lines), ["[not-read] m.gltf: lines and points are not read"]);
+    assert_eq!(warnings(r#""primitives": ["#, lines), ["[not-read] m.gltf:1: lines and points are not read"]);
+}
+
+#[test]
+fn errors_of_a_gltf_have_the_line_of_their_part() {
+    let folder = TempDir::new().unwrap();
+    let error = |from: &str, to: &str| {
+        let nodes = "\n\"nodes\": [\n{\"name\": \"accessors \\\" [\"},\n{\"mesh\": 0}],\n\"scenes\": [\n{\"nodes\": [0, 1]}],\n";
+        let text = gltf(nodes).replacen(r#"}], "accessors""#, r#"}],"accessors""#, 1);
+        assert!(text.contains(from), "{from}");
+        let path = folder.path().join("m.gltf");
+        std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        load(&path, COLOR, &Limits::default()).unwrap_err().to_string().rsplit_once('/').unwrap().1.to_owned()
+    };
+    for (from, to, expected) in [
+        (r#""version": "2.0""#, r#""version": "1.0""#, "m.gltf:1: glTF version `1.0`: version 2 is read"),
+        ("0, 1]", "0, 7]", "m.gltf:6: scene 0: its node is number 7, and the file has 2"),
+        ("\"mesh\": 0", "\"children\": [1]", "m.gltf:4: node 1 is its own child"),
+        ("\"mesh\": 0", "\"mesh\": 3", "m.gltf:4: node 1: its mesh is number 3, and the file has 1"),
+        ("\"POSITION\": 0", "\"NORMAL\": 0", "m.gltf:7: primitive 0: it has no POSITION"),
+        ("\"count\": 3", "\"count\": 4", "m.gltf:9: accessor 0: it reaches beyond its buffer"),
+        (
+            "\"byteLength\": 36, \"uri\"",
+            "\"byteLength\": 37, \"uri\"",
+            "m.gltf:11: buffer 0: it has 36 bytes, but declares 37",
+        ),
+        (
+            "\"byteLength\": 36}",
+            "\"byteLength\": 36, \"byteStride\": 2}",
+            "m.gltf:10: buffer view 0: a stride of 2 bytes",
+        ),
+    ] {
+        let found = error(from, to);
+        assert!(found.starts_with(expected), "{found}");
+    }
 }
 
 #[test]

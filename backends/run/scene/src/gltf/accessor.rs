@@ -45,7 +45,9 @@ struct SparseIndices<'a> {
 impl<'a> Elements<'a> {
     /// Returns the numbers of an accessor. `Err`: its type is not among `types`, or it is not within its buffers.
     pub(super) fn of(accessor: &Accessor<'_>, types: &Types, buffers: &'a [Vec<u8>]) -> Result<Self, FileError> {
-        let error = |message: String| FileError::whole(format!("accessor {}: {message}", accessor.index()));
+        let number = accessor.index();
+        let error =
+            |message: String| FileError::whole(format!("accessor {number}: {message}")).in_element("accessors", number);
         let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
         if !types.dimensions.contains(&dimensions) || !types.components.contains(&kind) {
             return Err(error(format!(

@@ -6,6 +6,7 @@ use base64::Engine as _;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::Gltf;
 
+use super::locate::Text;
 use crate::error::{Error, FileError};
 use crate::file;
 use crate::limits::Budget;
@@ -14,7 +15,7 @@ use crate::limits::Budget;
 pub(super) fn read(
     model: &Gltf,
     mut blob: Option<Vec<u8>>,
-    path: &Path,
+    (path, text): (&Path, Text<'_>),
     budget: &Budget,
 ) -> Result<Vec<Vec<u8>>, Error> {
     let file = path.display().to_string();
@@ -22,7 +23,8 @@ pub(super) fn read(
     let mut buffers = Vec::new();
     for buffer in model.buffers() {
         let index = buffer.index();
-        let error_at = |message: String| FileError::whole(format!("buffer {index}: {message}")).in_file(&file);
+        let located = |error: FileError| text.located(error.in_element("buffers", index)).in_file(&file);
+        let error_at = |message: String| located(FileError::whole(format!("buffer {index}: {message}")));
         let bytes = match buffer.source() {
             gltf::buffer::Source::Bin => match blob.take() {
                 Some(blob) => blob,
@@ -39,7 +41,7 @@ pub(super) fn read(
                 None => {
                     let name = String::from_utf8(percent_decoded(uri));
                     let name = name.map_err(|_| error_at("its URI is not UTF-8 after decoding".to_owned()))?;
-                    file::read(&file::beside(folder, &name).map_err(|error| error.in_file(&file))?, budget)?
+                    file::read(&file::beside(folder, &name).map_err(located)?, budget)?
                 }
             },
         };

@@ -3,7 +3,8 @@
 //! A parsed value is many times larger than its text: three bytes, `{},`, become a node of some hundred bytes. So the values are
 //! counted before they are parsed.
 
-use crate::error::FileError;
+use super::locate::{GLB_HEADER, Text};
+use crate::error::{FileError, FilePosition};
 use crate::limits::Budget;
 
 /// The bytes of a JSON object once it is parsed, at most: the largest structs of the format, in a list that has doubled.
@@ -12,26 +13,24 @@ const OBJECT: u64 = 1024;
 /// The bytes of a list, of a member of one, or of a member of an object.
 const VALUE: u64 = 64;
 
-/// The bytes of the header of a GLB file and of its first chunk.
-const GLB_HEADER: usize = 20;
-
 /// Takes the memory of the parsed model: of its JSON, and of the copy of a GLB's binary chunk.
 pub(super) fn take(bytes: &[u8], budget: &Budget) -> Result<(), FileError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
         return budget.take(cost(bytes), 1, "the parsed JSON");
     };
+    let at = |byte: usize, message: String| FileError::Malformed(FilePosition::Byte(byte), message);
     // The version, the length of the file, the length of the JSON, and its type.
     let word = |at: usize| rest.get(at..)?.first_chunk().map(|word| u32::from_le_bytes(*word));
     if let Some(version) = word(0).filter(|version| *version != 2) {
-        return Err(FileError::whole(format!("GLB version {version}: version 2 is read")));
+        return Err(at(4, format!("GLB version {version}: version 2 is read")));
     }
-    let (Some(length), Some(json)) = (word(4), word(8)) else {
-        return Err(FileError::whole(format!("the header is incomplete: {} of {GLB_HEADER} bytes", bytes.len())));
+    let (Some(length), Some(_)) = (word(4), word(8)) else {
+        return Err(at(bytes.len(), format!("the header is incomplete: {} of {GLB_HEADER} bytes", bytes.len())));
     };
     if (length as usize) < GLB_HEADER || length as usize > bytes.len() {
-        return Err(FileError::whole(format!("the header declares {length} bytes, and the file has {}", bytes.len())));
+        return Err(at(8, format!("the header declares {length} bytes, and the file has {}", bytes.len())));
     }
-    let json = bytes.get(GLB_HEADER..).map_or(&[][..], |rest| rest.get(..json as usize).unwrap_or(rest));
+    let json = Text::of(bytes).json();
     budget.take(cost(json), 1, "the parsed JSON")?;
     budget.take((bytes.len() - json.len()) as u64, 1, "the binary chunk")
 }

@@ -6,32 +6,45 @@ use gltf::json::{Root, Value, deserialize};
 use gltf::{Glb, json};
 
 use super::json::take;
-use crate::error::{FileError, FilePosition};
+use super::locate::Text;
+use crate::error::FileError;
 use crate::limits::Budget;
 use crate::text::quoted;
 use crate::warnings::{FileWarnings, WarningKind};
 
-/// The extension of instances.
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// Extensions that change the image and are not read, and what is drawn without them.
+const EXTENSIONS: [(&str, &str); 3] = [
+    ("EXT_mesh_gpu_instancing", "each node is drawn once"),
+    ("KHR_materials_transmission", "a material has the alpha of its base colour"),
+    ("KHR_node_visibility", "all nodes are drawn"),
+];
 
 /// Adds warnings about parts that change the image and are not read.
-pub(super) fn warn(root: &Root, warnings: FileWarnings<'_>) {
-    let warn = |subject: &str, message: String| {
-        warnings.add(WarningKind::NotRead, subject, FilePosition::Whole, || message);
+pub(super) fn warn(root: &Root, text: Text<'_>, warnings: FileWarnings<'_>) {
+    let warn = |list: &str, number: usize, message: String| {
+        warnings.add(WarningKind::NotRead, list, || (text.position(list, number), message));
     };
     for (number, material) in root.materials.iter().enumerate() {
         let glossiness = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
         let base = &material.pbr_metallic_roughness.base_color_texture;
         if base.is_some() || glossiness.is_some_and(|glossiness| glossiness.diffuse_texture.is_some()) {
             let message = "textures are not read: the factor of its base colour is used without them";
-            warn("textures", format!("material {number}: {message}"));
+            warn("materials", number, format!("material {number}: {message}"));
         }
     }
-    if root.extensions_used.iter().any(|extension| extension == INSTANCING) {
-        warn("instances", format!("the instances of `{INSTANCING}` are not read: each node is drawn once"));
+    for (number, extension) in root.extensions_used.iter().enumerate() {
+        if let Some((_, instead)) = EXTENSIONS.iter().find(|(name, _)| name == extension) {
+            warnings.add(WarningKind::NotRead, extension, || {
+                (text.position("extensionsUsed", number), format!("`{extension}` is not read: {instead}"))
+            });
+        }
     }
     if let Some(number) = root.nodes.iter().position(|node| node.skin.is_some()) {
-        warn("skins", format!("node {number}: the joints of skins are not read: its mesh is drawn in its own pose"));
+        warn(
+            "nodes",
+            number,
+            format!("node {number}: the joints of skins are not read: its mesh is drawn in its own pose"),
+        );
     }
 }
 
@@ -66,5 +79,5 @@ pub(super) fn repaired(
 
 /// Returns the error about a version.
 pub(super) fn unsupported_version(version: &str) -> FileError {
-    FileError::whole(format!("glTF version {}: version 2 is read", quoted(version)))
+    FileError::whole(format!("glTF version {}: version 2 is read", quoted(version))).in_element("asset", 0)
 }

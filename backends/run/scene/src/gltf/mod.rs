@@ -8,6 +8,7 @@
 mod accessor;
 mod buffers;
 mod json;
+mod locate;
 mod material;
 mod missing;
 mod nodes;
@@ -24,6 +25,7 @@ use crate::limits::{Budget, OBJECT};
 use crate::model::ModelObject;
 use crate::text::{foreign_message, without_mark};
 use crate::warnings::{FileWarnings, WarningKind};
+use locate::Text;
 use primitive::Reader;
 
 /// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
@@ -34,12 +36,14 @@ pub(crate) fn parse(
     (budget, warnings): (&Budget, FileWarnings<'_>),
 ) -> Result<Vec<ModelObject>, Error> {
     let (file, bytes) = (path.display().to_string(), without_mark(bytes));
-    let mut model = document(bytes, budget).map_err(|error| error.in_file(&file))?;
-    missing::warn(model.as_json(), warnings);
+    let text = Text::of(bytes);
+    let located = |error: FileError| text.located(error).in_file(&file);
+    let mut model = document(bytes, budget).map_err(located)?;
+    missing::warn(model.as_json(), text, warnings);
     let blob = model.blob.take();
-    let buffers = buffers::read(&model, blob, path, budget)?;
-    let reader = Reader { buffers: &buffers, color, budget, warnings };
-    objects(&model, &reader).map_err(|error| error.in_file(&file))
+    let buffers = buffers::read(&model, blob, (path, text), budget)?;
+    let reader = Reader { buffers: &buffers, color, text, budget, warnings };
+    objects(&model, &reader).map_err(located)
 }
 
 /// Parses and validates the JSON.
@@ -53,7 +57,8 @@ fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
                 return Err(FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error)));
             }
         },
-        parsed => parsed.map_err(|error| FileError::whole(foreign_message(&error)))?,
+        // The others are about the chunks of a GLB, which follow its header.
+        parsed => parsed.map_err(|error| FileError::Malformed(FilePosition::Byte(12), foreign_message(&error)))?,
     };
     validate::validate(model.as_json())?;
     Ok(model)
@@ -71,7 +76,8 @@ fn roots<'a>(model: &'a Gltf, reader: &Reader<'_>) -> (Vec<Node<'a>>, String) {
         true => format!("{name} has no nodes: all nodes of the file are drawn"),
         false => "the file has no scene: all its nodes are drawn".to_owned(),
     };
-    reader.warnings.add(WarningKind::MissingScene, "", FilePosition::Whole, message);
+    let position = || scene.as_ref().map_or(FilePosition::Whole, |scene| reader.text.position("scenes", scene.index()));
+    reader.warnings.add(WarningKind::MissingScene, "", || (position(), message()));
     let mut is_root = vec![true; model.nodes().len()];
     for child in model.nodes().flat_map(|node| node.children()) {
         if let Some(is_root) = is_root.get_mut(child.index()) {
@@ -97,7 +103,8 @@ fn objects(model: &Gltf, reader: &Reader<'_>) -> Result<Vec<ModelObject>, FileEr
     pending.reverse();
     while let Some((node, outer)) = pending.pop() {
         if visited.get_mut(node.index()).is_some_and(|visited| std::mem::replace(visited, true)) {
-            return Err(FileError::whole(format!("node {} occurs twice in {scene}", node.index())));
+            let message = format!("node {} occurs twice in {scene}", node.index());
+            return Err(FileError::whole(message).in_element("nodes", node.index()));
         }
         let transform =
             outer * DMat4::from_cols_array_2d(&node.transform().matrix().map(|column| column.map(f64::from)));
@@ -126,7 +133,8 @@ fn object(
     reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
     let mut object = ModelObject { name, ..ModelObject::default() };
     for primitive in mesh.primitives() {
-        reader.primitive(&primitive, (transform, weights), &mut object)?;
+        let added = reader.primitive(&primitive, mesh.index(), (transform, weights), &mut object);
+        added.map_err(|error| error.in_element("meshes", mesh.index()))?;
     }
     Ok(object)
 }

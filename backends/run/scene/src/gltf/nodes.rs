@@ -13,17 +13,18 @@ pub(super) fn check(model: &Gltf) -> Result<(), FileError> {
     for node in model.nodes() {
         for child in node.children().map(|child| child.index()) {
             if child == node.index() {
-                return Err(FileError::whole(format!("node {child} is its own child")));
+                return Err(FileError::whole(format!("node {child} is its own child")).in_element("nodes", child));
             }
             let Some(parent) = parents.get_mut(child) else { continue };
             match parent.replace(node.index()) {
                 None => {}
                 Some(first) if first == node.index() => {
-                    return Err(FileError::whole(format!("node {child} is a child of node {first} twice")));
+                    return Err(FileError::whole(format!("node {child} is a child of node {first} twice"))
+                        .in_element("nodes", first));
                 }
                 Some(first) => {
                     let message = format!("node {child} has two parents, nodes {first} and {}", node.index());
-                    return Err(FileError::whole(message));
+                    return Err(FileError::whole(message).in_element("nodes", child));
                 }
             }
         }
@@ -41,7 +42,9 @@ fn acyclic(parents: &[Option<usize>]) -> Result<(), FileError> {
             let Some(mark) = visited.get_mut(node) else { break };
             match *mark {
                 Some(walk) if walk == start => {
-                    return Err(FileError::whole(format!("node {node} is its own descendant")));
+                    return Err(
+                        FileError::whole(format!("node {node} is its own descendant")).in_element("nodes", node)
+                    );
                 }
                 Some(_) => break,
                 None => *mark = Some(start),

@@ -6,8 +6,9 @@ use gltf::mesh::Mode;
 use gltf::{Primitive, Semantic};
 
 use super::accessor::{Elements, Types};
+use super::locate::Text;
 use super::material::{factor, visible};
-use crate::error::{FileError, FilePosition};
+use crate::error::FileError;
 use crate::limits::Budget;
 use crate::model::{ModelObject, normal};
 use crate::text::MAX_NUMBER;
@@ -37,6 +38,7 @@ const MORPH_OFFSET: u64 = 12;
 pub(super) struct Reader<'a> {
     pub(super) buffers: &'a [Vec<u8>],
     pub(super) color: [f32; 4],
+    pub(super) text: Text<'a>,
     pub(super) budget: &'a Budget,
     pub(super) warnings: FileWarnings<'a>,
 }
@@ -46,6 +48,7 @@ impl Reader<'_> {
     pub(super) fn primitive(
         &self,
         primitive: &Primitive<'_>,
+        mesh: usize,
         (transform, weights): (&DMat4, &[f32]),
         object: &mut ModelObject,
     ) -> Result<(), FileError> {
@@ -57,12 +60,12 @@ impl Reader<'_> {
             Mode::TriangleFan => |turn: usize| [0, turn + 1, turn + 2],
             _ => {
                 let message = || "lines and points are not read".to_owned();
-                self.warnings.add(WarningKind::NotRead, "lines", FilePosition::Whole, message);
+                self.warnings.add(WarningKind::NotRead, "lines", || (self.text.position("meshes", mesh), message()));
                 return Ok(());
             }
         };
         let first = object.positions.len() as u32;
-        let vertices = self.vertices(primitive, (transform, weights), object)?;
+        let vertices = self.vertices(primitive, mesh, (transform, weights), object)?;
         let indices =
             primitive.indices().map(|accessor| Elements::of(&accessor, &INDICES, self.buffers)).transpose()?;
         let count = indices.as_ref().map_or(vertices, |indices| indices.count);
@@ -113,6 +116,7 @@ impl Reader<'_> {
     fn vertices(
         &self,
         primitive: &Primitive<'_>,
+        mesh: usize,
         (transform, weights): (&DMat4, &[f32]),
         object: &mut ModelObject,
     ) -> Result<usize, FileError> {
@@ -137,15 +141,15 @@ impl Reader<'_> {
         for index in 0..positions.count {
             let moved = morphs.iter().map(|(weight, offsets)| f64::from(*weight) * vector(offsets, index));
             let position = transform.transform_point3(vector(&positions, index) + moved.sum::<DVec3>());
-            // The comparison is false if a coordinate is not a number.
-            if !(position.abs().max_element() <= MAX_NUMBER && position.is_finite()) {
+            let is_valid = position.is_finite() && position.abs().max_element() <= MAX_NUMBER;
+            if !is_valid {
                 return Err(error(format!("position {index} is not finite")));
             }
             let given = normals.as_ref().map_or(DVec3::ZERO, |normals| vector(normals, index));
             if !given.is_finite() {
                 let message =
                     || format!("primitive {}: normal {index} is not finite: it is computed", primitive.index());
-                self.warnings.add(WarningKind::InvalidNormal, "", FilePosition::Whole, message);
+                self.warnings.add(WarningKind::InvalidNormal, "", || (self.text.position("meshes", mesh), message()));
             }
             // A transform without an inverse has no normals, either.
             let direction = normal((directions * given).to_array()).unwrap_or_default();

@@ -10,7 +10,7 @@ use gltf::json::accessor::Accessor;
 use gltf::json::buffer::Stride;
 use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
-use gltf::json::{Index, Root};
+use gltf::json::{Index, Node, Root};
 
 use super::missing::unsupported_version;
 use crate::error::FileError;
@@ -39,39 +39,50 @@ pub(super) fn validate(root: &Root) -> Result<(), FileError> {
     if !root.asset.version.starts_with("2.") {
         return Err(unsupported_version(&root.asset.version));
     }
-    for extension in &root.extensions_required {
+    for (number, extension) in root.extensions_required.iter().enumerate() {
         if !SUPPORTED.contains(&extension.as_str()) && !extension.starts_with(MATERIALS) {
-            return Err(FileError::whole(format!("the required extension {} is not supported", quoted(extension))));
+            let message = format!("the required extension {} is not supported", quoted(extension));
+            return Err(FileError::whole(message).in_element("extensionsRequired", number));
         }
     }
-    in_range(root.scene.iter(), root.scenes.len(), "the default scene")?;
+    let default = in_range(root.scene.iter(), root.scenes.len(), "the default scene");
+    default.map_err(|error| error.in_element("scene", 0))?;
     for (number, scene) in root.scenes.iter().enumerate() {
-        in_range(&scene.nodes, root.nodes.len(), &format!("scene {number}: its node"))?;
+        let nodes = in_range(&scene.nodes, root.nodes.len(), &format!("scene {number}: its node"));
+        nodes.map_err(|error| error.in_element("scenes", number))?;
     }
     for (number, node) in root.nodes.iter().enumerate() {
-        in_range(node.children.iter().flatten(), root.nodes.len(), &format!("node {number}: its child"))?;
-        in_range(&node.mesh, root.meshes.len(), &format!("node {number}: its mesh"))?;
-        in_range(&node.skin, root.skins.len(), &format!("node {number}: its skin"))?;
+        validate_node(root, node, &format!("node {number}")).map_err(|error| error.in_element("nodes", number))?;
     }
     for (number, mesh) in root.meshes.iter().enumerate() {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
-            validate_primitive(root, primitive, &format!("mesh {number}, primitive {index}"))?;
+            let valid = validate_primitive(root, primitive, &format!("mesh {number}, primitive {index}"));
+            valid.map_err(|error| error.in_element("meshes", number))?;
         }
     }
     for (number, accessor) in root.accessors.iter().enumerate() {
-        validate_accessor(root, accessor, &format!("accessor {number}"))?;
+        let valid = validate_accessor(root, accessor, &format!("accessor {number}"));
+        valid.map_err(|error| error.in_element("accessors", number))?;
     }
     for (number, material) in root.materials.iter().enumerate() {
-        known(&material.alpha_mode, &format!("material {number}: its alpha mode"))?;
+        let mode = known(&material.alpha_mode, &format!("material {number}: its alpha mode"));
+        mode.map_err(|error| error.in_element("materials", number))?;
     }
     for (number, view) in root.buffer_views.iter().enumerate() {
-        in_range([&view.buffer], root.buffers.len(), &format!("buffer view {number}: its buffer"))?;
+        let buffer = in_range([&view.buffer], root.buffers.len(), &format!("buffer view {number}: its buffer"));
+        buffer.map_err(|error| error.in_element("bufferViews", number))?;
         if let Some(Stride(stride)) = view.byte_stride.filter(|Stride(stride)| !STRIDES.contains(stride)) {
             let message = format!("buffer view {number}: a stride of {stride} bytes is not from 4 to 252");
-            return Err(FileError::whole(message));
+            return Err(FileError::whole(message).in_element("bufferViews", number));
         }
     }
     Ok(())
+}
+
+fn validate_node(root: &Root, node: &Node, name: &str) -> Result<(), FileError> {
+    in_range(node.children.iter().flatten(), root.nodes.len(), &format!("{name}: its child"))?;
+    in_range(&node.mesh, root.meshes.len(), &format!("{name}: its mesh"))?;
+    in_range(&node.skin, root.skins.len(), &format!("{name}: its skin"))
 }
 
 fn validate_primitive(root: &Root, primitive: &Primitive, name: &str) -> Result<(), FileError> {

@@ -94,9 +94,8 @@ impl<'a> Faces<'a> {
     fn corners(&mut self, (length, kind): (Kind, Kind), body: &mut Body<'_>) -> Result<Option<Held<'a>>, FileError> {
         let length = body.length(length, kind)?;
         if length < 3 {
-            self.warnings.add(WarningKind::DegenerateFace, "", body.position(), || {
-                format!("a face with {length} vertices is skipped: it needs 3 or more")
-            });
+            let message = || format!("a face with {length} vertices is skipped: it needs 3 or more");
+            self.warnings.add(WarningKind::DegenerateFace, "", || (body.position(), message()));
             for _ in 0..length {
                 body.scalar(kind)?;
             }

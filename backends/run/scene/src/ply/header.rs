@@ -14,6 +14,8 @@ pub(super) struct Header {
     pub(super) length: usize,
     /// Its number of lines.
     pub(super) lines: usize,
+    /// The line of the first comment that names a texture.
+    pub(super) texture: Option<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -92,6 +94,7 @@ impl Kind {
 impl Header {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileError> {
         let (mut encoding, mut elements, mut length) = (None, Vec::<Element>::new(), 0);
+        let mut texture = None;
         let line_end = LineEnd::of(bytes);
         let head = head(bytes);
         let (mut rest, mut line) = (head, 0);
@@ -105,6 +108,7 @@ impl Header {
             match words.as_slice() {
                 ["ply"] if line == 1 => {}
                 _ if line == 1 => return Err(FileError::line(line, "a PLY file begins with `ply`")),
+                ["comment", "TextureFile", ..] => texture = texture.or(Some(line)),
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, "1.0"] => encoding = Some(encoding_of(name, line)?),
                 ["element", name, count] => {
@@ -121,7 +125,8 @@ impl Header {
                 }
                 ["end_header"] => {
                     let encoding = encoding.ok_or_else(|| FileError::line(line, "the header has no `format`"))?;
-                    return Ok(Header { encoding, elements, length: line_end.body(bytes, length), lines: line });
+                    let length = line_end.body(bytes, length);
+                    return Ok(Header { encoding, elements, length, lines: line, texture });
                 }
                 _ => return Err(FileError::line(line, format!("unknown header line {}", quoted(text.trim())))),
             }

@@ -25,6 +25,9 @@ pub(crate) fn parse(
     (budget, warnings): (&Budget, FileWarnings<'_>),
 ) -> Result<Vec<ModelObject>, FileError> {
     let header = Header::parse(bytes)?;
+    if let Some(line) = header.texture {
+        warnings.line(WarningKind::NotRead, "TextureFile", line, || "textures are not read".to_owned());
+    }
     budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
     let mut object = ModelObject::default();
@@ -134,7 +137,7 @@ impl<'a> Vertices<'a> {
             budget.vertices(object, 1)?;
             let direction = normal(direction).unwrap_or_else(|| {
                 let message = || "a normal is not finite: it is computed".to_owned();
-                warnings.add(WarningKind::InvalidNormal, "", body.position(), message);
+                warnings.add(WarningKind::InvalidNormal, "", || (body.position(), message()));
                 [0.0; 3]
             });
             object.vertex(position, direction, range.add(color, body.position()));
