@@ -14,6 +14,9 @@ const COLOR: [f32; 4] = [0.5, 0.5, 0.5, 0.25];
 /// The limit of most tests.
 const SMALL: u64 = 1 << 20;
 
+/// The names and the bytes of files.
+type Files<'a> = &'a [(&'a str, &'a [u8])];
+
 /// Writes the files and loads the first.
 fn loaded(files: &[(&str, &[u8])], memory: u64) -> Result<Scene, Error> {
     let folder = TempDir::new().unwrap();
@@ -148,7 +151,7 @@ fn messages_quote_the_beginning_of_a_long_name() {
     let model = gltf(r#"[{"mesh": 0}]"#, URI);
     let version = model.replace("2.0", &long);
     let extension = model.replacen('{', &format!(r#"{{"extensionsRequired": ["{long}"], "#), 1);
-    let cases: [(&[(&str, &[u8])], String); 6] = [
+    let cases: [(Files<'_>, String); 6] = [
         (&[("m.ply", &ply("ascii", &elements, long.as_bytes()))], format!("{quoted} is not a number")),
         (
             &[("m.ply", &ply("ascii", &elements, &[0xff; 2000]))],

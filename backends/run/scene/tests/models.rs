@@ -198,7 +198,7 @@ fn concave_faces_keep_their_notches() {
             let lines: String = arrow.map(|[x, y]| format!("v {} {} 0\n", x * scale, y * scale)).concat();
             let scene = loaded(&[("m.obj", format!("{lines}f {}\n", face.join(" ")).as_bytes())]).unwrap();
             assert_eq!(scene.triangles(), 2);
-            let scale = (f64::from(scale) / scene.placement.unit) as f32;
+            let scale = (scale / scene.placement.unit) as f32;
             let at = |point: [f32; 2]| layers(&scene, point.map(|axis| axis * scale));
             assert_eq!([at([0.05, -0.5]), at([0.1, 0.5]), at([-0.6, -0.5]), at([0.6, -0.5])], [0, 1, 1, 1], "{first}");
         }

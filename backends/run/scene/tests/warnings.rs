@@ -250,7 +250,7 @@ fn doubles_of_a_ply_are_centred_before_they_are_rounded() {
     // In the coordinates of the model, the distances are lost.
     let mut other = scene.clone();
     other.use_model_coordinates();
-    assert_eq!(other.objects[0].positions[0], [447_000.125, 5_411_000.0, 7.0]);
+    assert_eq!(other.objects[0].positions[0], [447_000.13, 5_411_000.0, 7.0]);
     // Two scenes share their coordinates.
     let mut beside = clean(&[("m.obj", &pyramid([447_001.0, 5_411_001.0, 7.0], 0.25))]);
     let mut scene = scene;

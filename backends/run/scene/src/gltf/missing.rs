@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use gltf::json::{Root, Value, deserialize};
-use gltf::{Glb, json};
+use gltf::{Document, Glb, Gltf, json};
 
 use super::json::take;
 use super::locate::Text;
@@ -50,11 +50,7 @@ pub(super) fn warn(root: &Root, text: Text<'_>, warnings: FileWarnings<'_>) {
 
 /// Parses the JSON of a model in which a scene has no `nodes`, which the format allows and the `gltf` crate does not. `None`: this is not
 /// the reason of the error. `Err`: the model has another version.
-pub(super) fn repaired(
-    bytes: &[u8],
-    error: &json::Error,
-    budget: &Budget,
-) -> Result<Option<(Root, Option<Vec<u8>>)>, FileError> {
+pub(super) fn repaired(bytes: &[u8], error: &json::Error, budget: &Budget) -> Result<Option<Gltf>, FileError> {
     if !error.is_data() {
         return Ok(None);
     }
@@ -74,7 +70,8 @@ pub(super) fn repaired(
             scene.insert("nodes".to_owned(), Value::Array(Vec::new()));
         }
     }
-    Ok(deserialize::from_value(value).ok().map(|root| (root, blob)))
+    let root = deserialize::from_value(value).ok();
+    Ok(root.map(|root| Gltf { document: Document::from_json_without_validation(root), blob }))
 }
 
 /// Returns the error about a version.

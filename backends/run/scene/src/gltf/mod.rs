@@ -18,7 +18,7 @@ mod validate;
 use std::path::Path;
 
 use glam::DMat4;
-use gltf::{Document, Gltf, Mesh, Node};
+use gltf::{Gltf, Mesh, Node};
 
 use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
@@ -52,7 +52,7 @@ fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
     let parsed = Gltf::from_slice_without_validation(bytes);
     let model = match parsed {
         Err(gltf::Error::Deserialize(error)) => match missing::repaired(bytes, &error, budget)? {
-            Some((root, blob)) => Gltf { document: Document::from_json_without_validation(root), blob },
+            Some(model) => model,
             None => {
                 return Err(FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error)));
             }
