@@ -8,7 +8,8 @@
 //! 6. [`embed`]: frames in your own engine.
 //! 7. [`extend`]: your own storage, snapshots.
 //! 8. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
-//! 9. [`diagnostics`]: error messages, and how to read them.
+//! 9. [`verdict`]: what a verdict of the checker means, and what it does not.
+//! 10. [`diagnostics`]: error messages, and how to read them.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -29,5 +30,7 @@ pub mod embed {}
 pub mod extend {}
 #[doc = include_str!("guide/check.md")]
 pub mod check {}
+#[doc = include_str!("guide/verdict.md")]
+pub mod verdict {}
 #[doc = include_str!("guide/diagnostics.md")]
 pub mod diagnostics {}

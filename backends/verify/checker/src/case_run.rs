@@ -4,6 +4,7 @@
 //! every final state of one iteration is the first state of a search of the next.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use crate::case_setup::{CaseSetup, SearchOptions};
 use crate::context::SearchContext;
@@ -15,7 +16,7 @@ use crate::memory::Memory;
 use crate::model::Model;
 use crate::random_walk::walk;
 use crate::reduced::explore_reduced;
-use crate::search::{Failure, FailureKind, SearchResult, Step};
+use crate::search::{Failure, FailureKind, Property, SearchResult, StateVerdict, Step};
 use crate::sequential::machine_with;
 use crate::state::{State, StepError};
 
@@ -43,6 +44,26 @@ pub(crate) struct CaseResult {
     pub(crate) failure: Option<(usize, Failure)>,
     /// The first wrong final state that the declared hazards permit.
     pub(crate) hazard: Option<(usize, Failure)>,
+}
+
+/// A property of which the first declared hazard is a failure, so that a search finds the shortest schedule of one.
+struct FirstHazard<'a>(&'a mut dyn Property);
+
+impl Property for FirstHazard<'_> {
+    fn instant(&mut self, words: &[u32]) -> Option<String> {
+        self.0.instant(words)
+    }
+
+    fn watched(&self) -> Vec<Range<usize>> {
+        self.0.watched()
+    }
+
+    fn final_state(&mut self, words: &[u32]) -> StateVerdict {
+        match self.0.final_state(words) {
+            StateVerdict::Hazard(text) => StateVerdict::Wrong(text),
+            other => other,
+        }
+    }
 }
 
 impl<'s> CaseRun<'s> {
@@ -119,9 +140,16 @@ impl<'s> CaseRun<'s> {
         let mut property = FinalStateProperty::new(&self.setup, context, iteration.frame.clone());
         let result = match options.random_schedules {
             Some(count) => walk(context, first, &mut property, count),
-            // Declared hazards that need a race occur in many interleavings, so the shortest is found soon.
-            None if self.setup.subject.is_racy() => explore(context, first.clone(), &mut property, options.limit),
-            None => explore_reduced(context, first.clone(), &mut property, options.limit),
+            None => {
+                let mut result = explore_reduced(context, first.clone(), &mut property, options.limit);
+                if options.wants_hazard && result.failure.is_none() && result.hazard.is_some() {
+                    let mut first_hazard = FirstHazard(&mut property);
+                    let shortest = explore(context, first.clone(), &mut first_hazard, options.limit);
+                    result.states += shortest.states;
+                    result.hazard = shortest.failure.or(result.hazard);
+                }
+                result
+            }
         };
         (result, property.next_iterations)
     }

@@ -29,6 +29,8 @@ pub(crate) struct SearchOptions {
     pub(crate) one_by_one: bool,
     /// Whether steps that do not affect each other are followed in one order only.
     pub(crate) is_reduced: bool,
+    /// Whether the shortest schedule of a declared hazard is wanted.
+    pub(crate) wants_hazard: bool,
 }
 
 impl SearchOptions {

@@ -188,6 +188,7 @@ fn check_all(
         may_time_out: subject.may_time_out,
         one_by_one: false,
         is_reduced: limits.reduce,
+        wants_hazard: false,
     };
     let has_races = subject.permits().any(|permits| permits.needs_race);
     let searches = [Some(options), has_races.then(|| options.without_races())];
@@ -212,9 +213,11 @@ fn check_all(
                 progress(&case.description);
                 report.cases += 1;
                 for options in searches.iter().flatten() {
-                    let setup = CaseSetup::new(subject, case.clone(), &candidates.ranked[NEIGHBOUR], options);
-                    let mut run = CaseRun::new(setup, options)?;
-                    let result = run.run(options)?;
+                    // The first declared hazard is reported.
+                    let options = SearchOptions { wants_hazard: report.failure.is_none(), ..*options };
+                    let setup = CaseSetup::new(subject, case.clone(), &candidates.ranked[NEIGHBOUR], &options);
+                    let mut run = CaseRun::new(setup, &options)?;
+                    let result = run.run(&options)?;
                     if report.record(&run, result) {
                         return Ok(());
                     }

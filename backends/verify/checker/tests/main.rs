@@ -24,6 +24,7 @@ mod regressions;
 mod relaxed;
 mod repairs;
 mod repeated;
+mod shapes;
 mod subjects;
 mod survivors;
 mod survivors_of_races;
