@@ -43,8 +43,8 @@ pub use fragbuf_dsl::{CapturedTokens, Fragments, UniformValue, builder, closure,
 pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, SourceSpan, Variant, check};
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
-    Checked, File, Generation, Limit, Needed, Request, SCHEMA, Sharing, TARGETS, TIERS, Target, Workgroup, generate,
-    limits, manifest, plan_json, target, tier,
+    Checked, File, Generation, Limit, Needed, Request, SCHEMA, Sharing, TARGETS, TIERS, Target, WebGpuLimit, Workgroup,
+    generate, limits, manifest, plan_json, target, tier,
 };
 pub use fragbuf_templates::{Registry, vocabulary};
 

@@ -20,6 +20,7 @@ mod diagnostics;
 mod examples;
 mod fuzz;
 mod instances;
+mod limits;
 mod memory;
 mod multisample;
 mod names;

@@ -30,7 +30,7 @@ pub use entry_point::{EntryPoint, Stage};
 pub use frame::{
     Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range, ResourceId,
 };
-pub use layout::{Key, Layout, Word};
+pub use layout::{Key, Layout, MemberSource, Word};
 pub use linking::{Form, Linking, Profile};
 pub use markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE, MARKERS, MEMORY_FENCE};
 pub use plan::{Arrival, FIRST_BINDING, Part, Plan, PlannedResource, bucket, plan};

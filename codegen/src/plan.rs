@@ -23,7 +23,7 @@ use std::sync::Arc;
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    BindingTime, Feature, FormulaError, Hazard, Init, Kind, Lifetime, Resource, Soundness, Step,
+    BindingTime, Element, Feature, FormulaError, Hazard, Init, Kind, Lifetime, Resource, Soundness, Step,
 };
 
 use crate::frame::{LoweredSteps, LoweringContext, lower};
@@ -207,6 +207,11 @@ impl Plan {
     /// Returns a resource by name.
     pub fn resource(&self, name: &str) -> Option<&PlannedResource> {
         self.resources.iter().find(|planned| planned.resource.name == name)
+    }
+
+    /// Tests whether shaders that use a resource declare it. The value words of a fragment may be none: then the key is all of it.
+    pub fn is_declared(&self, planned: &PlannedResource) -> bool {
+        planned.resource.element != Element::Value || self.layout.value_words() > 0
     }
 
     /// Returns the first pass of a name. A query is identified by it, even if several passes have the name.

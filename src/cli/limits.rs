@@ -16,7 +16,7 @@ pub(super) struct OtherLimits {
     numbers: Vec<(String, u64)>,
 }
 
-/// Reads the limits of a manifest. Formulas are left out.
+/// Reads the limits of a manifest. Formulas are left out, and limits that WebGPU does not have.
 pub(super) fn read(path: &Path) -> Result<OtherLimits, Failure> {
     let file = path.display().to_string();
     let text = source_file::read(path).map_err(|error| Failure::files(path, &error))?;
@@ -41,15 +41,15 @@ pub(super) fn warn(generation: &Generation, group: u32, others: &[OtherLimits]) 
 }
 
 fn warning(limit: &Limit, others: &[OtherLimits]) -> Option<String> {
-    let Needed::Number(own) = limit.needed else { return None };
+    let (Needed::Number(own), Some(webgpu)) = (&limit.needed, limit.webgpu) else { return None };
     let other =
-        |other: &OtherLimits| other.numbers.iter().find(|(name, _)| name == limit.webgpu).map(|(_, number)| *number);
+        |other: &OtherLimits| other.numbers.iter().find(|(name, _)| name == webgpu.name).map(|(_, number)| *number);
     let shared: Vec<u64> = others.iter().filter_map(other).collect();
     let needed = match limit.sharing {
-        Sharing::Sum => shared.iter().fold(own, |sum, number| sum.saturating_add(*number)),
-        Sharing::Greatest => shared.iter().fold(own, |most, number| most.max(*number)),
+        Sharing::Sum => shared.iter().fold(*own, |sum, number| sum.saturating_add(*number)),
+        Sharing::Greatest => shared.iter().fold(*own, |most, number| most.max(*number)),
     };
-    if needed <= limit.webgpu_default {
+    if needed <= webgpu.default {
         return None;
     }
     let with = match others {
@@ -61,6 +61,6 @@ fn warning(limit: &Limit, others: &[OtherLimits]) -> Option<String> {
     Some(format!(
         "a device needs `{}` of {needed}{with}, and WebGPU devices have {} unless the program requests more: request the limit, or use \
          separate shaders and fewer buffers",
-        limit.webgpu, limit.webgpu_default
+        webgpu.name, webgpu.default
     ))
 }

@@ -82,7 +82,7 @@ const OPERATIONS: [(&str, &str); 7] = [
 
 impl Accessors<'_> {
     fn write(&self, linking: &Linking, text: &mut String) {
-        if self.words() > 0 {
+        if self.plan.is_declared(self.planned) {
             self.declare(linking, text);
         }
         self.load(text);

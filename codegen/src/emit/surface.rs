@@ -49,7 +49,7 @@ fn varyings(name: &str, inputs: &[&Member], members: &[Member], text: &mut Strin
     }
     for member in members {
         if let MemberSource::BuiltIn(built_in) = &member.source {
-            let _ = writeln!(text, "    @builtin({built_in}) {}: u32,", member.name);
+            let _ = writeln!(text, "    @builtin({built_in}) {}: u32,", input(member));
         }
     }
     text.push_str("}\n\n");
@@ -59,7 +59,7 @@ fn is_built_in(member: &Member) -> bool {
     matches!(member.source, MemberSource::BuiltIn(_))
 }
 
-/// Returns the vertex input of a member. The name `position` is reserved for the vertex.
+/// Returns the shader input of a member. The name `position` is reserved for that of the vertex or pixel.
 fn input(member: &Member) -> &str {
     if member.name == "position" { "position_" } else { &member.name }
 }

@@ -60,7 +60,7 @@ impl<'a> Texture<'a> {
     }
 
     fn is_multisampled(&self) -> bool {
-        self.planned.resource.extents.iter().any(|extent| extent.name == SAMPLE)
+        self.planned.is_multisampled()
     }
 
     fn declare(&self, linking: &Linking, text: &mut String) {
@@ -96,7 +96,7 @@ impl<'a> Texture<'a> {
 
     /// Returns the expression that loads a texel.
     fn read(&self, position: &str) -> String {
-        let last = if self.is_multisampled() { SAMPLE } else { "0" };
+        let last = if self.is_multisampled() { "sample" } else { "0" };
         let texel = format!("textureLoad({}, {position}, {last})", self.name());
         match self.format {
             TextureFormat::Depth32Float | TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float => texel,
@@ -108,9 +108,6 @@ impl<'a> Texture<'a> {
         }
     }
 }
-
-/// The name of the extent that counts samples.
-const SAMPLE: &str = "sample";
 
 /// Generates `X_load` of a fragment with one texture per word. The key is a parameter if no texture stores it.
 fn entry_load(resource: &str, textures: &[Texture<'_>], text: &mut String) {

@@ -24,7 +24,22 @@ impl PlannedResource {
     pub fn is_external(&self) -> bool {
         self.resource.init == Init::External && matches!(self.resource.element, Element::Texture(_))
     }
+
+    /// Tests whether it is a texture with several samples per pixel.
+    pub fn is_multisampled(&self) -> bool {
+        self.sample_count().is_some()
+    }
+
+    /// Returns the number of samples per pixel of a multisampled texture.
+    pub fn sample_count(&self) -> Option<&Quantity> {
+        let mut extents = self.resource.extents.iter().zip(&self.lengths);
+        let length = extents.find(|(extent, _)| extent.name == SAMPLE).map(|(_, length)| length);
+        length.filter(|_| matches!(self.resource.element, Element::Texture(_)))
+    }
 }
+
+/// The name of the extent that counts samples.
+const SAMPLE: &str = "sample";
 
 /// One word of a resource that is one in a row and one texture per word in a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]

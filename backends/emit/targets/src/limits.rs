@@ -5,18 +5,16 @@
 
 use std::collections::BTreeSet;
 
-use fragbuf_codegen::{FIRST_BINDING, Plan, PlannedPass, PlannedResource};
+use fragbuf_codegen::{FIRST_BINDING, MemberSource, Plan, PlannedPass, PlannedResource};
 use fragbuf_model::UniformBlock;
-use fragbuf_templates::vocabulary::{Access, Element, TextureFormat};
+use fragbuf_templates::vocabulary::{Access, Element, Feature, Kind, TextureFormat};
 
 /// A limit that a device must meet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limit {
-    /// The name in WebGPU.
-    pub webgpu: &'static str,
-    /// The limit of a WebGPU device whose program requests no other.
-    pub webgpu_default: u64,
-    /// The name in Vulkan.
+    /// The limit of WebGPU.
+    pub webgpu: Option<WebGpuLimit>,
+    /// The name in Vulkan. A name that ends in `SampleCounts` is a set of bits, which must contain the bit of the needed value.
     pub vulkan: Option<&'static str>,
     /// The name in OpenGL.
     pub opengl: Option<&'static str>,
@@ -24,6 +22,15 @@ pub struct Limit {
     pub needed: Needed,
     /// How several plans in one shader share the limit.
     pub sharing: Sharing,
+}
+
+/// A limit of WebGPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WebGpuLimit {
+    /// Its name.
+    pub name: &'static str,
+    /// Its value on a device whose program requests no other.
+    pub default: u64,
 }
 
 /// The least sufficient value of a limit.
@@ -56,7 +63,13 @@ pub struct Workgroup {
 impl Limit {
     /// Tests whether a WebGPU device without further requests may be too small. Formulas are not tested.
     pub fn exceeds_default(&self) -> bool {
-        matches!(self.needed, Needed::Number(needed) if needed > self.webgpu_default)
+        let default = self.webgpu.map(|webgpu| webgpu.default);
+        matches!((&self.needed, default), (Needed::Number(needed), Some(default)) if *needed > default)
+    }
+
+    /// Tests whether this is the limit of WebGPU with this name.
+    pub fn is_of_webgpu(&self, name: &str) -> bool {
+        self.webgpu.is_some_and(|webgpu| webgpu.name == name)
     }
 }
 
@@ -70,16 +83,14 @@ pub fn limits(plan: &Plan, group: u32, workgroups: &[Workgroup]) -> Vec<Limit> {
     limits
 }
 
-/// Returns a row of the table.
-fn row(
-    webgpu: &'static str,
-    webgpu_default: u64,
-    (vulkan, opengl): (&'static str, &'static str),
-    needed: impl Into<Needed>,
-    sharing: Sharing,
-) -> Limit {
+/// The names of a limit in WebGPU, with its default there, in Vulkan and in OpenGL.
+type Names = (Option<(&'static str, u64)>, &'static str, &'static str);
+
+/// Returns a row of the table. An API with an empty name has no such limit.
+fn row((webgpu, vulkan, opengl): Names, needed: impl Into<Needed>, sharing: Sharing) -> Limit {
     let name = |name: &'static str| (!name.is_empty()).then_some(name);
-    Limit { webgpu, webgpu_default, vulkan: name(vulkan), opengl: name(opengl), needed: needed.into(), sharing }
+    let webgpu = webgpu.map(|(name, default)| WebGpuLimit { name, default });
+    Limit { webgpu, vulkan: name(vulkan), opengl: name(opengl), needed: needed.into(), sharing }
 }
 
 impl From<u64> for Needed {
@@ -95,24 +106,60 @@ impl From<String> for Needed {
 }
 
 fn bindings(plan: &Plan, group: u32) -> Vec<Limit> {
-    let is_buffer = |planned: &PlannedResource| texture_of(planned).is_none();
+    let is_buffer = |planned: &PlannedResource| texture_of(planned).is_none() && plan.is_declared(planned);
+    let is_texture = |planned: &PlannedResource| texture_of(planned).is_some();
     let buffers = |pass: &PlannedPass| used(plan, pass, &[Access::Attachment, Access::Indirect], &is_buffer);
-    let textures = |pass: &PlannedPass| used(plan, pass, &[Access::Attachment], &|planned| !is_buffer(planned));
-    let most = |count: &dyn Fn(&PlannedPass) -> u64| plan.passes.iter().map(count).max().unwrap_or(0);
-    // Every stage may read the block of the frame and the description's uniforms; a vertex stage also reads the camera.
-    let uniforms = if plan.variant.uniforms.is_empty() { 1 } else { 2 };
+    let textures = |pass: &PlannedPass| used(plan, pass, &[Access::Attachment], &is_texture);
+    // Fragment and compute stages may read the block of the frame and the description's uniforms, a vertex stage the camera.
+    let uniforms = |_: &PlannedPass| if plan.variant.uniforms.is_empty() { 1 } else { 2 };
+    let outputs = |pass: &PlannedPass| if is_compute(pass) { 0 } else { buffers(pass) + targets(pass) };
     let all = u64::from(FIRST_BINDING) + plan.resources.len() as u64;
-    let storage = ("maxPerStageDescriptorStorageBuffers", "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS");
-    let sampled = ("maxPerStageDescriptorSampledImages", "GL_MAX_TEXTURE_IMAGE_UNITS");
-    let blocks = ("maxPerStageDescriptorUniformBuffers", "GL_MAX_FRAGMENT_UNIFORM_BLOCKS");
-    let groups = ("maxBoundDescriptorSets", "");
-    vec![
-        row("maxBindGroups", 4, groups, u64::from(group) + 1, Sharing::Greatest),
-        row("maxBindingsPerBindGroup", 1000, ("", ""), all, Sharing::Greatest),
-        row("maxStorageBuffersPerShaderStage", 8, storage, most(&buffers), Sharing::Sum),
-        row("maxUniformBuffersPerShaderStage", 12, blocks, uniforms, Sharing::Sum),
-        row("maxSampledTexturesPerShaderStage", 16, sampled, most(&textures), Sharing::Sum),
+    let storage = (Some(("maxStorageBuffersPerShaderStage", 8)), "maxPerStageDescriptorStorageBuffers", "");
+    let storage_blocks = ["GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS", "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"];
+    let uniform = (Some(("maxUniformBuffersPerShaderStage", 12)), "maxPerStageDescriptorUniformBuffers", "");
+    let uniform_blocks = ["GL_MAX_FRAGMENT_UNIFORM_BLOCKS", "GL_MAX_COMPUTE_UNIFORM_BLOCKS"];
+    let sampled = (Some(("maxSampledTexturesPerShaderStage", 16)), "maxPerStageDescriptorSampledImages", "");
+    let units = ["GL_MAX_TEXTURE_IMAGE_UNITS", "GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS"];
+    let combined = (None, "maxFragmentCombinedOutputResources", "GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES");
+    let groups = (Some(("maxBindGroups", 4)), "maxBoundDescriptorSets", "");
+    let numbers = (Some(("maxBindingsPerBindGroup", 1000)), "", "");
+    let mut limits = vec![
+        row(groups, u64::from(group) + 1, Sharing::Greatest),
+        row(numbers, all, Sharing::Greatest),
+        row(combined, most(plan, &outputs), Sharing::Sum),
+    ];
+    limits.extend(per_stage(plan, storage, storage_blocks, &buffers));
+    limits.extend(per_stage(plan, uniform, uniform_blocks, &uniforms));
+    limits.extend(per_stage(plan, sampled, units, &textures));
+    limits
+}
+
+/// Returns the limits on what one stage may access. OpenGL has one for fragment stages and another for compute stages.
+fn per_stage(
+    plan: &Plan,
+    names: Names,
+    [fragment, compute]: [&'static str; 2],
+    count: &dyn Fn(&PlannedPass) -> u64,
+) -> [Limit; 3] {
+    let of = |in_compute: bool| move |pass: &PlannedPass| if is_compute(pass) == in_compute { count(pass) } else { 0 };
+    [
+        row(names, most(plan, count), Sharing::Sum),
+        row((None, "", fragment), most(plan, &of(false)), Sharing::Sum),
+        row((None, "", compute), most(plan, &of(true)), Sharing::Sum),
     ]
+}
+
+/// Returns the greatest count of a pass.
+fn most(plan: &Plan, count: &dyn Fn(&PlannedPass) -> u64) -> u64 {
+    plan.passes.iter().map(count).max().unwrap_or(0)
+}
+
+fn is_compute(pass: &PlannedPass) -> bool {
+    matches!(pass.kind, Kind::Compute { .. })
+}
+
+fn targets(pass: &PlannedPass) -> u64 {
+    pass.state.targets.len() as u64
 }
 
 /// Returns the number of different resources of a kind that the shaders of a pass may access.
@@ -133,16 +180,21 @@ fn sizes(plan: &Plan) -> Vec<Limit> {
     let frame = (4 * plan.fields.len() as u64).next_multiple_of(16);
     // The camera's matrix has 64 bytes.
     let block = uniforms.max(frame).max(64);
-    let binding = ("maxStorageBufferRange", "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
-    let uniform = ("maxUniformBufferRange", "GL_MAX_UNIFORM_BLOCK_SIZE");
-    let texture = ("maxImageDimension2D", "GL_MAX_TEXTURE_SIZE");
+    let binding = (
+        Some(("maxStorageBufferBindingSize", 134_217_728)),
+        "maxStorageBufferRange",
+        "GL_MAX_SHADER_STORAGE_BLOCK_SIZE",
+    );
+    let buffer = (Some(("maxBufferSize", 268_435_456)), "maxBufferSize", "");
+    let uniform = (Some(("maxUniformBufferBindingSize", 65_536)), "maxUniformBufferRange", "GL_MAX_UNIFORM_BLOCK_SIZE");
+    let texture = (Some(("maxTextureDimension2D", 8192)), "maxImageDimension2D", "GL_MAX_TEXTURE_SIZE");
     let mut limits = Vec::new();
     if let Some(greatest) = greatest(bytes) {
-        limits.push(row("maxStorageBufferBindingSize", 134_217_728, binding, greatest.clone(), Sharing::Greatest));
-        limits.push(row("maxBufferSize", 268_435_456, ("", ""), greatest, Sharing::Greatest));
+        limits.push(row(binding, greatest.clone(), Sharing::Greatest));
+        limits.push(row(buffer, greatest, Sharing::Greatest));
     }
-    limits.push(row("maxUniformBufferBindingSize", 65_536, uniform, block, Sharing::Greatest));
-    limits.push(row("maxTextureDimension2D", 8192, texture, "max(width, height)".to_owned(), Sharing::Greatest));
+    limits.push(row(uniform, block, Sharing::Greatest));
+    limits.push(row(texture, "max(width, height)".to_owned(), Sharing::Greatest));
     limits
 }
 
@@ -158,7 +210,6 @@ fn greatest(values: Vec<String>) -> Option<String> {
 }
 
 fn rendering(plan: &Plan) -> Vec<Limit> {
-    let targets = |pass: &PlannedPass| pass.state.targets.len() as u64;
     let bytes = |pass: &PlannedPass| {
         let formats = pass.state.targets.iter().filter_map(|target| texture_of(plan.resource(&target.resource)?));
         formats.fold(0, |sum: u64, format| {
@@ -166,16 +217,62 @@ fn rendering(plan: &Plan) -> Vec<Limit> {
             sum.next_multiple_of(alignment) + bytes
         })
     };
-    let most = |count: &dyn Fn(&PlannedPass) -> u64| plan.passes.iter().map(count).max().unwrap_or(0);
-    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth").count() as u64;
-    let color = ("maxColorAttachments", "GL_MAX_DRAW_BUFFERS");
-    let inputs = ("maxVertexInputAttributes", "GL_MAX_VERTEX_ATTRIBS");
-    vec![
-        row("maxColorAttachments", 8, color, most(&targets), Sharing::Greatest),
-        row("maxColorAttachmentBytesPerSample", 32, ("", ""), most(&bytes), Sharing::Greatest),
-        row("maxVertexAttributes", 16, inputs, attributes + 1, Sharing::Greatest),
-        row("maxInterStageShaderVariables", 16, ("", ""), attributes, Sharing::Greatest),
-    ]
+    let from = |is_source: &dyn Fn(&MemberSource) -> bool| {
+        plan.layout.members.iter().filter(|member| is_source(&member.source)).count() as u64
+    };
+    let attributes = from(&|source| *source == MemberSource::Vertex);
+    // WebGPU counts built-in inputs of fragment stages as one variable. Fixed sample masks are read as well.
+    let reads_mask = plan.requires.contains(&Feature::SampleMask);
+    let built_ins = from(&|source| matches!(source, MemberSource::BuiltIn(_))).max(u64::from(reads_mask)).min(1);
+    let color = (Some(("maxColorAttachments", 8)), "maxColorAttachments", "GL_MAX_DRAW_BUFFERS");
+    let color_bytes = (Some(("maxColorAttachmentBytesPerSample", 32)), "", "");
+    let inputs = (Some(("maxVertexAttributes", 16)), "maxVertexInputAttributes", "GL_MAX_VERTEX_ATTRIBS");
+    let between = (Some(("maxInterStageShaderVariables", 16)), "", "GL_MAX_VARYING_VECTORS");
+    let mut limits = vec![
+        row(color, most(plan, &targets), Sharing::Greatest),
+        row(color_bytes, most(plan, &bytes), Sharing::Greatest),
+        row(inputs, attributes + 1, Sharing::Greatest),
+        row(between, attributes + built_ins, Sharing::Greatest),
+    ];
+    limits.extend(samples(plan));
+    limits
+}
+
+/// The kinds of textures whose samples APIs limit separately.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Numeric {
+    Integer,
+    Float,
+    Depth,
+}
+
+/// Returns the limits on the samples of multisampled textures: as attachments, and as textures that shaders read.
+fn samples(plan: &Plan) -> Vec<Limit> {
+    use Numeric::{Depth, Float, Integer};
+    const NAMES: [(Numeric, &str, &str); 6] = [
+        (Integer, "framebufferIntegerColorSampleCounts", "GL_MAX_INTEGER_SAMPLES"),
+        (Integer, "sampledImageIntegerSampleCounts", "GL_MAX_COLOR_TEXTURE_SAMPLES"),
+        (Float, "framebufferColorSampleCounts", "GL_MAX_COLOR_TEXTURE_SAMPLES"),
+        (Float, "sampledImageColorSampleCounts", ""),
+        (Depth, "framebufferDepthSampleCounts", "GL_MAX_DEPTH_TEXTURE_SAMPLES"),
+        (Depth, "sampledImageDepthSampleCounts", ""),
+    ];
+    let of = |numeric: Numeric| {
+        let textures = plan.resources.iter().filter(|planned| texture_of(planned).map(numeric_of) == Some(numeric));
+        let counts = textures.filter_map(|planned| plan.symbols.evaluate(planned.sample_count()?, &|_| None).ok());
+        counts.max().unwrap_or(0)
+    };
+    NAMES.iter().map(|(numeric, vulkan, opengl)| row((None, vulkan, opengl), of(*numeric), Sharing::Greatest)).collect()
+}
+
+fn numeric_of(format: TextureFormat) -> Numeric {
+    match format {
+        TextureFormat::R32Uint | TextureFormat::Rg16Uint => Numeric::Integer,
+        TextureFormat::R32Float | TextureFormat::Rg32Float | TextureFormat::Rgba8Unorm | TextureFormat::Rgba16Float => {
+            Numeric::Float
+        }
+        TextureFormat::Depth32Float | TextureFormat::Depth24PlusStencil8 => Numeric::Depth,
+    }
 }
 
 /// Returns the bytes of a colour attachment, and their alignment, as WebGPU counts them.
@@ -194,18 +291,32 @@ fn compute(plan: &Plan, workgroups: &[Workgroup]) -> Vec<Limit> {
     let groups = plan.passes.iter().flat_map(|pass| &pass.groups).map(|groups| groups.to_string());
     let Some(dispatch) = greatest(groups.collect()) else { return Vec::new() };
     let most = |value: &dyn Fn(&Workgroup) -> u32| u64::from(workgroups.iter().map(value).max().unwrap_or(0));
-    let dispatched = ("maxComputeWorkGroupCount", "GL_MAX_COMPUTE_WORK_GROUP_COUNT");
-    let side = ("maxComputeWorkGroupSize", "GL_MAX_COMPUTE_WORK_GROUP_SIZE");
-    let all = ("maxComputeWorkGroupInvocations", "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS");
-    let memory = ("maxComputeSharedMemorySize", "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE");
     let invocations = |group: &Workgroup| group.size.iter().product();
+    let dispatched = (
+        Some(("maxComputeWorkgroupsPerDimension", 65_535)),
+        "maxComputeWorkGroupCount",
+        "GL_MAX_COMPUTE_WORK_GROUP_COUNT",
+    );
+    let side = |name: &'static str, default| {
+        (Some((name, default)), "maxComputeWorkGroupSize", "GL_MAX_COMPUTE_WORK_GROUP_SIZE")
+    };
+    let all = (
+        Some(("maxComputeInvocationsPerWorkgroup", 256)),
+        "maxComputeWorkGroupInvocations",
+        "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS",
+    );
+    let memory = (
+        Some(("maxComputeWorkgroupStorageSize", 16_384)),
+        "maxComputeSharedMemorySize",
+        "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE",
+    );
     vec![
-        row("maxComputeWorkgroupsPerDimension", 65_535, dispatched, dispatch, Sharing::Greatest),
-        row("maxComputeWorkgroupSizeX", 256, side, most(&|group| group.size[0]), Sharing::Greatest),
-        row("maxComputeWorkgroupSizeY", 256, side, most(&|group| group.size[1]), Sharing::Greatest),
-        row("maxComputeWorkgroupSizeZ", 64, side, most(&|group| group.size[2]), Sharing::Greatest),
-        row("maxComputeInvocationsPerWorkgroup", 256, all, most(&invocations), Sharing::Greatest),
-        row("maxComputeWorkgroupStorageSize", 16_384, memory, most(&|group| group.bytes), Sharing::Greatest),
+        row(dispatched, dispatch, Sharing::Greatest),
+        row(side("maxComputeWorkgroupSizeX", 256), most(&|group| group.size[0]), Sharing::Greatest),
+        row(side("maxComputeWorkgroupSizeY", 256), most(&|group| group.size[1]), Sharing::Greatest),
+        row(side("maxComputeWorkgroupSizeZ", 64), most(&|group| group.size[2]), Sharing::Greatest),
+        row(all, most(&invocations), Sharing::Greatest),
+        row(memory, most(&|group| group.bytes), Sharing::Greatest),
     ]
 }
 

@@ -81,8 +81,8 @@ fn tiers(plans: &[PlanForTargets]) -> Value {
 fn limits_json(planned: &PlanForTargets, group: u32) -> Value {
     let limit = |limit: Limit| {
         json!({
-            "webgpu": limit.webgpu,
-            "webgpu_default": limit.webgpu_default,
+            "webgpu": limit.webgpu.map(|webgpu| webgpu.name),
+            "webgpu_default": limit.webgpu.map(|webgpu| webgpu.default),
             "vulkan": limit.vulkan,
             "opengl": limit.opengl,
             "needed": match limit.needed {
@@ -234,21 +234,17 @@ fn resource(planned: &PlannedResource, group: u32) -> Value {
 /// field of an entry that it stores, if an entry is spread over one texture per word.
 fn texture(planned: &PlannedResource, format: TextureFormat) -> Value {
     let resource = &planned.resource;
-    let samples = resource.extents.iter().find(|extent| extent.name == SAMPLE);
     let clear = match resource.init {
         Init::Clear(word) => texel(format, word),
         _ => Value::Null,
     };
     json!({
         "format": texture_format(format),
-        "samples": samples.map_or("1", |extent| &extent.length.0),
+        "samples": planned.sample_count().map_or("1", |count| &count.formula().0),
         "clear": clear,
         "word": planned.part.as_ref().map(|part| &part.field),
     })
 }
-
-/// The name of the extent that counts the samples of a texture.
-const SAMPLE: &str = "sample";
 
 /// Returns the channels of a texel that stores this word.
 fn texel(format: TextureFormat, word: u32) -> Value {

@@ -5,11 +5,10 @@
 //! numbers, and only a dense layout keeps them unchanged.
 
 use fragbuf_codegen::{FIRST_BINDING, Plan};
-use fragbuf_frame::Values;
-use fragbuf_templates::vocabulary::{Access, Element, Extent, Kind, Pass};
+use fragbuf_templates::vocabulary::{Access, Element, Kind, Pass};
 
 use crate::Error;
-use crate::texture::{SAMPLE, sample_type};
+use crate::texture::sample_type;
 
 /// The bindings of the description's uniforms and of the camera. The frame's block is at 0.
 const UNIFORMS: usize = 1;
@@ -59,30 +58,18 @@ pub(crate) fn bindings(plan: &Plan, pass: &Pass) -> Vec<Binding> {
         if let (Some(usage), Element::Texture(format)) = (usage, planned.resource.element) {
             if usage.access == Access::Sampled {
                 bindings.resize(bindings.len().max(number + 1), Binding::Unused);
-                let is_sample = |extent: &Extent| extent.name == SAMPLE;
-                let several = planned.resource.extents.iter().any(is_sample);
-                let samples = if several { Samples::Several } else { Samples::One };
+                let samples = if planned.is_multisampled() { Samples::Several } else { Samples::One };
                 bindings[number] = Binding::Texture { index, sample_type: sample_type(format), samples };
             }
             continue;
         }
-        // An element without words has no declaration: the key is all of it.
         let usage = usage.filter(|usage| usage.access != Access::Indirect);
-        if let Some(usage) = usage.filter(|_| planned.binding >= FIRST_BINDING && has_words(plan, index)) {
+        if let Some(usage) = usage.filter(|_| planned.binding >= FIRST_BINDING && plan.is_declared(planned)) {
             bindings.resize(bindings.len().max(number + 1), Binding::Unused);
             bindings[number] = Binding::Resource { index, read_only: usage.access == Access::Read };
         }
     }
     bindings
-}
-
-/// Whether a resource has memory in frames of some size.
-pub(crate) fn has_words(plan: &Plan, index: usize) -> bool {
-    let words = plan.resources.get(index).map(|planned| &planned.words);
-    // A pool of pages has none for a single fragment.
-    let mut any_size = Values::of_code(plan);
-    plan.symbols.iter().for_each(|(id, _)| any_size.set(id, 4096));
-    words.is_some_and(|words| any_size.evaluate(words, "") != Ok(0))
 }
 
 /// Creates the layout of a pass's bind group.

@@ -20,12 +20,13 @@ impl Shaders {
 }
 
 fn raise(limits: &mut wgpu::Limits, limit: &Limit) {
-    let Needed::Number(number) = limit.needed else { return };
-    if limit.webgpu == "maxUniformBufferBindingSize" {
+    let (Needed::Number(number), Some(webgpu)) = (&limit.needed, limit.webgpu) else { return };
+    let number = *number;
+    if webgpu.name == "maxUniformBufferBindingSize" {
         limits.max_uniform_buffer_binding_size = limits.max_uniform_buffer_binding_size.max(number);
         return;
     }
-    let field = match limit.webgpu {
+    let field = match webgpu.name {
         "maxBindGroups" => &mut limits.max_bind_groups,
         "maxBindingsPerBindGroup" => &mut limits.max_bindings_per_bind_group,
         "maxStorageBuffersPerShaderStage" => &mut limits.max_storage_buffers_per_shader_stage,

@@ -9,9 +9,6 @@ use crate::{Error, Pending};
 /// The vocabulary's name for the caller's output.
 pub(crate) const OUTPUT: &str = "output";
 
-/// The vocabulary's name for the sample index of a texture.
-pub(crate) const SAMPLE: &str = "sample";
-
 pub(crate) fn texture_format(format: TextureFormat) -> wgpu::TextureFormat {
     match format {
         TextureFormat::R32Uint => wgpu::TextureFormat::R32Uint,
@@ -47,8 +44,7 @@ pub(crate) fn sampled_view(texture: &wgpu::Texture) -> wgpu::TextureView {
 
 /// Returns the samples per pixel of a texture.
 pub(crate) fn texture_samples(plan: &Plan, planned: &PlannedResource) -> Result<u32, Error> {
-    let mut extents = planned.resource.extents.iter().zip(&planned.lengths);
-    let Some((_, length)) = extents.find(|(extent, _)| extent.name == SAMPLE) else { return Ok(1) };
+    let Some(length) = planned.sample_count() else { return Ok(1) };
     Ok(Values::of_code(plan).word(length, &format!("the samples of `{}`", planned.resource.name))?)
 }
 

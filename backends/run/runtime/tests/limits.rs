@@ -47,7 +47,7 @@ fn a_device_with_the_limits_of_a_plan_runs_it() {
 fn a_device_with_one_storage_buffer_less_does_not_run_it() {
     let shaders = shaders(&technique("kplus_array", &[("cull", "occupancy")]), "wgsl");
     let needed = fragbuf_targets::limits(&shaders.plan, 0, &[]);
-    let needed = needed.iter().find(|limit| limit.webgpu == "maxStorageBuffersPerShaderStage").unwrap();
+    let needed = needed.iter().find(|limit| limit.is_of_webgpu("maxStorageBuffersPerShaderStage")).unwrap();
     let fragbuf_targets::Needed::Number(needed) = needed.needed else { panic!("{needed:?}") };
     let with = |count: u64| {
         let limits = wgpu::Limits { max_storage_buffers_per_shader_stage: count as u32, ..shaders.limits() };
