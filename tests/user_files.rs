@@ -214,6 +214,13 @@ const BAD: &[Bad] = &[
         "of sample_mask",
         "from sample_mask",
     ),
+    bad(
+        "//: provides",
+        "//: adds mask from sample_mask\n//: adds more from sample_mask\n//: provides",
+        "duplicate",
+        "sample_mask\n//: provides",
+        "read the word",
+    ),
     bad("//: provides", "//: adds mask from position\n//: provides", "invalid-row", "position", "sample_mask"),
     bad(
         "//: provides",
@@ -230,7 +237,7 @@ const BAD: &[Bad] = &[
         "set it",
     ),
     bad("//: provides", "//: parameter a A = 3, from 1 to 9, odd\n//: provides", "invalid-row", "odd", "power of two"),
-    bad("//: provides", "//: parameter a A = 7, attribute\n//: provides", "invalid-row", "7, attribute", "depth"),
+    bad("//: provides", "//: parameter a A = 7, attribute\n//: provides", "invalid-row", "7, attribute", "color"),
     bad("cursor + 1u);", "cursor + 1u & 7u);", "invalid-wgsl", "& 7u", "parentheses"),
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "invalid-row", "//: paper", "the file header"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "invalid-wgsl", "}\nfn first", "every brace closed"),
@@ -500,6 +507,61 @@ fn a_default_outside_of_its_range_is_said_where_it_stands() {
         };
         assert!(found.len() <= 1 && found.iter().all(is_it), "{default} at {line}:{column}: {found:?}");
     }
+}
+
+/// The help for an invalid default is a value that the description may set, if there is one.
+#[test]
+fn the_help_for_an_invalid_default_is_valid() {
+    for (index, (restricted, proposed)) in [
+        ("3, from 3 to 64, power of two", Some("{ size: 4 }")),
+        ("1, from 0 to 64, at least k", Some("{ size: 8 }")),
+        ("9, from 0 to 20, power of two, at least k + 1", Some("{ size: 16 }")),
+        ("7, attribute", Some("{ size: color }")),
+        ("1, from 0 to 4, at least k", None),
+        ("3, from 3 to 3, power of two", None),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let line = format!("//: parameter size SIZE = {restricted}\n//: provides");
+        let file = example("first_k.wgsl").replace("//: provides", &line);
+        let found = placed(&format!("help-{index}"), DESCRIPTION, &file);
+        let [(_, _, _, help)] = found.as_slice() else { panic!("{restricted}: {found:?}") };
+        match proposed {
+            Some(options) => {
+                assert!(help.contains(options), "{restricted}: {help}");
+                let description = DESCRIPTION.replace("wgsl\")", &format!("wgsl\") {options}"));
+                assert_eq!(placed(&format!("helped-{index}"), &description, &file), [], "{restricted}");
+            }
+            None => assert!(help.contains("no value of `size` is valid"), "{restricted}: {help}"),
+        }
+    }
+}
+
+/// A word of a file must not be another of the fragment: neither by its name nor by its built-in value.
+#[test]
+fn words_of_fragments_are_different() {
+    let file = |word: &str| {
+        example("first_k.wgsl").replace("//: provides", &format!("//: adds {word} from sample_mask\n//: provides"))
+    };
+    let with_line = |line: &str| DESCRIPTION.replace("    keep", &format!("    {line}\n    keep"));
+    let attribute = with_line("fragment { mask: u32, depth: f32 }");
+    for (name, description, file, line, help) in [
+        ("value", with_line("samples: coverage;"), file("mask"), 3, "remove the word"),
+        ("attribute", attribute, file("mask"), 3, "rename one of the two"),
+    ] {
+        let (diagnostics, _) = diagnostics(&with(&format!("words-{name}"), &description, &file)).unwrap_err();
+        let found: Vec<_> = diagnostics.iter().map(|found| (found.code, found.span.line)).collect();
+        assert_eq!(found, [(codes::DUPLICATE, line)], "{diagnostics}");
+        assert!(diagnostics.to_string().contains(help), "{diagnostics}");
+    }
+    // Generated inputs have the position of the pixel.
+    let folder = with("words-position", DESCRIPTION, &file("position"));
+    let read = Description::read(&folder.join("own.fragbuf")).unwrap();
+    let registry = Registry::builtin();
+    let variant = load(&read, &[], &[], &registry).variant.unwrap_or_else(|errors| panic!("{errors}"));
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Program, prefix: "", group: 0 };
+    generate(&variant, &request, &registry).unwrap_or_else(|errors| panic!("{errors}"));
 }
 
 /// A default may use the constants of earlier parameters, as in a row of the registry, but not those of later ones.

@@ -1,4 +1,5 @@
-//! Finds expressions that naga parses and WGSL's grammar does not have (WGSL §8.18 and §3.9): browsers reject them.
+//! Finds operators that need parentheses in WGSL (WGSL §8.18 and §3.9). naga parses mixtures of operators that browsers reject; it rejects
+//! comparisons that are read as a template list, without help.
 //!
 //! Input: the source of a user file. Output: the operators that need parentheses. Everything else is left to naga.
 
@@ -73,10 +74,25 @@ const SIGNS: [(&str, Option<Class>); 36] = [
 ];
 
 /// Keywords after which an operator is unary.
-const KEYWORDS: [&str; 4] = ["return", "if", "while", "switch"];
+const KEYWORDS: [&str; 6] = ["return", "if", "while", "switch", "case", "const_assert"];
 
-/// The names that template lists follow.
+/// The names that template lists follow, apart from those of matrices and textures.
 const TEMPLATES: [&str; 9] = ["array", "atomic", "bitcast", "ptr", "var", "vec2", "vec3", "vec4", "binding_array"];
+
+/// The shapes in names of textures that template lists follow.
+const TEXTURES: [&str; 11] = [
+    "1d",
+    "2d",
+    "2d_array",
+    "3d",
+    "cube",
+    "cube_array",
+    "multisampled_2d",
+    "storage_1d",
+    "storage_2d",
+    "storage_2d_array",
+    "storage_3d",
+];
 
 /// Returns the errors in the order of the source.
 pub(crate) fn grammar_errors(source: &str) -> Vec<GrammarError> {
@@ -85,7 +101,7 @@ pub(crate) fn grammar_errors(source: &str) -> Vec<GrammarError> {
     let mut errors = Vec::new();
     for (open, _) in &templates {
         let name = code[open - 1].text;
-        if !TEMPLATES.contains(&name) && !name.starts_with("mat") && !name.starts_with("texture_") {
+        if !takes_template_list(name) {
             errors.push(GrammarError {
                 at: code[*open].at,
                 operator: "<",
@@ -97,6 +113,14 @@ pub(crate) fn grammar_errors(source: &str) -> Vec<GrammarError> {
     mixed_operators(&code, &templates, &mut errors);
     errors.sort_by_key(|error| error.at);
     errors
+}
+
+/// Tests whether WGSL has a template list after this name.
+fn takes_template_list(name: &str) -> bool {
+    let is_matrix = |size: &str| matches!(size.as_bytes(), [b'2'..=b'4', b'x', b'2'..=b'4']);
+    TEMPLATES.contains(&name)
+        || name.strip_prefix("mat").is_some_and(is_matrix)
+        || name.strip_prefix("texture_").is_some_and(|shape| TEXTURES.contains(&shape))
 }
 
 /// Returns the indices of `<` and `>` of template lists, as WGSL finds them before it parses expressions.
@@ -270,6 +294,9 @@ mod tests {
             ("a == b == c", &["=="]),
             ("a < b >> c", &["<"]),
             ("f(a < b, c > (a))", &["<"]),
+            ("material < b >> c", &["<"]),
+            ("f(texture_of < b, c > (a))", &["<"]),
+            ("mat2x3<f32>() == mat4x2<f32>() && array<u32, a << 1>()[0] < c", &[]),
             ("vec2<u32>(a * b ^ c, a)[a & b | c]", &["^", "|"]),
             ("a << b == c && -a >> b < c", &[]),
             ("(a * b) ^ c ^ (a & b & c)", &[]),
@@ -285,7 +312,8 @@ mod tests {
     fn statements_end_expressions() {
         let source = "fn f(p: ptr<function, u32>) {\n    let a = *p & 1u;\n    var b = a << 2u;\n    b |= a * 2u;\n    \
                       for (var i = 0u; i < 4u; i++) { b ^= i | a; }\n    if a + b > 3u { return; } else if b < a { *p = a * b; }\n    \
-                      switch a & 3u { case 1u: { b = a % 2u; } default: { b >>= 1u; } }\n}\n";
+                      switch a & 3u { case 1u: { b = a % 2u; } default: { b >>= 1u; } }\n    \
+                      switch i32(a) { case -1i << 2u, 8i >> 1u: { b = 1u; } default: {} }\n    const_assert -1i << 2u < 0i;\n}\n";
         assert_eq!(grammar_errors(source), []);
     }
 

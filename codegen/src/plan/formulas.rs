@@ -90,13 +90,11 @@ fn default(
         Ok(value) => return Ok(value),
         Err(problem) => problem,
     };
-    let (name, axis, least) = (&parameter.name, &selected.row.axis, parameter.range.0);
+    let (name, axis) = (&parameter.name, &selected.row.axis);
     let message = format!("the default of `{name}` is {value} here; it must be {problem}");
-    let help = match parameter.kind {
-        ParameterType::Attribute => {
-            format!("set it in the description, `{axis}: … {{ {name}: depth }}`, or change the default")
-        }
-        _ => format!("set it in the description, `{axis}: … {{ {name}: {least} }}`, or change the default"),
+    let help = match valid_value(selected, parameter, variant) {
+        Some(valid) => format!("set it in the description, `{axis}: … {{ {name}: {valid} }}`, or change the default"),
+        None => format!("no value of `{name}` is valid here: change its range or its minimum, or keep fewer fragments"),
     };
     Err(Diagnostic {
         code: context.code_or(RowItem::Default, &text.0, codes::INVALID_OPTION),
@@ -124,12 +122,32 @@ fn invalid_default(
         }
         _ => {}
     }
+    match minimum(selected, parameter, variant) {
+        Some(minimum) if value < minimum => Err(format!("at least {minimum} for k up to {}", bucket(variant.keep))),
+        _ => Ok(number),
+    }
+}
+
+/// Returns the least valid value of a parameter, if the row restricts it further than to its range.
+fn minimum(selected: &SelectedRow, parameter: &Parameter, variant: &Variant) -> Option<u64> {
     let k = u64::from(bucket(variant.keep));
     let minimums = selected.row.least.iter().filter(|(option, _)| *option == parameter.name);
-    let minimums = minimums.filter_map(|(_, least)| least.evaluate(&|symbol| (symbol == "k").then_some(k)).ok());
-    match minimums.max() {
-        Some(minimum) if value < minimum => Err(format!("at least {minimum} for k up to {k}")),
-        _ => Ok(number),
+    minimums.filter_map(|(_, least)| least.evaluate(&|symbol| (symbol == "k").then_some(k)).ok()).max()
+}
+
+/// Returns the least value that meets the restrictions of a parameter, as a description writes it.
+fn valid_value(selected: &SelectedRow, parameter: &Parameter, variant: &Variant) -> Option<String> {
+    let (least, greatest) = parameter.range;
+    let from = u64::from(least).max(minimum(selected, parameter, variant).unwrap_or(0));
+    let from = u32::try_from(from).ok()?;
+    let number = match parameter.kind {
+        ParameterType::PowerOfTwo => from.checked_next_power_of_two()?,
+        ParameterType::Attribute | ParameterType::Number => from,
+    };
+    match parameter.kind {
+        _ if number > greatest => None,
+        ParameterType::Attribute => Some(variant.attributes.get(number as usize)?.name.value.clone()),
+        ParameterType::Number | ParameterType::PowerOfTwo => Some(number.to_string()),
     }
 }
 

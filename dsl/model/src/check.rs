@@ -3,6 +3,7 @@
 
 mod capabilities;
 mod choices;
+mod extra_words;
 mod option_minimums;
 mod payload;
 mod suggestion;
@@ -27,6 +28,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     if let Some(k) = keep {
         option_minimums::check(draft, &choices, k, &mut diagnostics);
     }
+    extra_words::check(&attributes, &choices, &mut diagnostics);
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
     // With a missing storage or an unknown choice, every capability would be reported as missing.
     if diagnostics.is_empty() {

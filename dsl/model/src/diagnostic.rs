@@ -148,7 +148,7 @@ codes! {
     INVALID_TOKEN "invalid-token" "The source has a token that Rust does not have, or an unmatched bracket.";
     UNEXPECTED_TOKEN "unexpected-token" "The grammar expects another token here.";
     MISSING_BUFFER "missing-buffer" "A description is one `buffer Name { … }`.";
-    DUPLICATE "duplicate" "A name, a block or an axis is given twice.";
+    DUPLICATE "duplicate" "A name, a built-in value, a block or an axis is given twice.";
     UNKNOWN_FORMAT "unknown-format" "There is no format or uniform type of this name.";
     NAME_RESERVED "name-reserved" "The name is reserved for the language or generated code.";
     // Closures: the Rust subset.

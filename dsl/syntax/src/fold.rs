@@ -37,7 +37,7 @@ pub(crate) fn constant(expr: &Expr, function: &Function) -> Option<Value> {
 struct Folding<'a> {
     function: &'a Function,
     error: &'a mut dyn FnMut(&SourceSpan, &str, &str),
-    /// The values of variables that are not mutable, so far. Validators use them for right operands only.
+    /// The values of variables that are not mutable, so far. Validators use them for right operands and indices only.
     variables: Vec<Option<Value>>,
 }
 
@@ -66,10 +66,12 @@ impl<'a> Folding<'a> {
         }
     }
 
-    /// Returns the value of a name that was declared with a constant.
+    /// Returns the value of a name that was declared with a constant. A cast that WGSL does not have is still that name.
     fn variable_value(&self, expr: &Expr) -> Option<Value> {
+        let wgsl = |expr: &Expr| self.function.type_of(expr).wgsl();
         match &expr.kind {
             Kind::Variable(id) => self.variables.get(*id)?.clone(),
+            Kind::Cast(inner) if wgsl(inner) == wgsl(expr) => self.variable_value(inner),
             _ => None,
         }
     }
@@ -89,10 +91,7 @@ impl<'a> Folding<'a> {
             }
             Kind::Vector(components) => self.vector(components, ty),
             Kind::Components(inner, names) => components(&self.expr(inner)?, names),
-            Kind::Element(inner, index) => {
-                let (vector, index) = (self.expr(inner), self.expr(index));
-                self.element(vector, &index?, expr)
-            }
+            Kind::Element(inner, index) => self.element(inner, index, expr),
             Kind::Assign { operator, value, place } => {
                 self.expr(place);
                 let constant = self.expr(value);
@@ -118,14 +117,15 @@ impl<'a> Folding<'a> {
         }
     }
 
-    fn element(&mut self, vector: Option<Value>, index: &Value, expr: &Expr) -> Option<Value> {
-        let Kind::Element(inner, _) = &expr.kind else { return None };
-        let (Type::Vector(size), Some(at)) = (self.function.type_of(inner), integer(index)) else { return None };
-        if at >= i64::from(size) {
+    fn element(&mut self, inner: &Expr, index: &Expr, expr: &Expr) -> Option<Value> {
+        let (vector, constant) = (self.expr(inner), self.expr(index));
+        let known = constant.clone().or_else(|| self.variable_value(index))?;
+        let (Type::Vector(size), Some(at)) = (self.function.type_of(inner), integer(&known)) else { return None };
+        if !(0..i64::from(size)).contains(&at) {
             return self.reject(expr, "this index is out of bounds", "components are numbered from 0");
         }
-        match vector? {
-            Value::Float(parts) => Some(Value::Float(vec![*parts.get(usize::try_from(at).ok()?)?])),
+        match (vector?, constant?) {
+            (Value::Float(parts), _) => Some(Value::Float(vec![*parts.get(usize::try_from(at).ok()?)?])),
             _ => None,
         }
     }

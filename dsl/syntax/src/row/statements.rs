@@ -153,7 +153,9 @@ impl Statements {
         let (capabilities, features) = self.reader.requirements(line)?;
         if !line.keyword("when") {
             let _ = self.once("requires", keyword, MERGE);
-            (self.user_row.row.requires, self.user_row.row.needs) = (capabilities, features);
+            self.user_row.row.requires = capabilities;
+            // A word that the row adds needs a feature, too.
+            self.user_row.row.needs.extend(features);
             return Ok(());
         }
         let constants = self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string()).collect();

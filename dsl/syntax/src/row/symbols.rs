@@ -146,8 +146,9 @@ impl Statements {
         }
         let built_in = self.reader.name(line, "a built-in value", SHAPE)?;
         let feature = self.reader.one_of(&built_in, &BUILT_INS, "a built-in value of fragment shaders")?;
+        self.once(&format!("adds … from {}", built_in.value), &built_in.span, "read the word that has it already")?;
         let row = &mut self.user_row.row;
-        row.needs_if.push(("1".into(), feature));
+        row.needs.push(feature);
         row.extra_words.push(ImplicitAttribute { name: name.value.into(), built_in: built_in.value.into() });
         Ok(())
     }
