@@ -1,5 +1,7 @@
 //! Functions that are compiled twice: as Rust and as closures of fragbuf. They call every method.
 
+mod edges;
+
 /// A value of a function, as one word of a buffer.
 pub trait Word: Copy + 'static {
     /// The conversion from a word in WGSL.
@@ -12,8 +14,7 @@ pub trait Word: Copy + 'static {
 
 impl Word for u32 {
     const FROM_WORD: &str = "u32";
-    const EDGES: &[u32] =
-        &[0, 1, 2, 3, 7, 31, 32, 0x7fff_fffe, 0x7fff_ffff, 0x8000_0000, u32::MAX - 2, u32::MAX - 1, u32::MAX];
+    const EDGES: &[u32] = edges::UNSIGNED;
     fn from_word(word: u32) -> u32 {
         word
     }
@@ -24,8 +25,7 @@ impl Word for u32 {
 
 impl Word for i32 {
     const FROM_WORD: &str = "bitcast<i32>";
-    const EDGES: &[i32] =
-        &[i32::MIN, i32::MIN + 1, i32::MIN + 2, -3, -2, -1, 0, 1, 2, 3, i32::MAX - 2, i32::MAX - 1, i32::MAX];
+    const EDGES: &[i32] = edges::SIGNED;
     fn from_word(word: u32) -> i32 {
         word.cast_signed()
     }
@@ -36,33 +36,7 @@ impl Word for i32 {
 
 impl Word for f32 {
     const FROM_WORD: &str = "bitcast<f32>";
-    const EDGES: &[f32] = &[
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        0.5,
-        -0.5,
-        1.5,
-        2.5,
-        -2.5,
-        0.1,
-        -0.3,
-        1e-30,
-        1e30,
-        -1e30,
-        8_388_607.5,
-        16_777_216.0,
-        2_147_483_648.0,
-        -2_147_483_648.0,
-        4_294_967_296.0,
-        std::f32::consts::PI,
-        3.0,
-        -7.0,
-        88.0,
-        100.0,
-        -100.0,
-    ];
+    const EDGES: &[f32] = edges::FLOATS;
     fn from_word(word: u32) -> f32 {
         f32::from_bits(word)
     }

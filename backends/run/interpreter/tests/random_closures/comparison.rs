@@ -44,15 +44,16 @@ pub struct Tally {
     /// Pairs of a program and an input, and those with a defined result.
     pub all: usize,
     pub defined: usize,
-    /// Why results are undefined, and how often.
-    pub reasons: BTreeMap<Undefined, usize>,
+    /// Why results are open, and how often.
+    pub reasons: BTreeMap<&'static str, usize>,
+    /// Shaders of one program that a device does not run.
+    pub unsupported: usize,
     pub differences: Vec<String>,
 }
 
-/// Compares programs from number `first` on until `count` are valid.
-pub fn compare(first: usize, count: usize, inputs: &[Input], devices: &[Device<'_>], threads: usize) -> Tally {
-    let mut tally = Tally::default();
-    let mut programs = Vec::new();
+/// Returns `count` valid programs from number `first` on, with their functions, and the number of programs that fragbuf rejects.
+pub fn valid(first: usize, count: usize) -> (Vec<(Program, String)>, usize) {
+    let (mut programs, mut rejected) = (Vec::new(), 0);
     for index in first.. {
         if programs.len() == count {
             break;
@@ -60,10 +61,25 @@ pub fn compare(first: usize, count: usize, inputs: &[Input], devices: &[Device<'
         let program = Program::random(index);
         match lowered(&program) {
             Ok(functions) => programs.push((program, functions)),
-            Err(_) => tally.rejected += 1,
+            Err(rejection) => {
+                assert!(rejection.is_expected(), "rejected:\n{}\n{rejection}", program.parts());
+                rejected += 1;
+                // All of a few programs may be rejected.
+                assert!(
+                    rejected < count + 20,
+                    "most closures are rejected: {rejected}, and {} are not",
+                    programs.len()
+                );
+            }
         }
     }
-    tally.programs = programs.len();
+    (programs, rejected)
+}
+
+/// Compares `count` valid programs from number `first` on.
+pub fn compare(first: usize, count: usize, inputs: &[Input], devices: &[Device<'_>], threads: usize) -> Tally {
+    let (programs, rejected) = valid(first, count);
+    let tally = Tally { programs: programs.len(), rejected, ..Tally::default() };
     let batches = Mutex::new(programs.chunks(BATCH));
     let shared = Mutex::new(tally);
     let work = || {
@@ -88,6 +104,7 @@ impl Tally {
     fn add(&mut self, other: Tally) {
         self.all += other.all;
         self.defined += other.defined;
+        self.unsupported += other.unsupported;
         self.differences.extend(other.differences);
         for (reason, count) in other.reasons {
             *self.reasons.entry(reason).or_default() += count;
@@ -139,12 +156,18 @@ fn compare_batch(batch: &[(Program, String)], inputs: &[Input], devices: &[Devic
             Ok(words) => found.push((device.name, words)),
             Err(error) if batch.len() == 1 => {
                 let (program, wgsl) = &batch[0];
+                tally.unsupported += 1;
                 tally.differences.push(format!("{} rejects: {error}\n{}\n{wgsl}", device.name, program.parts()));
                 return tally;
             }
             // Find the programs that it rejects.
-            Err(_) => {
+            Err(error) => {
                 batch.chunks(1).for_each(|one| tally.add(compare_batch(one, inputs, devices)));
+                if tally.unsupported == 0 {
+                    let together =
+                        format!("{} accepts each of {} closures and rejects them together", device.name, batch.len());
+                    tally.differences.push(format!("{together}: {error}\n{}", shader.source));
+                }
                 return tally;
             }
         }
@@ -155,7 +178,11 @@ fn compare_batch(batch: &[(Program, String)], inputs: &[Input], devices: &[Devic
             tally.all += 1;
             let expected = match parsed.evaluate(input).value {
                 Ok(value) => value,
-                Err(reason) => {
+                Err(Undefined::Gap(gap)) => {
+                    tally.differences.push(format!("the evaluator has no result: {gap}\n{}", program.parts()));
+                    continue;
+                }
+                Err(Undefined::Open(reason)) => {
                     *tally.reasons.entry(reason).or_default() += 1;
                     continue;
                 }

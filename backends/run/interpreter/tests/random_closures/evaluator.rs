@@ -46,7 +46,7 @@ pub fn evaluate(functions: &HashMap<String, Function>, name: &str, arguments: Ve
     let value = match evaluator.call(name, arguments) {
         Ok(value) => Ok(value),
         Err(Stop::Undefined(reason)) => Err(reason),
-        Err(_) => Err("a jump out of a function"),
+        Err(_) => Err(Undefined::Gap("a jump out of a function")),
     };
     Outcome { value, panics: evaluator.panics }
 }
@@ -63,12 +63,12 @@ struct Evaluator<'a> {
 const STEPS: u32 = 100_000;
 
 /// The reason for no result after so many steps.
-pub const TOO_LONG: Undefined = "too many steps";
+pub const TOO_LONG: Undefined = Undefined::Gap("too many steps");
 
 impl Evaluator<'_> {
     fn call(&mut self, name: &str, arguments: Vec<Value>) -> Result<Value, Stop> {
         let functions = self.functions;
-        let function = functions.get(name).ok_or("an unknown function")?;
+        let function = functions.get(name).ok_or(Undefined::Gap("an unknown function"))?;
         let caller = std::mem::take(&mut self.names);
         for ((name, ty), value) in function.parameters.iter().zip(arguments) {
             self.names.push((name.clone(), ty.map_or(value.clone(), |ty| value.typed(ty))));
@@ -99,14 +99,14 @@ impl Evaluator<'_> {
                         value = Value::Unit;
                     }
                 }
-                _ => return Err("an unknown statement".into()),
+                _ => return Err(Undefined::Gap("an unknown statement").into()),
             }
         }
         Ok(value)
     }
 
     fn local(&mut self, local: &syn::Local) -> Result<(), Stop> {
-        let init = local.init.as_ref().ok_or("a variable without a value")?;
+        let init = local.init.as_ref().ok_or(Undefined::Gap("a variable without a value"))?;
         let mut value = self.expr(&init.expr)?;
         let pattern = match &local.pat {
             syn::Pat::Type(typed) => {
@@ -144,7 +144,7 @@ impl Evaluator<'_> {
             syn::Expr::Binary(binary) => self.binary(binary),
             syn::Expr::Cast(cast) => {
                 let value = self.expr(&cast.expr)?;
-                Ok(operators::cast(value, named(&cast.ty).ok_or("a cast to an unknown type")?)?)
+                Ok(operators::cast(value, named(&cast.ty).ok_or(Undefined::Gap("a cast to an unknown type"))?)?)
             }
             syn::Expr::Call(call) => self.function(call),
             syn::Expr::MethodCall(call) => self.method(call),
@@ -156,32 +156,33 @@ impl Evaluator<'_> {
                 self.update(&assign.left, |old, _| Ok(value.like(&old)))
             }
             syn::Expr::Return(leave) => {
-                let value = self.expr(leave.expr.as_ref().ok_or("a return without a value")?)?;
+                let value = self.expr(leave.expr.as_ref().ok_or(Undefined::Gap("a return without a value"))?)?;
                 Err(Stop::Return(value))
             }
             syn::Expr::Break(_) => Err(Stop::Break),
             syn::Expr::Continue(_) => Err(Stop::Continue),
-            _ => Err("an unknown expression".into()),
+            _ => Err(Undefined::Gap("an unknown expression").into()),
         }
     }
 
     fn path(&self, path: &syn::Path) -> Result<Value, Stop> {
         let Some(name) = path.get_ident() else { return Ok(operators::constant(path)?) };
         let found = self.names.iter().rev().find(|(other, _)| name == other);
-        Ok(found.ok_or("an unknown name")?.1.clone())
+        Ok(found.ok_or(Undefined::Gap("an unknown name"))?.1.clone())
     }
 
     fn field(&mut self, field: &syn::ExprField) -> Result<Value, Stop> {
         let base = self.expr(&field.base)?;
-        let syn::Member::Named(name) = &field.member else { return Err("a tuple".into()) };
+        let syn::Member::Named(name) = &field.member else { return Err(Undefined::Gap("a tuple").into()) };
         let name = name.to_string();
-        let at =
-            |fields: &[(&str, Type)]| fields.iter().position(|(other, _)| *other == name).ok_or("an unknown field");
+        let at = |fields: &[(&str, Type)]| {
+            fields.iter().position(|(other, _)| *other == name).ok_or(Undefined::Gap("an unknown field"))
+        };
         match base {
             Value::Uniforms => Ok(self.input.uniforms[at(&UNIFORMS)?].clone()),
             Value::Fragment(attributes) => Ok(attributes[at(&ATTRIBUTES)?].clone()),
             Value::Vector(parts) => Ok(Value::Float(parts[component(&name)?])),
-            _ => Err("a field of a number".into()),
+            _ => Err(Undefined::Gap("a field of a number").into()),
         }
     }
 
@@ -190,9 +191,9 @@ impl Evaluator<'_> {
         let at = self.expr(&index.index)?.integer()? as usize;
         let input = self.input;
         match base {
-            Value::Vector(parts) => Ok(Value::Float(*parts.get(at).ok_or("an index out of bounds")?)),
-            Value::Fragments => Ok(input.fragments.get(at).ok_or("an index out of bounds")?.clone()),
-            _ => Err("an index into a number".into()),
+            Value::Vector(parts) => Ok(Value::Float(*parts.get(at).ok_or(Undefined::Open("an index out of bounds"))?)),
+            Value::Fragments => Ok(input.fragments.get(at).ok_or(Undefined::Open("an index out of bounds"))?.clone()),
+            _ => Err(Undefined::Gap("an index into a number").into()),
         }
     }
 
@@ -209,7 +210,7 @@ impl Evaluator<'_> {
             (syn::BinOp::And(_) | syn::BinOp::Or(_), _) => self.expr(&binary.right),
             _ => {
                 let right = self.expr(&binary.right)?;
-                let operator = operators::simple(&binary.op).ok_or("an unknown operator")?;
+                let operator = operators::simple(&binary.op).ok_or(Undefined::Gap("an unknown operator"))?;
                 Ok(operators::binary(operator, left, right, &mut self.panics)?)
             }
         }
@@ -223,7 +224,12 @@ impl Evaluator<'_> {
     ) -> Result<Value, Stop> {
         let mut steps = Vec::new();
         let name = self.steps_of(place, &mut steps)?;
-        let variable = self.names.iter_mut().rev().find(|(other, _)| *other == name).ok_or("an unknown variable")?;
+        let variable = self
+            .names
+            .iter_mut()
+            .rev()
+            .find(|(other, _)| *other == name)
+            .ok_or(Undefined::Gap("an unknown variable"))?;
         let panics = &mut self.panics;
         replace(&mut variable.1, &steps, |old| new(old, panics))?;
         Ok(Value::Unit)
@@ -233,10 +239,10 @@ impl Evaluator<'_> {
     fn steps_of(&mut self, place: &syn::Expr, steps: &mut Vec<usize>) -> Result<String, Stop> {
         match place {
             syn::Expr::Paren(inner) => self.steps_of(&inner.expr, steps),
-            syn::Expr::Path(path) => Ok(path.path.get_ident().ok_or("a path as a place")?.to_string()),
+            syn::Expr::Path(path) => Ok(path.path.get_ident().ok_or(Undefined::Gap("a path as a place"))?.to_string()),
             syn::Expr::Field(field) => {
                 let name = self.steps_of(&field.base, steps)?;
-                let syn::Member::Named(member) = &field.member else { return Err("a tuple".into()) };
+                let syn::Member::Named(member) = &field.member else { return Err(Undefined::Gap("a tuple").into()) };
                 let member = member.to_string();
                 let attribute = ATTRIBUTES.iter().position(|(other, _)| *other == member);
                 steps.push(attribute.map_or_else(|| component(&member), Ok)?);
@@ -247,12 +253,12 @@ impl Evaluator<'_> {
                 steps.push(self.expr(&index.index)?.integer()? as usize);
                 Ok(name)
             }
-            _ => Err("an unknown place".into()),
+            _ => Err(Undefined::Gap("an unknown place").into()),
         }
     }
 
     fn function(&mut self, call: &syn::ExprCall) -> Result<Value, Stop> {
-        let syn::Expr::Path(path) = &*call.func else { return Err("a call of a value".into()) };
+        let syn::Expr::Path(path) = &*call.func else { return Err(Undefined::Gap("a call of a value").into()) };
         let path: Vec<String> = path.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
         let path: Vec<&str> = path.iter().map(String::as_str).collect();
         let mut arguments = call.args.iter().map(|argument| self.expr(argument)).collect::<Result<Vec<_>, _>>()?;
@@ -268,7 +274,7 @@ impl Evaluator<'_> {
                 let receiver = arguments.remove(0);
                 Ok(methods::call(name, receiver, arguments, &mut self.panics)?)
             }
-            _ => Err("an unknown function".into()),
+            _ => Err(Undefined::Gap("an unknown function").into()),
         }
     }
 
@@ -281,7 +287,7 @@ impl Evaluator<'_> {
             return match name.as_str() {
                 "len" => Ok(Value::Usize(count as u64)),
                 "is_empty" => Ok(Value::Bool(count == 0)),
-                _ => Err("an unknown method of a list".into()),
+                _ => Err(Undefined::Gap("an unknown method of a list").into()),
             };
         }
         Ok(methods::call(&name, receiver, arguments, &mut self.panics)?)
@@ -342,7 +348,7 @@ impl Evaluator<'_> {
                     all.reverse();
                     Ok(Box::new(all.into_iter()))
                 }
-                _ => Err("an unknown iterator".into()),
+                _ => Err(Undefined::Gap("an unknown iterator").into()),
             },
             _ => {
                 let fragments = self.input.fragments.clone();
@@ -352,7 +358,10 @@ impl Evaluator<'_> {
     }
 
     fn range(&mut self, range: &syn::ExprRange, reversed: bool) -> Result<Box<dyn Iterator<Item = Vec<Value>>>, Stop> {
-        let (from, to) = (range.start.as_ref().ok_or("no start")?, range.end.as_ref().ok_or("no end")?);
+        let (from, to) = (
+            range.start.as_ref().ok_or(Undefined::Gap("no start"))?,
+            range.end.as_ref().ok_or(Undefined::Gap("no end"))?,
+        );
         let (from, to) = (self.expr(from)?, self.expr(to)?);
         let (from, to) = (from.clone().like(&to), to.like(&from));
         let last = to.integer()? - i128::from(matches!(range.limits, syn::RangeLimits::HalfOpen(_)));
@@ -378,17 +387,17 @@ fn replace(
     match value {
         Value::Fragment(attributes) => replace(&mut attributes[*step], rest, new),
         Value::Vector(parts) => {
-            let part = parts.get_mut(*step).ok_or("an index out of bounds")?;
+            let part = parts.get_mut(*step).ok_or(Undefined::Open("an index out of bounds"))?;
             *part = new(Value::Float(*part))?.float()?;
             Ok(())
         }
-        _ => Err("a part of a number"),
+        _ => Err(Undefined::Gap("a part of a number")),
     }
 }
 
 /// Returns the index of a vector's component.
 pub fn component(name: &str) -> Result<usize, Undefined> {
-    ["x", "y", "z", "w"].iter().position(|other| *other == name).ok_or("an unknown component")
+    ["x", "y", "z", "w"].iter().position(|other| *other == name).ok_or(Undefined::Gap("an unknown component"))
 }
 
 fn named(ty: &syn::Type) -> Option<Type> {

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 
+use fragbuf_model::{Diagnostics, codes};
+
 use super::evaluator::{Function, Outcome, evaluate};
 use super::generator::Program;
 use super::types::{ATTRIBUTES, FRAGMENTS, Type, UNIFORMS};
@@ -11,13 +13,30 @@ use super::value::{Input, Value};
 /// The words of a result.
 pub const RESULT_WORDS: usize = 4;
 
-/// Returns the functions of a program as fragbuf lowers them, or its diagnostics.
-pub fn lowered(program: &Program) -> Result<String, String> {
-    let parsed = fragbuf_syntax::parse(&program.description(), "compared");
-    if !parsed.diagnostics.is_empty() {
-        return Err(parsed.diagnostics.to_string());
+/// The diagnostics of a program that fragbuf rejects.
+#[derive(Debug)]
+pub struct Rejection(Diagnostics);
+
+impl Rejection {
+    /// Tests whether a generated program may be rejected like this: rustc accepts it, and some of its constants are out of range.
+    pub fn is_expected(&self) -> bool {
+        !self.0.is_empty() && self.0.iter().all(|diagnostic| diagnostic.code == codes::OUT_OF_RANGE)
     }
-    let draft = parsed.draft.ok_or("no draft")?;
+}
+
+impl std::fmt::Display for Rejection {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// Returns the functions of a program as fragbuf lowers them, or its diagnostics.
+pub fn lowered(program: &Program) -> Result<String, Rejection> {
+    let parsed = fragbuf_syntax::parse(&program.description(), "compared");
+    let draft = match parsed.draft {
+        Some(draft) if parsed.diagnostics.is_empty() => draft,
+        _ => return Err(Rejection(parsed.diagnostics)),
+    };
     let mut wgsl = String::new();
     for function in draft.helpers.iter().chain(&draft.resolve) {
         wgsl.push_str(&function.wgsl.replace("fn user_resolve(", &format!("fn user_{}(", program.name())));

@@ -16,6 +16,8 @@ mod compiled;
 #[path = "../device/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
 mod device;
+#[path = "../functions/edges.rs"]
+mod edges;
 mod evaluator;
 mod expressions;
 mod generator;
@@ -33,14 +35,17 @@ mod table;
 mod types;
 mod value;
 
-use comparison::{Device, Shader, Tally, buffers, compare, difference, interpret, results};
+use std::collections::BTreeSet;
+
+use comparison::{Device, Shader, Tally, buffers, compare, difference, interpret, results, valid};
 use compiled::OverflowChecks;
 use evaluator::Outcome;
 use fragbuf_interpreter::{Bytecode, Options};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
 use generator::Program;
-use harness::{Parsed, lowered};
+use harness::Parsed;
+use table::{NUMBERS, VECTORS};
 
 /// Inputs of each closure.
 const INPUTS: usize = 24;
@@ -86,8 +91,7 @@ fn random_closures_have_the_results_of_rust_in_opengl() {
 #[test]
 fn the_evaluator_has_the_results_of_rustc() {
     let inputs = inputs::inputs(INPUTS);
-    let valid = (0..).map(Program::random).filter(|program| lowered(program).is_ok());
-    let programs: Vec<Program> = valid.take(COMPILED).collect();
+    let programs: Vec<Program> = valid(0, COMPILED).0.into_iter().map(|(program, _)| program).collect();
     let mut wrong = Vec::new();
     let mut counts = [0; 2];
     for checks in [OverflowChecks::On, OverflowChecks::Off] {
@@ -113,17 +117,27 @@ fn the_evaluator_has_the_results_of_rustc() {
     assert!(counts.iter().all(|count| *count > COMPILED), "results and panics: {counts:?}");
 }
 
-/// The generated closures call every method that `fragbuf language` lists.
+/// The generator has every method that `fragbuf language` lists for every type, and the generated closures call each name.
 #[test]
 fn every_method_is_generated() {
     let sources: String = (0..4000).map(|index| Program::random(index).parts()).collect();
     let reference = fragbuf_syntax::reference();
     let methods = reference.split("# Methods").nth(1).unwrap().split("\n# ").next().unwrap();
-    let names: Vec<&str> =
-        methods.lines().filter_map(|line| line.split('`').nth(1)?.split_once('(').map(|(name, _)| name)).collect();
-    assert!(names.len() > 80, "{names:?}");
+    // `| f32 Vec2 | `abs() -> Self` | … |`
+    let mut listed: BTreeSet<(&str, &str)> = BTreeSet::new();
+    for line in methods.lines() {
+        let [_, receivers, signature, ..] = line.split('|').collect::<Vec<_>>()[..] else { continue };
+        let Some((name, _)) = signature.split('`').nth(1).and_then(|signature| signature.split_once('(')) else {
+            continue;
+        };
+        listed.extend(receivers.split_whitespace().map(|receiver| (receiver, name)));
+    }
+    assert!(listed.len() > 120, "{listed:?}");
+    let generated: BTreeSet<(&str, &str)> =
+        NUMBERS.iter().chain(VECTORS).map(|method| (method.on.rust(), method.name)).collect();
+    assert_eq!(generated, listed);
     let is_called = |name: &str| sources.contains(&format!(".{name}(")) || sources.contains(&format!("::{name}("));
-    let missing: Vec<&&str> = names.iter().filter(|name| !is_called(name)).collect();
+    let missing: Vec<_> = listed.iter().filter(|(_, name)| !is_called(name)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
 

@@ -21,13 +21,13 @@ pub fn call(name: &str, receiver: Value, arguments: Vec<Value>, panics: &mut Pan
 /// Returns the float of a word, if devices keep it.
 pub fn from_bits(word: &Value) -> Result<Value, Undefined> {
     let value = f32::from_bits(word.integer()? as u32);
-    if value.is_finite() { Ok(Value::Float(Range::of(value))) } else { Err("not a finite number") }
+    if value.is_finite() { Ok(Value::Float(Range::of(value))) } else { Err(Undefined::Open("not a finite number")) }
 }
 
 fn integer(name: &str, receiver: &Value, arguments: &[Value], panics: &mut Panics) -> Result<Value, Undefined> {
     let x = receiver.integer()?;
     let word = x as u32;
-    let argument = |at: usize| arguments.get(at).map_or(Err("a missing argument"), Value::integer);
+    let argument = |at: usize| arguments.get(at).map_or(Err(Undefined::Gap("a missing argument")), Value::integer);
     let typed = |exact: i128| Ok(wrapped(receiver, exact)?.0);
     let overflowing = |exact: i128, panics: &mut Panics| {
         let (value, overflows) = wrapped(receiver, exact)?;
@@ -38,7 +38,7 @@ fn integer(name: &str, receiver: &Value, arguments: &[Value], panics: &mut Panic
         "abs" => overflowing(x.abs(), panics),
         "min" => typed(x.min(argument(0)?)),
         "max" => typed(x.max(argument(0)?)),
-        "clamp" if argument(0)? > argument(1)? => Err("a clamp whose lower bound is above the upper"),
+        "clamp" if argument(0)? > argument(1)? => Err(Undefined::Open("a clamp whose lower bound is above the upper")),
         "clamp" => typed(x.clamp(argument(0)?, argument(1)?)),
         "signum" => typed(x.signum()),
         "rem_euclid" => {
@@ -62,16 +62,16 @@ fn integer(name: &str, receiver: &Value, arguments: &[Value], panics: &mut Panic
                 _ => Value::U32(difference as u32),
             })
         }
-        _ => Err("an unknown method of integers"),
+        _ => Err(Undefined::Gap("an unknown method of integers")),
     }
 }
 
 fn float(name: &str, x: Range, arguments: &[Value]) -> Result<Value, Undefined> {
-    let y = || arguments.first().map_or(Err("a missing argument"), Value::float);
+    let y = || arguments.first().map_or(Err(Undefined::Gap("a missing argument")), Value::float);
     match name {
         "to_bits" => match x.exact() {
             Some(value) if value != 0.0 => Ok(Value::U32((value as f32).to_bits())),
-            _ => Err("the bits of a number with errors"),
+            _ => Err(Undefined::Open("the bits of a number with errors")),
         },
         "abs" | "min" | "max" | "clamp" | "floor" | "ceil" | "trunc" | "fract" | "recip" | "exp" | "mul_add" => {
             let parts: Vec<Vec<Range>> = arguments.iter().map(Value::parts).collect::<Result<_, _>>()?;
@@ -125,7 +125,7 @@ fn function(name: &str, x: Range) -> Result<Range, Undefined> {
         "atanh" => x.within(-0.9, 0.9)?.rising(f64::atanh, LOOSE, LOOSE),
         "to_radians" => x.rising(f64::to_radians, 4.0 * ROUNDED, 0.0),
         "to_degrees" => x.rising(f64::to_degrees, 4.0 * ROUNDED, 0.0),
-        _ => Err("an unknown method of floats"),
+        _ => Err(Undefined::Gap("an unknown method of floats")),
     }
 }
 
@@ -144,7 +144,7 @@ impl Negated for f64 {
 fn extrema(x: Range, function: fn(f64) -> f64) -> Result<Range, Undefined> {
     let width = x.hi - x.lo;
     if width > 0.01 {
-        return Err("an angle with a large error");
+        return Err(Undefined::Open("an angle with a large error"));
     }
     let (first, last) = (function(x.lo), function(x.hi));
     Range::with_errors(first.min(last), first.max(last), 0.0, LOOSE + width)
@@ -165,7 +165,7 @@ fn power(x: Range, y: Range) -> Result<Range, Undefined> {
     let (lo, hi) = (exponents.into_iter().fold(f64::MAX, f64::min), exponents.into_iter().fold(f64::MIN, f64::max));
     let size = lo.abs().max(hi.abs());
     if size > 120.0 {
-        return Err("a power near the limits");
+        return Err(Undefined::Open("a power near the limits"));
     }
     Range::with_errors(lo.exp2(), hi.exp2(), (16.0 + 8.0 * size + 8.0 * y.abs().hi) * ROUNDED, 0.0)
 }
@@ -173,10 +173,10 @@ fn power(x: Range, y: Range) -> Result<Range, Undefined> {
 fn angle_of(y: Range, x: Range) -> Result<Range, Undefined> {
     // The angle jumps on the negative axis and is undefined at 0.
     if y.lo <= 0.0 && y.hi >= 0.0 && x.lo <= 1e-30 {
-        return Err("an angle on the negative axis");
+        return Err(Undefined::Open("an angle on the negative axis"));
     }
     if x.lo <= 0.0 && x.hi >= 0.0 && y.abs().lo < 1e-30 {
-        return Err("an angle near 0");
+        return Err(Undefined::Open("an angle near 0"));
     }
     y.within(-1e30, 1e30)?;
     x.within(-1e30, 1e30)?;
@@ -187,12 +187,14 @@ fn angle_of(y: Range, x: Range) -> Result<Range, Undefined> {
 
 /// Calls a method that glam applies to each component.
 fn component_wise(name: &str, x: Range, others: &[Range]) -> Result<Range, Undefined> {
-    let other = |at: usize| others.get(at).copied().ok_or("a missing argument");
+    let other = |at: usize| others.get(at).copied().ok_or(Undefined::Gap("a missing argument"));
     match name {
         "abs" => Ok(x.abs()),
         "min" => Ok(x.min(other(0)?)),
         "max" => Ok(x.max(other(0)?)),
-        "clamp" if other(0)?.hi > other(1)?.lo => Err("a clamp whose lower bound may be above the upper"),
+        "clamp" if other(0)?.hi > other(1)?.lo => {
+            Err(Undefined::Open("a clamp whose lower bound may be above the upper"))
+        }
         "clamp" => Ok(x.max(other(0)?).min(other(1)?)),
         "floor" => Ok(x.whole(f64::floor)),
         "ceil" => Ok(x.whole(f64::ceil)),
@@ -205,7 +207,7 @@ fn component_wise(name: &str, x: Range, others: &[Range]) -> Result<Range, Undef
             let (product, added) = (x.multiply(other(0)?)?, other(1)?);
             product.add(added)
         }
-        _ => Err("an unknown method of vectors"),
+        _ => Err(Undefined::Gap("an unknown method of vectors")),
     }
 }
 
@@ -213,12 +215,12 @@ fn component_wise(name: &str, x: Range, others: &[Range]) -> Result<Range, Undef
 fn without(x: Range, whole: fn(f64) -> f64) -> Result<Range, Undefined> {
     let part = whole(x.lo);
     if part != whole(x.hi) {
-        return Err("the fraction of a number near a whole number");
+        return Err(Undefined::Open("the fraction of a number near a whole number"));
     }
     // Devices may return 1 for a negative number near 0.
     let fraction = Range::between(x.lo - part, x.hi - part);
     if fraction.hi > 0.999_999 {
-        return Err("a fraction near 1");
+        return Err(Undefined::Open("a fraction near 1"));
     }
     Range::rounded(fraction.lo, fraction.hi, true)
 }
@@ -229,8 +231,8 @@ fn vector(name: &str, x: &[Range], arguments: &[Value]) -> Result<Value, Undefin
         return Ok(Value::Vector(parts.collect::<Result<_, Undefined>>()?));
     }
     let others: Vec<Vec<Range>> = arguments.iter().map(Value::parts).collect::<Result<_, _>>()?;
-    let scalar = || others.first().and_then(|other| other.first()).copied().ok_or("a missing argument");
-    let other = || others.first().ok_or("a missing argument");
+    let scalar = || others.first().and_then(|other| other.first()).copied().ok_or(Undefined::Gap("a missing argument"));
+    let other = || others.first().ok_or(Undefined::Gap("a missing argument"));
     let fold = |function: fn(Range, Range) -> Result<Range, Undefined>| {
         x.iter().skip(1).try_fold(x[0], |total, part| function(total, *part)).map(Value::Float)
     };

@@ -20,14 +20,15 @@ pub fn literal(literal: &syn::Lit) -> Result<Value, Undefined> {
     match literal {
         syn::Lit::Bool(value) => Ok(Value::Bool(value.value)),
         syn::Lit::Float(value) => {
-            let value: f32 = value.base10_digits().parse().map_err(|_| "a malformed float")?;
+            let value: f32 = value.base10_digits().parse().map_err(|_| Undefined::Gap("a malformed float"))?;
             Ok(Value::Float(Range::of(value)))
         }
         syn::Lit::Int(value) => {
-            let integer = Value::Literal(value.base10_parse::<i128>().map_err(|_| "a malformed integer")?);
+            let integer =
+                Value::Literal(value.base10_parse::<i128>().map_err(|_| Undefined::Gap("a malformed integer"))?);
             Ok(Type::named(value.suffix()).map_or(integer.clone(), |ty| integer.typed(ty)))
         }
-        _ => Err("an unknown literal"),
+        _ => Err(Undefined::Gap("an unknown literal")),
     }
 }
 
@@ -60,7 +61,7 @@ pub fn constant(path: &syn::Path) -> Result<Value, Undefined> {
         [vector, "ONE"] => splat(vector, 1.0),
         [vector, "ZERO"] => splat(vector, 0.0),
         [vector, "NEG_ONE"] => splat(vector, -1.0),
-        _ => Err("an unknown constant"),
+        _ => Err(Undefined::Gap("an unknown constant")),
     }
 }
 
@@ -77,7 +78,7 @@ pub fn unary(operator: &syn::UnOp, value: Value, panics: &mut Panics) -> Result<
         (syn::UnOp::Not(_), Value::Bool(value)) => Value::Bool(!value),
         (syn::UnOp::Not(_), Value::U32(value)) => Value::U32(!value),
         (syn::UnOp::Not(_), Value::I32(value)) => Value::I32(!value),
-        _ => return Err("an unknown unary operator"),
+        _ => return Err(Undefined::Gap("an unknown unary operator")),
     })
 }
 
@@ -154,7 +155,7 @@ pub fn binary(operator: Operator, left: Value, right: Value, panics: &mut Panics
             Operator::Or => a | b,
             Operator::Xor | Operator::NotEqual => a ^ b,
             Operator::Equal => a == b,
-            _ => return Err("an unknown operator of bool"),
+            _ => return Err(Undefined::Gap("an unknown operator of bool")),
         })),
         (Value::Float(_) | Value::Vector(_), _) | (_, Value::Vector(_)) => floats(operator, &left, &right),
         _ => integers(operator, &left, &right, panics),
@@ -177,9 +178,11 @@ fn floats(operator: Operator, left: &Value, right: &Value) -> Result<Value, Unde
             Operator::Multiply => a.multiply(b),
             Operator::Divide => a.divide(b),
             // glam's `Vec4` rounds the quotient down where the processor has SIMD instructions.
-            Operator::Remainder if size == 4 && a.divide(b)?.lo < 0.0 => Err("the remainder of a negative `Vec4`"),
+            Operator::Remainder if size == 4 && a.divide(b)?.lo < 0.0 => {
+                Err(Undefined::Open("the remainder of a negative `Vec4`"))
+            }
             Operator::Remainder => a.remainder(b),
-            _ => Err("an unknown operator of floats"),
+            _ => Err(Undefined::Gap("an unknown operator of floats")),
         }
     });
     let parts = parts.collect::<Result<Vec<Range>, Undefined>>()?;
@@ -239,7 +242,9 @@ fn integers(operator: Operator, left: &Value, right: &Value, panics: &mut Panics
 pub fn wrapped(like: &Value, exact: i128) -> Result<(Value, bool), Undefined> {
     let value = match like {
         Value::U32(_) => Value::U32(exact as u32),
-        Value::Usize(_) if !(0..=i128::from(u32::MAX)).contains(&exact) => return Err("a `usize` that needs 64 bits"),
+        Value::Usize(_) if !(0..=i128::from(u32::MAX)).contains(&exact) => {
+            return Err(Undefined::Open("a `usize` that needs 64 bits"));
+        }
         Value::Usize(_) => Value::Usize(exact as u64),
         _ => Value::I32(exact as i32),
     };
@@ -256,7 +261,7 @@ fn shift(operator: Operator, left: Value, right: &Value, panics: &mut Panics) ->
         (Value::U32(value), _) => Value::U32(value >> count),
         (Value::I32(value), Operator::Left) => Value::I32(value << count),
         (Value::I32(value), _) => Value::I32(value >> count),
-        _ => return Err("a shift of an unknown type"),
+        _ => return Err(Undefined::Gap("a shift of an unknown type")),
     })
 }
 
@@ -270,7 +275,7 @@ pub fn cast(value: Value, to: Type) -> Result<Value, Undefined> {
                 if to == Type::I32 { (f64::from(i32::MIN), f64::from(i32::MAX)) } else { (0.0, f64::from(u32::MAX)) };
             let (lo, hi) = (lo.clamp(least, greatest), hi.clamp(least, greatest));
             if lo != hi {
-                return Err("a cast of a float near a whole number");
+                return Err(Undefined::Open("a cast of a float near a whole number"));
             }
             Ok(Value::Literal(lo as i128).typed(to))
         }

@@ -3,8 +3,14 @@
 //! Devices may replace numbers nearer to 0 than 1.2e-38 by 0, ignore the sign of 0, fuse operations, and are never asked for
 //! infinities or NaN: where a result depends on any of these, it is undefined and nothing is compared.
 
-/// The reason why a closure has no defined result.
-pub type Undefined = &'static str;
+/// The reason why a closure has no result that can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Undefined {
+    /// Accurate devices may return different results.
+    Open(&'static str),
+    /// The closure has something that the evaluator does not have: a defect of the evaluator or of the generator.
+    Gap(&'static str),
+}
 
 /// One rounding of WGSL's correctly rounded operations, in either direction.
 pub const ROUNDED: f64 = 1.0 / 8_388_608.0;
@@ -46,7 +52,7 @@ impl Range {
         let lo = lo - lo.abs() * relative - absolute - TINY;
         let hi = hi + hi.abs() * relative + absolute + TINY;
         if lo.is_nan() || hi.is_nan() || lo < -GREATEST || hi > GREATEST {
-            return Err("not a finite number");
+            return Err(Undefined::Open("not a finite number"));
         }
         Ok(Range::between(lo, hi))
     }
@@ -108,7 +114,7 @@ impl Range {
         self.moderate()?;
         other.moderate()?;
         if other.lo <= 0.0 && other.hi >= 0.0 {
-            return Err("a division by a number that may be zero");
+            return Err(Undefined::Open("a division by a number that may be zero"));
         }
         let (lo, hi) = corners(self, other, |x, y| x / y);
         Range::with_errors(lo, hi, 3.0 * ROUNDED, 0.0)
@@ -122,7 +128,7 @@ impl Range {
     fn moderate(self) -> Result<(), Undefined> {
         let size = self.abs();
         if size.hi > 1e10 || (size.lo > 0.0 && size.lo < 1e-10) {
-            return Err("a factor near the limits of the type");
+            return Err(Undefined::Open("a factor near the limits of the type"));
         }
         Ok(())
     }
@@ -132,7 +138,7 @@ impl Range {
         let quotient = self.divide(other)?;
         let whole = quotient.lo.trunc();
         if whole != quotient.hi.trunc() || whole.abs() > 1e6 {
-            return Err("the quotient of a remainder is near a whole number");
+            return Err(Undefined::Open("the quotient of a remainder is near a whole number"));
         }
         let product = other.multiply(Range::between(whole, whole))?;
         let error = 4.0 * ROUNDED * self.lo.abs().max(self.hi.abs());
@@ -175,13 +181,17 @@ impl Range {
         match (self.lo > 0.0, self.hi < 0.0) {
             (true, _) => Ok(1.0),
             (_, true) => Ok(-1.0),
-            _ => Err("the sign of a number near 0"),
+            _ => Err(Undefined::Open("the sign of a number near 0")),
         }
     }
 
     /// Requires that all values are in these limits.
     pub fn within(self, lo: f64, hi: f64) -> Result<Range, Undefined> {
-        if self.lo >= lo && self.hi <= hi { Ok(self) } else { Err("an argument outside of the method's domain") }
+        if self.lo >= lo && self.hi <= hi {
+            Ok(self)
+        } else {
+            Err(Undefined::Open("an argument outside of the method's domain"))
+        }
     }
 
     /// Compares, unless devices may have either result.
@@ -191,7 +201,7 @@ impl Range {
             (Some(left), Some(right)) if left == right => Ok(Ordering::Equal),
             _ if self.hi < other.lo => Ok(Ordering::Less),
             _ if self.lo > other.hi => Ok(Ordering::Greater),
-            _ => Err("a comparison of floats that may be equal"),
+            _ => Err(Undefined::Open("a comparison of floats that may be equal")),
         }
     }
 }

@@ -87,7 +87,7 @@ impl Value {
     }
 
     pub fn float(&self) -> Result<Range, Undefined> {
-        if let Value::Float(range) = self { Ok(*range) } else { Err("not a float") }
+        if let Value::Float(range) = self { Ok(*range) } else { Err(Undefined::Gap("not a float")) }
     }
 
     /// Returns the components of a float or vector.
@@ -95,7 +95,7 @@ impl Value {
         match self {
             Value::Float(range) => Ok(vec![*range]),
             Value::Vector(parts) => Ok(parts.clone()),
-            _ => Err("not a vector"),
+            _ => Err(Undefined::Gap("not a vector")),
         }
     }
 
@@ -106,12 +106,12 @@ impl Value {
             Value::U32(value) => Ok(i128::from(*value)),
             Value::I32(value) => Ok(i128::from(*value)),
             Value::Usize(value) => Ok(i128::from(*value)),
-            _ => Err("not an integer"),
+            _ => Err(Undefined::Gap("not an integer")),
         }
     }
 
     pub fn bool(&self) -> Result<bool, Undefined> {
-        if let Value::Bool(value) = self { Ok(*value) } else { Err("not a bool") }
+        if let Value::Bool(value) = self { Ok(*value) } else { Err(Undefined::Gap("not a bool")) }
     }
 
     /// Returns whether a device's words are this value.
