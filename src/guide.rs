@@ -9,7 +9,7 @@
 //! 7. [`extend`]: your own storage, snapshots.
 //! 8. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
 //! 9. [`verdict`]: what a verdict of the checker means, and what it does not.
-//! 10. [`diagnostics`]: error messages, and how to read them.
+//! 10. [`diagnostics`]: error messages, and how to read them; [`codes`]: every code with its cause, an example and the fix.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -34,3 +34,17 @@ pub mod check {}
 pub mod verdict {}
 #[doc = include_str!("guide/diagnostics.md")]
 pub mod diagnostics {}
+#[doc = include_str!("guide/codes.md")]
+pub mod codes {}
+
+/// The chapter [`codes`] as Markdown.
+const CODES: &str = include_str!("guide/codes.md");
+
+/// Returns the section about a code of a diagnostic, from the chapter [`codes`].
+pub fn explanation(code: &str) -> Option<&'static str> {
+    let heading = format!("## `{code}`\n");
+    let start = CODES.find(&heading)?;
+    let rest = CODES.get(start + heading.len()..)?;
+    let end = rest.find("\n## ").map_or(rest.len(), |end| end + 1);
+    CODES.get(start..start + heading.len() + end)
+}

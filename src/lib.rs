@@ -40,7 +40,7 @@ pub mod user_file;
 
 pub use fragbuf_codegen::{Arrival, Form, GENERATOR, Linking, Plan, Profile, Program, link, plan};
 pub use fragbuf_dsl::{CapturedTokens, Fragments, UniformValue, builder, closure, function, glam};
-pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, SourceSpan, Variant, check};
+pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, Severity, SourceSpan, Variant, check};
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
     Checked, File, Generation, Limit, Needed, Request, SCHEMA, Sharing, TARGETS, TIERS, Target, WebGpuLimit, Workgroup,

@@ -1,12 +1,57 @@
-//! Formats diagnostics for people: the source line, the underlined span and the suggested fix.
+//! Formats diagnostics for people, with the source line, the underlined span and the suggested fix, and for programs as JSON.
 
-use codespan_reporting::diagnostic::{Diagnostic as Report, Label};
+use codespan_reporting::diagnostic::{Diagnostic as Report, Label, Severity as Level};
 use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term::{self, Config};
-use fragbuf_model::{Diagnostics, SourceSpan};
+use fragbuf_model::{Diagnostic, Diagnostics, Severity, SourceSpan};
+use serde_json::{Value, json};
+
+mod style;
 
 /// Formats `diagnostics`; `sources` has the sources by file name. A span in an unknown source is printed without its line.
 pub fn render(diagnostics: &Diagnostics, sources: &[(String, String)]) -> String {
+    render_with(diagnostics, sources, &mut |files, report| {
+        term::emit_into_string(&Config::default(), files, report).ok()
+    })
+}
+
+/// Formats diagnostics as [`render`] does, with the escape sequences of a terminal for colours.
+pub fn render_colored(diagnostics: &Diagnostics, sources: &[(String, String)]) -> String {
+    render_with(diagnostics, sources, &mut |files, report| {
+        let mut colored = style::Colored::default();
+        term::emit_to_write_style(&mut colored, &Config::default(), files, report).ok()?;
+        colored.text()
+    })
+}
+
+/// Returns a diagnostic as JSON: `severity`, `code`, `message`, `help`, `file`, `line`, `column`, `length` and `labels`.
+pub fn json(diagnostic: &Diagnostic) -> Value {
+    let place = |span: &SourceSpan| (span.file.to_string(), span.line, span.column, span.length);
+    let (file, line, column, length) = place(&diagnostic.span);
+    let labels = diagnostic.labels.iter().map(|label| {
+        let (file, line, column, length) = place(&label.span);
+        json!({ "file": file, "line": line, "column": column, "length": length, "text": label.text })
+    });
+    json!({
+        "severity": diagnostic.severity().name(),
+        "code": diagnostic.code.name,
+        "message": diagnostic.message,
+        "help": diagnostic.help,
+        "file": file,
+        "line": line,
+        "column": column,
+        "length": length,
+        "labels": labels.collect::<Vec<_>>(),
+    })
+}
+
+type Files<'a> = SimpleFiles<&'a str, &'a str>;
+
+fn render_with<'a>(
+    diagnostics: &Diagnostics,
+    sources: &'a [(String, String)],
+    emit: &mut dyn FnMut(&Files<'a>, &Report<usize>) -> Option<String>,
+) -> String {
     let mut files = SimpleFiles::new();
     let ids: Vec<usize> = sources.iter().map(|(name, text)| files.add(name.as_str(), text.as_str())).collect();
     let mut out = String::new();
@@ -15,7 +60,11 @@ pub fn render(diagnostics: &Diagnostics, sources: &[(String, String)]) -> String
             let index = sources.iter().position(|(name, _)| **name == *span.file)?;
             Some((ids[index], range(&sources[index].1, span)?))
         };
-        let mut report = Report::error().with_code(diagnostic.code.name).with_message(&diagnostic.message);
+        let level = match diagnostic.severity() {
+            Severity::Error => Level::Error,
+            Severity::Warning => Level::Warning,
+        };
+        let mut report = Report::new(level).with_code(diagnostic.code.name).with_message(&diagnostic.message);
         report.notes.push(format!("help: {}", diagnostic.help));
         match find(&diagnostic.span) {
             Some((id, range)) => report.labels.push(Label::primary(id, range)),
@@ -27,9 +76,9 @@ pub fn render(diagnostics: &Diagnostics, sources: &[(String, String)]) -> String
                 None => report.notes.push(format!("{}: {}", label.span, label.text)),
             }
         }
-        match term::emit_into_string(&Config::default(), &files, &report) {
-            Ok(text) => out.push_str(&text),
-            Err(_) => out.push_str(&format!("{diagnostic}\n")),
+        match emit(&files, &report) {
+            Some(text) => out.push_str(&text),
+            None => out.push_str(&format!("{diagnostic}\n")),
         }
     }
     out

@@ -3,12 +3,61 @@
 //! Input: a path. Output: the text. A source is a regular file of at most [`MAX_BYTES`] bytes of UTF-8; anything else is an error.
 //! A device or a pipe may have no end, so it is not opened.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read as _, Result};
 use std::path::Path;
 
+use fragbuf_model::{Diagnostic, SourceSpan, codes};
+
 /// The greatest size of a source file in bytes: 4 MiB.
 pub const MAX_BYTES: u64 = 4 << 20;
+
+/// The reason why a file is not text: the first bytes that are not UTF-8. [`read`] returns it inside of its error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotUtf8 {
+    /// The line, from 1.
+    pub line: u32,
+    /// The column, from 1, in characters.
+    pub column: u32,
+    /// The byte.
+    pub byte: u8,
+    /// The text, with a replacement character for all that is not UTF-8.
+    pub lossy: String,
+}
+
+impl NotUtf8 {
+    fn of(bytes: &[u8], valid: usize) -> Self {
+        let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        NotUtf8 {
+            line: 1 + before.matches('\n').count() as u32,
+            column: 1 + before.get(line_start..).unwrap_or_default().chars().count() as u32,
+            byte: bytes.get(valid).copied().unwrap_or_default(),
+            lossy: String::from_utf8_lossy(bytes).into_owned(),
+        }
+    }
+
+    /// Returns it from an error of [`read`].
+    pub fn from_error(error: &Error) -> Option<&NotUtf8> {
+        error.get_ref()?.downcast_ref()
+    }
+
+    /// Returns the diagnostic; messages call the file `file`.
+    pub fn diagnostic(&self, file: &str) -> Diagnostic {
+        let help = "save the file as UTF-8; editors and `iconv` convert from other encodings, such as Latin-1";
+        let span = SourceSpan::new(file, self.line, self.column);
+        Diagnostic::new(codes::INVALID_ENCODING, &span, format!("the byte 0x{:02x} is not UTF-8", self.byte), help)
+    }
+}
+
+impl fmt::Display for NotUtf8 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the file is not UTF-8: byte 0x{:02x} at line {}, column {}", self.byte, self.line, self.column)
+    }
+}
+
+impl std::error::Error for NotUtf8 {}
 
 /// Reads a source file.
 pub fn read(path: &Path) -> Result<String> {
@@ -19,16 +68,15 @@ pub fn read(path: &Path) -> Result<String> {
         let kind = if metadata.is_dir() { "a folder" } else { "a device, a pipe or a socket" };
         return Err(invalid(format!("{kind} is not a source: give a regular file")));
     }
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     // A file may grow after its size is read.
-    let read = File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text);
-    let length = metadata.len().max(text.len() as u64);
+    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    let length = metadata.len().max(bytes.len() as u64);
     if length > MAX_BYTES {
         return Err(invalid(format!("a source of {length} bytes or more: it can have {MAX_BYTES}")));
     }
-    match read {
-        Ok(_) => Ok(text),
-        Err(error) if error.kind() == ErrorKind::InvalidData => Err(Error::new(error.kind(), "the file is not UTF-8")),
-        Err(error) => Err(error),
-    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        Error::new(ErrorKind::InvalidData, NotUtf8::of(error.as_bytes(), valid))
+    })
 }

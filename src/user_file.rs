@@ -11,7 +11,7 @@ use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
 
-use crate::source_file;
+use crate::source_file::{self, NotUtf8};
 
 /// The user files of a draft.
 #[derive(Clone, Debug)]
@@ -52,6 +52,10 @@ fn read_row(
     let folder = Path::new(&*value.span.file).parent().unwrap_or(Path::new(""));
     let file = folder.join(path).display().to_string();
     let text = source_file::read(&folder.join(path)).map_err(|error| {
+        if let Some(found) = NotUtf8::from_error(&error) {
+            sources.push((file.clone(), found.lossy.clone()));
+            return found.diagnostic(&file).label(&value.span, "the description names it here");
+        }
         let message = format!("`{file}` cannot be read: {error}");
         Diagnostic::new(codes::MISSING_FILE, &value.span, message, "paths are relative to the file that names them")
     })?;

@@ -159,7 +159,7 @@ fn list_is_an_array_of_techniques() {
         (&"T4".into(), &"T3".into())
     );
     assert_eq!(row("ab_ll")["targets"]["wgsl"], "T1");
-    let table = fragbuf(&["list"]);
+    let table = fragbuf(&["list", "--wide"]);
     let text = String::from_utf8_lossy(&table.stdout);
     assert!(table.status.success() && text.contains("kplus_array"));
     let headings = text.lines().next().unwrap();

@@ -22,6 +22,7 @@ mod fuzz;
 mod instances;
 mod limits;
 mod memory;
+mod messages;
 mod multisample;
 mod names;
 mod no_op_rows;

@@ -181,7 +181,7 @@ fn no_file_has_a_meaningless_name() {
     }
 }
 
-/// The README's table of techniques is the output of `list`. `INSTA_UPDATE=always` updates it.
+/// The README's table of techniques is the output of `list --wide`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_has_the_computed_table() {
     shows("text", 1, |_| fragbuf_table());
@@ -320,7 +320,7 @@ fn fragbuf(arguments: &[&str], folder: &Path) -> String {
 }
 
 fn fragbuf_table() -> String {
-    fragbuf(&["list"], root())
+    fragbuf(&["list", "--wide"], root())
 }
 
 /// Names and phrases that the project no longer uses. The changelog has their replacements.

@@ -284,7 +284,9 @@ fn every_code_of_user_files_is_covered() {
     let covered: BTreeSet<&str> = BAD.iter().map(|case| case.code).collect();
     let index = |code| codes::ALL.iter().position(|other| *other == code).unwrap();
     for code in &codes::ALL[index(codes::MISSING_FILE)..index(codes::UNKNOWN_TECHNIQUE)] {
-        assert!(covered.contains(code.name) || *code == codes::MISSING_FILE, "no case for {}", code.name);
+        // `messages` has a file that is not UTF-8.
+        let is_elsewhere = [codes::MISSING_FILE, codes::INVALID_ENCODING].contains(code);
+        assert!(covered.contains(code.name) || is_elsewhere, "no case for {}", code.name);
     }
 }
 

@@ -165,6 +165,7 @@ impl Entry {
         let sources = loaded.all_sources();
         let failed = |errors| Error::Description(render(&errors, &sources));
         let variant = loaded.variant.map_err(failed)?;
+        variant.warnings.iter().try_for_each(warn)?;
         let request = Request { targets, form: Form::Program, prefix: "", group };
         let generation = generate(&variant, &request, &registry).map_err(failed)?;
         if let Some((target, missing)) = generation.unsupported.first() {
@@ -179,9 +180,18 @@ impl Entry {
     }
 }
 
+/// Tells cargo to print a warning.
+fn warn(warning: &fragbuf_model::Diagnostic) -> Result<(), Error> {
+    let fragbuf_model::Diagnostic { code, message, span, help, .. } = warning;
+    print(&format!("cargo::warning={span}: {message} [{}]; {help}\n", code.name))
+}
+
 /// Tells cargo to run the build script again if the file changes.
 fn rerun_if_changed(path: &Path) -> Result<(), Error> {
-    let line = format!("cargo::rerun-if-changed={}\n", path.display());
+    print(&format!("cargo::rerun-if-changed={}\n", path.display()))
+}
+
+fn print(line: &str) -> Result<(), Error> {
     std::io::stdout().write_all(line.as_bytes()).map_err(|error| Error::files(Path::new("stdout"), &error))
 }
 

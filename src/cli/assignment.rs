@@ -7,3 +7,15 @@ pub(crate) fn assignment(text: &str) -> Result<(String, String), String> {
         _ => Err("write name=value: an axis (sort=none), an option (sync.limit=9), or k=8".to_owned()),
     }
 }
+
+/// Parses `name=value` of a uniform.
+#[cfg(feature = "pictures")]
+pub(crate) fn uniform(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err(
+            "write name=value: a uniform of the description and its value, as `cut=0.5`, or `tint=1,0,0` for a vector"
+                .to_owned(),
+        ),
+    }
+}

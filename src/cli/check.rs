@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use fragbuf::{Registry, TARGETS, Target, source_file, target};
+use fragbuf::{Registry, Target, source_file};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
 use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
+use super::targets;
 
 /// The choice that counts events that are not losses too, so that every fragment is accounted for.
 const COUNT_ALL: (&str, &str) = ("counters", "all");
@@ -88,7 +89,7 @@ impl Check {
     }
 
     fn check_file(&self, file: &Path) -> Result<ExitCode, Failure> {
-        let source = source_file::read(file).map_err(|error| Failure::files(file, &error))?;
+        let source = source_file::read(file).map_err(|error| Failure::source(file, &error))?;
         let name = file.display().to_string();
         let entry = self.entry.as_deref().unwrap_or_default();
         let shader = Shader {
@@ -170,15 +171,10 @@ impl Check {
     /// Returns the target of `--target`, or the first that supports the variant.
     fn target(&self, variant: &fragbuf::Variant) -> Result<&'static Target, Failure> {
         let Some(name) = &self.target else {
-            let supporting = TARGETS.iter().find(|target| {
-                let mut provides = target.provides.to_vec();
-                provides.push(fragbuf_templates::vocabulary::Feature::OwnEntryPoints);
-                variant.select(&provides).is_ok()
-            });
+            let supporting = targets::supporting(variant).first().copied();
             return supporting.ok_or_else(|| Failure::Usage("no target supports the description".to_owned()));
         };
-        let known = || TARGETS.iter().map(|target| target.name).collect::<Vec<_>>().join(", ");
-        target(name).ok_or_else(|| Failure::Usage(format!("no target `{name}`: give one of {}", known())))
+        targets::named(name)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use serde_json::json;
 
-use super::assignment::assignment;
+use super::assignment::{assignment, uniform};
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
@@ -28,7 +28,7 @@ pub(crate) struct Compare {
     #[arg(long = "set-second", value_name = "NAME=VALUE", value_parser = assignment)]
     set_second: Vec<(String, String)>,
     /// Set a uniform of both descriptions [default: 0]
-    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = assignment)]
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
     uniforms: Vec<(String, String)>,
     #[command(flatten)]
     view: View,
@@ -38,6 +38,9 @@ impl Compare {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let view = &self.view;
         view.check()?;
+        if picture::is_stdout(&view.out) {
+            return Err(Failure::Usage("`compare` prints measurements on stdout: give a file to `--out`".to_owned()));
+        }
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let (scene, opaque) = view.scene_views()?;

@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, manifest, target};
+use fragbuf::{Form, Generation, Registry, Request, generate, manifest};
 
 use super::assignment::assignment;
 use super::input::Input;
-use super::limits;
 use super::output::{self, Failure};
+use super::{limits, stale, targets};
 
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "all"])))]
@@ -39,6 +39,9 @@ pub(crate) struct Generate {
     /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Remove files of an earlier run from the output folder: those that its manifest lists and this run does not write
+    #[arg(long)]
+    clean: bool,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -50,7 +53,7 @@ enum FormArgument {
 impl Generate {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let registry = Registry::builtin();
-        let targets = targets(&self.target)?;
+        let targets = targets::several(&self.target)?;
         let form = match self.form {
             FormArgument::Program => Form::Program,
             FormArgument::Module => Form::Module,
@@ -60,10 +63,13 @@ impl Generate {
         let mut folders: Vec<(PathBuf, Generation)> = Vec::new();
         for argument in self.description.iter().cloned().chain(all) {
             let mut input = Input::read(&argument, &registry)?;
+            if form == Form::Module {
+                input = input.for_module();
+            }
             let variant = input.variant(&self.set, &registry)?;
             let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() && !self.all {
-                return Err(unsupported(&argument, &generation));
+                return Err(targets::unsupported(&argument, &variant, &generation));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));
@@ -75,7 +81,9 @@ impl Generate {
         for (folder, generation) in &folders {
             limits::warn(generation, self.group, &others);
             if !generation.plans.is_empty() {
+                let stale = stale::files(folder, generation);
                 write(folder, generation, self.group)?;
+                stale::report(folder, &stale, self.clean)?;
             }
             for (target, missing) in &generation.unsupported {
                 output::warn(&format!("nothing written for {} in {}: {missing}", target.name, folder.display()));
@@ -87,37 +95,6 @@ impl Generate {
 
 /// The error if no technique can be written for any of the targets.
 const NOTHING: &str = "none of the targets supports a technique in this form: choose other targets, `--form program` or `--group` from 0 to 3";
-
-/// Returns the failure if none of the targets supports the description.
-fn unsupported(description: &str, generation: &Generation) -> Failure {
-    let reasons: Vec<String> =
-        generation.unsupported.iter().map(|(target, missing)| format!("{}: {missing}", target.name)).collect();
-    let span = fragbuf::SourceSpan::new(description, 1, 1);
-    let diagnostic = fragbuf::Diagnostic::new(
-        fragbuf_model::codes::UNSUPPORTED_TARGET,
-        &span,
-        format!("none of the targets supports the description: {}", reasons.join("; ")),
-        "choose other targets, `--form program`, `--group` from 0 to 3, or add `else` alternatives to the axis",
-    );
-    Failure::Description(diagnostic.into(), Vec::new())
-}
-
-fn targets(names: &[String]) -> Result<Vec<&'static Target>, Failure> {
-    if names.iter().any(|name| name == "all") {
-        return Ok(TARGETS.iter().collect());
-    }
-    let mut targets: Vec<&'static Target> = Vec::new();
-    for name in names {
-        let Some(found) = target(name.trim()) else {
-            let known: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-            return Err(Failure::Usage(format!("no target `{name}`: give all, or some of {}", known.join(","))));
-        };
-        if !targets.iter().any(|target| target.name == found.name) {
-            targets.push(found);
-        }
-    }
-    Ok(targets)
-}
 
 /// Parses a prefix: an identifier on every target, without a final underscore. The generator adds the underscore that
 /// separates it from a name.

@@ -3,14 +3,19 @@
 use std::path::Path;
 
 use fragbuf::load::{Description, load};
-use fragbuf::{Registry, Variant, source_file};
+use fragbuf::{Diagnostic, Registry, Variant, source_file};
+use fragbuf_model::codes;
 
-use super::output::Failure;
+use super::output::{self, Failure};
 
 /// A description as given, and the sources that its diagnostics quote.
 pub(crate) struct Input {
     description: Description,
     sources: Vec<(String, String)>,
+    /// The warnings that are printed already: `render` loads a description once per redraw.
+    warned: Vec<Diagnostic>,
+    /// Whether the caller's own shader may read attributes that the description does not.
+    is_module: bool,
 }
 
 impl Input {
@@ -20,11 +25,20 @@ impl Input {
         let is_file =
             path.extension().is_some_and(|extension| extension == "fragbuf") || (path.exists() && !path.is_dir());
         if registry.technique(argument).is_some() || !is_file {
-            return Ok(Input { description: Description::Technique(argument.to_owned()), sources: Vec::new() });
+            return Ok(Input::of(Description::Technique(argument.to_owned())));
         }
-        let text = source_file::read(path).map_err(|error| Failure::files(path, &error))?;
+        let text = source_file::read(path).map_err(|error| Failure::source(path, &error))?;
         let description = Description::Text { file: argument.to_owned(), text };
-        Ok(Input { description, sources: Vec::new() })
+        Ok(Input::of(description))
+    }
+
+    fn of(description: Description) -> Self {
+        Input { description, sources: Vec::new(), warned: Vec::new(), is_module: false }
+    }
+
+    /// Prints no warning of attributes, which the caller's own shader may read.
+    pub(crate) fn for_module(self) -> Self {
+        Input { is_module: true, ..self }
     }
 
     /// Returns the variant, after `--set`.
@@ -41,7 +55,19 @@ impl Input {
     ) -> Result<Variant, Failure> {
         let loaded = load(&self.description, set, defaults, registry);
         self.sources = loaded.all_sources();
-        loaded.variant.map_err(|diagnostics| self.failure(diagnostics))
+        let variant = loaded.variant.map_err(|diagnostics| self.failure(diagnostics))?;
+        self.warn(&variant);
+        Ok(variant)
+    }
+
+    /// Prints the warnings that are not printed yet.
+    fn warn(&mut self, variant: &Variant) {
+        let is_printed = |warning: &&Diagnostic| {
+            !self.warned.contains(warning) && !(self.is_module && warning.code == codes::UNUSED_ATTRIBUTE)
+        };
+        let new: Vec<Diagnostic> = variant.warnings.iter().filter(is_printed).cloned().collect();
+        output::warnings(&new.iter().cloned().collect(), &self.sources);
+        self.warned.extend(new);
     }
 
     /// Returns the failure for `diagnostics`, with the sources of this input.

@@ -12,11 +12,14 @@ pub(crate) struct List {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
+    /// Print every column, one line per technique: tiers per target, features and papers, too
     #[arg(long, conflicts_with = "json")]
+    wide: bool,
+    /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
+    #[arg(long, conflicts_with_all = ["json", "wide"])]
     table_1: bool,
     /// Print the axes and their values as Markdown, the default value of each axis first
-    #[arg(long, conflicts_with_all = ["json", "table_1"])]
+    #[arg(long, conflicts_with_all = ["json", "wide", "table_1"])]
     axes: bool,
 }
 
@@ -31,7 +34,11 @@ impl List {
         }
         let rows: Vec<Value> =
             registry.techniques().iter().map(|technique| row(technique, &registry)).collect::<Result<_, _>>()?;
-        output::print(&if self.json { output::json(&Value::from(rows)) } else { table(&rows) })
+        output::print(&match (self.json, self.wide) {
+            (true, _) => output::json(&Value::from(rows)),
+            (false, true) => table(HEADINGS, &rows.iter().map(cells).collect::<Vec<_>>()),
+            (false, false) => narrow(&rows),
+        })
     }
 }
 
@@ -142,28 +149,74 @@ const FIELDS: [&str; 12] = [
     "paper",
     "summary",
 ];
-const LAST: usize = 11;
 
-/// Returns the table of techniques, one line each.
-fn table(rows: &[Value]) -> String {
+/// Returns the cells of a technique, in the order of [`FIELDS`].
+fn cells(row: &Value) -> [String; 12] {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let mut lines = vec![HEADINGS.map(str::to_owned)];
-    for row in rows {
-        let tiers = row["targets"].as_object().map(grouped).unwrap_or_default();
-        let cells = FIELDS.map(|field| if field == "tiers" { tiers.clone() } else { text(&row[field]) });
-        lines.push(cells);
+    let tiers = row["targets"].as_object().map(grouped).unwrap_or_default();
+    FIELDS.map(|field| if field == "tiers" { tiers.clone() } else { text(&row[field]) })
+}
+
+/// Returns a table with aligned columns.
+fn table<const COLUMNS: usize>(headings: [&str; COLUMNS], rows: &[[String; COLUMNS]]) -> String {
+    let lines: Vec<[String; COLUMNS]> =
+        std::iter::once(headings.map(str::to_owned)).chain(rows.iter().cloned()).collect();
+    let width = |column: usize| lines.iter().filter_map(|line| line.get(column)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..COLUMNS).map(|column| width(column).unwrap_or(0)).collect();
+    let line = |cells: &[String; COLUMNS]| {
+        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+        format!("{}\n", padded.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    lines.iter().map(line).collect()
+}
+
+/// The width of a terminal that shows the table without `--wide`.
+const WIDTH: usize = 80;
+
+/// Returns the table that fits a terminal: a line of numbers per technique, and its summary below.
+fn narrow(rows: &[Value]) -> String {
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    let columns = ["key", "words_per_pixel", "draws", "passes", "deterministic"];
+    let numbers: Vec<[String; 6]> = rows
+        .iter()
+        .map(|row| {
+            let [key, words, draws, passes, deterministic] = columns.map(|field| text(&row[field]));
+            [key, words, draws, passes, deterministic, row["targets"].as_object().map(range).unwrap_or_default()]
+        })
+        .collect();
+    let table = table(["key", "words/pixel", "draws", "passes", "deterministic", "tiers"], &numbers);
+    let mut lines = table.lines();
+    let mut out = format!("{}\n", lines.next().unwrap_or_default());
+    for (line, row) in lines.zip(rows) {
+        out.push_str(&format!("{line}\n{}", indented(&text(&row["summary"]))));
     }
-    let widths: Vec<usize> =
-        (0..LAST).map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0)).collect();
-    let mut out = String::new();
-    for line in lines {
-        for (cell, width) in line.iter().zip(&widths) {
-            out.push_str(&format!("{cell:width$}  "));
-        }
-        out.push_str(&line[LAST]);
-        out.push('\n');
-    }
+    out.push_str("\n`fragbuf list --wide` shows the tiers per target, the features and the papers.\n");
     out
+}
+
+/// Breaks a text into indented lines.
+fn indented(text: &str) -> String {
+    const INDENT: &str = "    ";
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= WIDTH) {
+            Some(line) => line.push_str(&format!(" {word}")),
+            None => lines.push(format!("{INDENT}{word}")),
+        }
+    }
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// Returns the best and the worst tier of the targets, with a mark if some do not support the technique: `T2-T4`, `T1 (not all)`.
+fn range(targets: &Map<String, Value>) -> String {
+    let mut tiers: Vec<&str> = targets.values().filter_map(Value::as_str).filter(|tier| TIERS.contains(tier)).collect();
+    let mark = if tiers.len() < targets.len() { " (not all)" } else { "" };
+    tiers.sort_unstable();
+    match (tiers.first(), tiers.last()) {
+        (Some(best), Some(worst)) if best != worst => format!("{best}-{worst}{mark}"),
+        (Some(only), _) => format!("{only}{mark}"),
+        (None, _) => "none".to_owned(),
+    }
 }
 
 /// Groups targets by tier: `T3 glsl spirv, T4 wgsl, no msl`. Unsupported targets are last.

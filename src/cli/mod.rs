@@ -8,15 +8,18 @@ mod attributes;
 mod check;
 #[cfg(feature = "pictures")]
 mod compare;
+mod completions;
 #[cfg(feature = "pictures")]
 mod device;
 #[cfg(feature = "pictures")]
 mod devices;
+mod explain;
 mod generate;
 mod input;
 mod language;
 mod limits;
 mod list;
+mod manual;
 #[cfg(feature = "pictures")]
 mod memory;
 mod output;
@@ -30,9 +33,11 @@ mod render;
 #[cfg(feature = "pictures")]
 mod rendering;
 mod show;
+mod stale;
 #[cfg(feature = "pictures")]
 mod statistics;
 mod table_1;
+mod targets;
 #[cfg(feature = "pictures")]
 mod uniforms;
 #[cfg(feature = "pictures")]
@@ -42,11 +47,17 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use output::Failure;
+use output::{ColorChoice, Failure, MessageFormat};
 
 #[derive(Parser)]
 #[command(name = "fragbuf", version, about = "Fragment buffers as GPU passes in WGSL, GLSL and SPIR-V")]
 struct Arguments {
+    /// Format of errors and warnings on stderr
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT")]
+    message_format: MessageFormat,
+    /// Colours of errors and warnings. `auto`: on a terminal, unless the environment has NO_COLOR
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    message_color: ColorChoice,
     #[command(subcommand)]
     command: Command,
 }
@@ -59,6 +70,8 @@ enum Command {
     Show(show::Show),
     /// Print the reference of the closure language
     Language(language::Language),
+    /// Explain a diagnostic: its cause, an example and the fix
+    Explain(explain::Explain),
     /// Write the passes of a description, or of every technique, for one or more targets
     Generate(generate::Generate),
     /// Check a technique against its specification in every interleaving of the fragments of one pixel
@@ -72,13 +85,22 @@ enum Command {
     /// List the devices that can render
     #[cfg(feature = "pictures")]
     Devices(devices::Devices),
+    /// Print the completions for a shell
+    Completions(completions::Completions),
+    /// Print the manual page, or write one page per command
+    Man(manual::Manual),
 }
 
 pub(crate) fn run() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let arguments = Arguments::parse();
+    output::set_messages(arguments.message_format, arguments.message_color);
+    let result = match arguments.command {
         Command::List(list) => list.run(),
         Command::Show(show) => show.run(),
         Command::Language(language) => language.run(),
+        Command::Explain(explain) => explain.run(),
+        Command::Completions(completions) => completions.run(),
+        Command::Man(manual) => manual.run(),
         Command::Generate(generate) => generate.run(),
         Command::Check(check) => return check.run().unwrap_or_else(Failure::report),
         #[cfg(feature = "pictures")]

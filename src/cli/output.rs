@@ -1,11 +1,87 @@
 //! Writes text to stdout, and failures to stderr with their exit code.
 
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
-use fragbuf::report::render;
-use fragbuf_model::Diagnostics;
+use fragbuf::report::{self, render, render_colored};
+use fragbuf::source_file::NotUtf8;
+use fragbuf_model::{Diagnostics, nearest_name};
+use serde_json::json;
+
+/// The format of messages on stderr.
+#[derive(Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum MessageFormat {
+    /// For people
+    #[default]
+    Text,
+    /// One JSON object per line
+    Json,
+}
+
+/// The use of colours.
+#[derive(Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ColorChoice {
+    /// On a terminal, unless the environment has NO_COLOR
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// How messages are written: the options of every command.
+static MESSAGES: OnceLock<(MessageFormat, bool)> = OnceLock::new();
+
+/// Sets how messages are written, once per process.
+pub(crate) fn set_messages(format: MessageFormat, color: ColorChoice) {
+    let has = |variable: &str, value: Option<&str>| {
+        std::env::var_os(variable).is_some_and(|found| value.map_or(!found.is_empty(), |value| found == value))
+    };
+    let is_colored = match color {
+        ColorChoice::Always => true,
+        ColorChoice::Never => false,
+        ColorChoice::Auto => std::io::stderr().is_terminal() && !has("NO_COLOR", None) && !has("TERM", Some("dumb")),
+    };
+    // The first call alone counts.
+    let _ = MESSAGES.set((format, is_colored));
+}
+
+fn messages() -> (MessageFormat, bool) {
+    MESSAGES.get().copied().unwrap_or_default()
+}
+
+/// Formats diagnostics as the options of the command request.
+fn diagnostics_text(diagnostics: &Diagnostics, sources: &[(String, String)]) -> String {
+    match messages() {
+        (MessageFormat::Json, _) => {
+            diagnostics.iter().map(|diagnostic| format!("{}\n", report::json(diagnostic))).collect()
+        }
+        (MessageFormat::Text, true) => render_colored(diagnostics, sources),
+        (MessageFormat::Text, false) => render(diagnostics, sources),
+    }
+}
+
+/// Formats a message without a place in a source.
+fn message_text(severity: &str, code: Option<&str>, text: &str) -> String {
+    let label = code.map_or(severity.to_owned(), |code| format!("{severity}[{code}]"));
+    match messages() {
+        (MessageFormat::Json, _) => format!("{}\n", json!({ "severity": severity, "code": code, "message": text })),
+        (MessageFormat::Text, false) => format!("{label}: {text}\n"),
+        (MessageFormat::Text, true) => {
+            let color = if severity == "error" { 31 } else { 33 };
+            format!("\x1b[1;{color}m{label}\x1b[0m: {text}\n")
+        }
+    }
+}
+
+/// Prints the warnings about a description on stderr.
+pub(crate) fn warnings(diagnostics: &Diagnostics, sources: &[(String, String)]) {
+    // Ignore the error: there is no other stream to report it on.
+    let _ = std::io::stderr().write_all(diagnostics_text(diagnostics, sources).as_bytes());
+}
 
 /// The reason why a command failed.
 pub(crate) enum Failure {
@@ -31,20 +107,37 @@ impl Failure {
         Failure::Files(format!("{}: {error}", path.display()))
     }
 
+    /// Returns the failure for an error that [`fragbuf::source_file::read`] returns for `path`.
+    pub(crate) fn source(path: &Path, error: &std::io::Error) -> Self {
+        let file = path.display().to_string();
+        match NotUtf8::from_error(error) {
+            Some(found) => Failure::Description(found.diagnostic(&file).into(), vec![(file, found.lossy.clone())]),
+            None => Failure::files(path, error),
+        }
+    }
+
+    /// Returns the failure for an unknown name of a `kind`: the nearest of the known names, and all of them.
+    pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> Self {
+        let nearest = nearest_name(name, known).map_or(String::new(), |nearest| format!("did you mean `{nearest}`? "));
+        Failure::Usage(format!("no {kind} `{name}`: {nearest}give one of {}", known.join(", ")))
+    }
+
     /// Prints the failure on stderr and returns its exit code.
     pub(crate) fn report(self) -> ExitCode {
         let (text, code) = match self {
-            Failure::Description(diagnostics, sources) => (render(&diagnostics, &sources), 1),
-            Failure::Usage(text) => (format!("error: {text}\n"), 2),
-            Failure::Files(text) => (format!("error: {text}\n"), 3),
-            Failure::Input(text) => (format!("error: {text}\n"), 1),
+            Failure::Description(diagnostics, sources) => (diagnostics_text(&diagnostics, &sources), 1),
+            Failure::Usage(text) => (message_text("error", None, &text), 2),
+            Failure::Files(text) => (message_text("error", None, &text), 3),
+            Failure::Input(text) => (message_text("error", None, &text), 1),
             #[cfg(feature = "pictures")]
             Failure::Model(warnings) => {
-                let lines = warnings.iter().map(|warning| format!("error[{}]: {warning}\n", warning.kind.code()));
-                (lines.collect(), 1)
+                let line = |warning: &fragbuf_scene::Warning| {
+                    message_text("error", Some(warning.kind.code()), &warning.to_string())
+                };
+                (warnings.iter().map(line).collect(), 1)
             }
             #[cfg(feature = "pictures")]
-            Failure::Device(text) => (format!("error: {text}\n"), 3),
+            Failure::Device(text) => (message_text("error", None, &text), 3),
         };
         // Ignore the error: there is no other stream to report it on.
         let _ = std::io::stderr().write_all(text.as_bytes());
@@ -95,14 +188,14 @@ impl From<fragbuf_runtime::Error> for Failure {
 /// Prints a warning on stderr.
 pub(crate) fn warn(text: &str) {
     // Ignore the error: there is no other stream to report it on.
-    let _ = writeln!(std::io::stderr(), "warning: {text}");
+    let _ = std::io::stderr().write_all(message_text("warning", None, text).as_bytes());
 }
 
 /// Prints a warning with its code on stderr.
 #[cfg(feature = "pictures")]
 pub(crate) fn warn_code(code: &str, text: &str) {
     // Ignore the error: there is no other stream to report it on.
-    let _ = writeln!(std::io::stderr(), "warning[{code}]: {text}");
+    let _ = std::io::stderr().write_all(message_text("warning", Some(code), text).as_bytes());
 }
 
 /// Writes to stdout. A closed pipe (`| head`) is not a failure.

@@ -1,7 +1,7 @@
 //! Blends colours over a background, encodes them and writes them as a PNG, pixel by pixel: there is no second image in memory.
 
 use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::{BufWriter, IsTerminal as _, Write};
 use std::path::Path;
 
 use super::output::Failure;
@@ -33,6 +33,11 @@ fn srgb(value: f32) -> f32 {
     if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// Tests whether a path of `--out` is stdout.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 /// Writes values from 0 to 1 to a PNG, as 8 bits each: those of one pixel after the other, row by row from the top.
 pub(crate) fn write(
     path: &Path,
@@ -41,7 +46,16 @@ pub(crate) fn write(
     linear: bool,
 ) -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Files(format!("{}: {error}", path.display()));
-    let file = File::create(path).map_err(|error| Failure::files(path, &error))?;
+    let file: Box<dyn Write> = if is_stdout(path) {
+        if std::io::stdout().is_terminal() {
+            return Err(Failure::Usage(
+                "a terminal does not show a PNG: redirect stdout, or give a file to `--out`".to_owned(),
+            ));
+        }
+        Box::new(std::io::stdout().lock())
+    } else {
+        Box::new(File::create(path).map_err(|error| Failure::files(path, &error))?)
+    };
     let mut file = BufWriter::new(file);
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgba);

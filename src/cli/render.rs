@@ -1,6 +1,6 @@
 //! `fragbuf render`: renders a scene through one description and prints the statistics of its frame.
 
-use super::assignment::assignment;
+use super::assignment::{assignment, uniform};
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
@@ -17,7 +17,7 @@ pub(crate) struct Render {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
     /// Set a uniform of the description [default: 0]
-    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = assignment)]
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
     uniforms: Vec<(String, String)>,
     #[command(flatten)]
     view: View,

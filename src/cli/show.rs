@@ -6,7 +6,7 @@ use fragbuf::{Form, Generation, Registry, Request, TARGETS, Target, generate, ma
 use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
-use super::page;
+use super::{page, targets};
 
 #[derive(clap::Args)]
 pub(crate) struct Show {
@@ -38,8 +38,8 @@ impl Show {
         let one: Vec<&'static Target> = target(stage).into_iter().collect();
         let all: Vec<&'static Target> = TARGETS.iter().collect();
         if one.is_empty() && !["plan", "manifest", "summary", "page"].contains(&stage) {
-            let names: Vec<&str> = all.iter().map(|target| target.name).collect();
-            return Err(Failure::Usage(format!("no stage `{stage}`: give plan, manifest, {}", names.join(", "))));
+            let known: Vec<&str> = ["plan", "manifest"].into_iter().chain(targets::names()).collect();
+            return Err(Failure::unknown("stage", stage, &known));
         }
         if stage == "spirv" {
             return Err(Failure::Usage("SPIR-V is binary: write it with `generate --target spirv`".to_owned()));
@@ -49,6 +49,9 @@ impl Show {
         let targets = if one.is_empty() { &all } else { &one };
         let request = Request { targets, form: Form::Program, prefix: "", group: 0 };
         let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
+        if !one.is_empty() && generation.plans.is_empty() {
+            return Err(targets::unsupported(&self.description, &variant, &generation));
+        }
         output::print(&match stage {
             "manifest" => output::json(&manifest(&generation, 0)),
             "plan" => plans(&generation),

@@ -2,7 +2,7 @@
 
 use fragbuf::Variant;
 use fragbuf_frame::Value;
-use fragbuf_model::UniformType;
+use fragbuf_model::{UniformType, nearest_name};
 
 use super::output::Failure;
 
@@ -11,8 +11,11 @@ pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Ve
     let value = |(name, text): &(String, String)| {
         let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
             let names: Vec<&str> = variant.uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-            let known =
-                if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
+            let known = match (nearest_name(name, &names), names.is_empty()) {
+                (_, true) => "it has none".to_owned(),
+                (Some(nearest), false) => format!("did you mean `{nearest}`? it has {}", names.join(", ")),
+                (None, false) => format!("it has {}", names.join(", ")),
+            };
             return Err(Failure::Usage(format!("the description has no uniform `{name}`: {known}")));
         };
         let kind = uniform.kind.value;

@@ -1,13 +1,15 @@
 //! The arguments that `render` and `compare` share: the scene, the camera, the device and the output file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fragbuf_cpu::FragmentOrder;
+use fragbuf_model::nearest_name;
 use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
 use super::device::{self, DeviceRequest, SelectedDevice};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
+use super::picture;
 
 #[derive(clap::Args)]
 pub(crate) struct View {
@@ -21,8 +23,8 @@ pub(crate) struct View {
     /// Size of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// PNG file to write
-    #[arg(long, value_name = "PNG")]
+    /// PNG file to write, or `-` for stdout
+    #[arg(long, value_name = "PNG|-", value_parser = picture_path)]
     pub(crate) out: PathBuf,
     /// Three-quarter view of the whole scene, or positions used as clip-space positions
     #[arg(long, value_enum, default_value_t = CameraArgument::Auto)]
@@ -152,17 +154,49 @@ impl View {
         self.device.select(self.order)
     }
 
-    /// Checks the names of generated scenes, before any scene is loaded.
+    /// Checks the names of generated scenes and the output, before any scene is loaded.
     pub(crate) fn check(&self) -> Result<(), Failure> {
+        if picture::is_stdout(&self.out) && self.json {
+            return Err(Failure::Usage(
+                "`--out -` and `--json` both write to stdout: give a file for one of them".to_owned(),
+            ));
+        }
         std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
     }
 }
 
 fn check(scene: &str) -> Result<(), Failure> {
-    if let Some(name) = scene.strip_prefix("builtin:") {
-        name.parse::<fragbuf_scene::BuiltinScene>()?;
+    let names: Vec<&str> = BUILTIN_SCENES.iter().map(|row| row.name).collect();
+    // Parameters follow the name.
+    let first = |text: &str| text.split(',').next().unwrap_or_default().to_owned();
+    let Some(name) = scene.strip_prefix("builtin:") else {
+        let nearest = nearest_name(&first(scene), &names).filter(|_| !Path::new(scene).exists());
+        return match nearest {
+            Some(nearest) => {
+                Err(Failure::Usage(format!("no file `{scene}`: did you mean the scene `builtin:{nearest}`?")))
+            }
+            None => Ok(()),
+        };
+    };
+    match (name.parse::<fragbuf_scene::BuiltinScene>(), nearest_name(&first(name), &names)) {
+        (Err(error), Some(nearest)) if !names.contains(&first(name).as_str()) => {
+            Err(Failure::Usage(format!("{error}; did you mean `builtin:{nearest}`?")))
+        }
+        (parsed, _) => Ok(parsed.map(|_| ())?),
     }
-    Ok(())
+}
+
+/// Parses the path of a PNG.
+fn picture_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_png = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("png");
+    match path.extension() {
+        Some(extension) if !is_png(extension) => Err(format!(
+            "images are written as PNG: write `{}`, or `-` for stdout",
+            path.with_extension("png").display()
+        )),
+        _ => Ok(path),
+    }
 }
 
 /// Returns the list of generated scenes that the help shows.

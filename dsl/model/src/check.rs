@@ -7,6 +7,7 @@ mod extra_words;
 mod option_minimums;
 mod payload;
 mod suggestion;
+mod unused;
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
@@ -35,6 +36,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         let given = description_values(&attributes, criterion, keep);
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
+    let warnings = unused::warnings(draft, &choices);
     let variant = Variant::new(Description {
         name: draft.name.clone(),
         technique: technique.map(|technique| technique.key.clone()),
@@ -46,6 +48,7 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         resolve: draft.resolve.clone(),
         helpers: draft.helpers.clone(),
         choices,
+        warnings,
     });
     diagnostics.into_result(variant)
 }

@@ -1,4 +1,4 @@
-//! The errors in a description: each has a code, a span in the user's source, and a help text.
+//! The errors and warnings about a description: each has a code, a span in the user's source, and a help text.
 //!
 //! Stages collect all errors; none stops at the first. The command line shows diagnostics with source lines, and the macro
 //! turns them into compiler errors; `Display` gives the plain form.
@@ -7,16 +7,37 @@ use std::fmt;
 
 use crate::SourceSpan;
 
-/// A kind of error. Its name is stable between versions.
+/// A kind of error or warning. Its name is stable between versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Code {
     /// The name, in kebab-case.
     pub name: &'static str,
     /// One sentence that describes the error in general.
     pub meaning: &'static str,
+    /// Whether it is an error.
+    pub severity: Severity,
 }
 
-/// One error.
+/// The severity of a diagnostic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// The description is invalid.
+    Error,
+    /// The description is valid, and a part of it has no effect.
+    Warning,
+}
+
+impl Severity {
+    /// Returns the word before a message.
+    pub fn name(self) -> &'static str {
+        match self {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        }
+    }
+}
+
+/// One error or warning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// The kind.
@@ -46,6 +67,11 @@ impl Diagnostic {
         Diagnostic { code, message: message.into(), span: span.clone(), labels: Vec::new(), help: help.into() }
     }
 
+    /// Returns its severity: that of its code.
+    pub fn severity(&self) -> Severity {
+        self.code.severity
+    }
+
     /// Adds a further span that explains the error.
     pub fn label(mut self, span: &SourceSpan, text: impl Into<String>) -> Self {
         self.labels.push(Label { span: span.clone(), text: text.into() });
@@ -55,7 +81,7 @@ impl Diagnostic {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "error[{}]: {}", self.code.name, self.message)?;
+        writeln!(f, "{}[{}]: {}", self.severity().name(), self.code.name, self.message)?;
         writeln!(f, "  --> {}", self.span)?;
         for label in &self.labels {
             writeln!(f, "  --> {}: {}", label.span, label.text)?;
@@ -106,6 +132,14 @@ impl Diagnostics {
     }
 }
 
+impl FromIterator<Diagnostic> for Diagnostics {
+    fn from_iter<I: IntoIterator<Item = Diagnostic>>(found: I) -> Self {
+        let mut diagnostics = Diagnostics::new();
+        found.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
+        diagnostics
+    }
+}
+
 impl From<Diagnostic> for Diagnostics {
     fn from(diagnostic: Diagnostic) -> Self {
         Diagnostics(vec![diagnostic])
@@ -132,57 +166,67 @@ impl fmt::Display for Diagnostics {
 }
 
 macro_rules! codes {
-    ($($constant:ident $name:literal $meaning:literal;)*) => {
-        /// The kinds of errors, one constant each.
+    ($($severity:ident { $($constant:ident $name:literal $meaning:literal;)* })*) => {
+        /// The kinds of errors and warnings, one constant each.
         pub mod codes {
-            use super::Code;
-            $(#[doc = $meaning] pub const $constant: Code = Code { name: $name, meaning: $meaning };)*
+            use super::{Code, Severity};
+            $($(#[doc = $meaning] pub const $constant: Code =
+                Code { name: $name, meaning: $meaning, severity: Severity::$severity };)*)*
             /// All codes.
-            pub const ALL: &[Code] = &[$($constant),*];
+            pub const ALL: &[Code] = &[$($($constant),*),*];
         }
     };
 }
 
 codes! {
-    // Tokens and grammar.
-    INVALID_TOKEN "invalid-token" "The source has a token that Rust does not have, or an unmatched bracket.";
-    UNEXPECTED_TOKEN "unexpected-token" "The grammar expects another token here.";
-    MISSING_BUFFER "missing-buffer" "A description is one `buffer Name { … }`.";
-    DUPLICATE "duplicate" "A name, a built-in value, a block or an axis is given twice.";
-    UNKNOWN_FORMAT "unknown-format" "There is no format or uniform type of this name.";
-    NAME_RESERVED "name-reserved" "The name is reserved for the language or generated code.";
-    // Closures: the Rust subset.
-    UNSUPPORTED "unsupported" "Rust has this construct, but the language does not.";
-    UNKNOWN_NAME "unknown-name" "No variable, function or type of this name is in scope.";
-    UNKNOWN_FIELD "unknown-field" "The value has no field of this name.";
-    UNKNOWN_METHOD "unknown-method" "The language has no method of this name on this type.";
-    METHOD_DIFFERS "method-differs" "The method has another meaning in Rust than in shader languages.";
-    TYPE_MISMATCH "type-mismatch" "The value has another type than expected.";
-    ARGUMENT_COUNT "argument-count" "The call has too many or too few arguments.";
-    NOT_MUTABLE "not-mutable" "Only a variable declared with `let mut` can be assigned.";
-    UNBOUNDED_LOOP "unbounded-loop" "The range of a `for` loop must have an upper bound.";
-    RECURSION "recursion" "Shader functions must not call themselves, directly or through other functions.";
-    MISSING_VALUE "missing-value" "Not every path returns the expected value.";
-    OUT_OF_RANGE "out-of-range" "The number is out of the range of its type.";
-    // User files, and the row in their header.
-    MISSING_FILE "missing-file" "A file that the description names cannot be read.";
-    INVALID_ROW "invalid-row" "A line of the row in the file header is invalid.";
-    UNKNOWN_CAPABILITY "unknown-capability" "There is no capability of this name.";
-    UNKNOWN_RESOURCE "unknown-resource" "The row declares no buffer of this name.";
-    CONTRACT_MISMATCH "contract-mismatch" "The file does not implement the contract of its axis.";
-    INVALID_WGSL "invalid-wgsl" "The file is not valid WGSL together with the other sources.";
-    // The description as a whole.
-    UNKNOWN_TECHNIQUE "unknown-technique" "The registry has no technique of this name.";
-    UNKNOWN_AXIS "unknown-axis" "The registry has no axis of this name.";
-    UNKNOWN_VALUE "unknown-value" "The axis has no value of this name.";
-    UNKNOWN_OPTION "unknown-option" "The value has no option of this name.";
-    INVALID_OPTION "invalid-option" "The option's value is outside its range.";
-    K_OUT_OF_RANGE "k-out-of-range" "The number of kept fragments is out of range.";
-    MISSING_DEPTH "missing-depth" "A fragment needs `depth: f32`: the kept fragments are sorted by it.";
-    MISSING_STORAGE "missing-storage" "Neither the description nor a preset chooses a storage.";
-    MISSING_CAPABILITY "missing-capability" "A choice requires something that neither the other choices nor the description provide.";
-    KEEP_MISMATCH "keep-mismatch" "The storage keeps k fragments and the description all, or the reverse.";
-    UNSUPPORTED_TARGET "unsupported-target" "The target cannot express the variant.";
-    // Defects of fragbuf.
-    INTERNAL "internal" "Generated source is invalid; this is a defect of fragbuf, not of the description.";
+    Error {
+        // Tokens and grammar.
+        INVALID_TOKEN "invalid-token" "The source has a token that Rust does not have, or an unmatched bracket.";
+        UNEXPECTED_TOKEN "unexpected-token" "The grammar expects another token here.";
+        MISSING_BUFFER "missing-buffer" "A description is one `buffer Name { … }`.";
+        DUPLICATE "duplicate" "A name, a built-in value, a block or an axis is given twice.";
+        UNKNOWN_FORMAT "unknown-format" "There is no format or uniform type of this name.";
+        NAME_RESERVED "name-reserved" "The name is reserved for the language or generated code.";
+        // Closures: the Rust subset.
+        UNSUPPORTED "unsupported" "Rust has this construct, but the language does not.";
+        UNKNOWN_NAME "unknown-name" "No variable, function or type of this name is in scope.";
+        UNKNOWN_FIELD "unknown-field" "The value has no field of this name.";
+        UNKNOWN_METHOD "unknown-method" "The language has no method of this name on this type.";
+        METHOD_DIFFERS "method-differs" "The method has another meaning in Rust than in shader languages.";
+        TYPE_MISMATCH "type-mismatch" "The value has another type than expected.";
+        ARGUMENT_COUNT "argument-count" "The call has too many or too few arguments.";
+        NOT_MUTABLE "not-mutable" "Only a variable declared with `let mut` can be assigned.";
+        UNBOUNDED_LOOP "unbounded-loop" "The range of a `for` loop must have an upper bound.";
+        RECURSION "recursion" "Shader functions must not call themselves, directly or through other functions.";
+        MISSING_VALUE "missing-value" "Not every path returns the expected value.";
+        OUT_OF_RANGE "out-of-range" "The number is out of the range of its type.";
+        // User files, and the row in their header.
+        MISSING_FILE "missing-file" "A file that the description names cannot be read.";
+        INVALID_ENCODING "invalid-encoding" "The file is not UTF-8.";
+        INVALID_ROW "invalid-row" "A line of the row in the file header is invalid.";
+        UNKNOWN_CAPABILITY "unknown-capability" "There is no capability of this name.";
+        UNKNOWN_RESOURCE "unknown-resource" "The row declares no buffer of this name.";
+        CONTRACT_MISMATCH "contract-mismatch" "The file does not implement the contract of its axis.";
+        INVALID_WGSL "invalid-wgsl" "The file is not valid WGSL together with the other sources.";
+        // The description as a whole.
+        UNKNOWN_TECHNIQUE "unknown-technique" "The registry has no technique of this name.";
+        UNKNOWN_AXIS "unknown-axis" "The registry has no axis of this name.";
+        UNKNOWN_VALUE "unknown-value" "The axis has no value of this name.";
+        UNKNOWN_OPTION "unknown-option" "The value has no option of this name.";
+        INVALID_OPTION "invalid-option" "The option's value is outside its range.";
+        K_OUT_OF_RANGE "k-out-of-range" "The number of kept fragments is out of range.";
+        MISSING_DEPTH "missing-depth" "A fragment needs `depth: f32`: the kept fragments are sorted by it.";
+        MISSING_STORAGE "missing-storage" "Neither the description nor a preset chooses a storage.";
+        MISSING_CAPABILITY "missing-capability" "A choice requires something that neither the other choices nor the description provide.";
+        KEEP_MISMATCH "keep-mismatch" "The storage keeps k fragments and the description all, or the reverse.";
+        UNSUPPORTED_TARGET "unsupported-target" "The target cannot express the variant.";
+        // Defects of fragbuf.
+        INTERNAL "internal" "Generated source is invalid; this is a defect of fragbuf, not of the description.";
+    }
+    Warning {
+        UNUSED_ATTRIBUTE "unused-attribute" "Neither a closure nor a choice reads the attribute, but every fragment stores it.";
+        UNUSED_UNIFORM "unused-uniform" "No closure reads the uniform.";
+        UNUSED_FUNCTION "unused-function" "No closure calls the function.";
+        UNUSED_VARIABLE "unused-variable" "No expression reads the variable.";
+    }
 }

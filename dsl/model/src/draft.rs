@@ -26,6 +26,17 @@ pub struct Draft {
     pub resolve: Option<UserFunction>,
     /// Helper functions that closures call, in the user's order.
     pub helpers: Vec<UserFunction>,
+    /// Names that no closure uses, in the order of the source.
+    pub unused: Vec<Spanned<Unused>>,
+}
+
+/// A name that no closure uses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unused {
+    /// A helper function.
+    Function(String),
+    /// A variable of a closure or a function.
+    Variable(String),
 }
 
 impl Draft {
@@ -41,6 +52,7 @@ impl Draft {
             choices: Vec::new(),
             resolve: None,
             helpers: Vec::new(),
+            unused: Vec::new(),
         }
     }
 }

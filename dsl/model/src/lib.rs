@@ -15,9 +15,9 @@ mod user_row;
 mod variant;
 
 pub use check::{MAX_K, check};
-pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, codes};
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes};
 pub use draft::{
-    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, Reads, Uniform, UniformType,
+    Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, Reads, Uniform, UniformType, Unused,
     UserFunction,
 };
 pub use names::mangled;

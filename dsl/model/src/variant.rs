@@ -9,7 +9,7 @@ use fragbuf_templates::vocabulary::{
 };
 
 use crate::check::description_values;
-use crate::{Attribute, SourceSpan, Spanned, Uniform, UserFunction};
+use crate::{Attribute, Diagnostics, SourceSpan, Spanned, Uniform, UserFunction};
 
 /// A checked fragment buffer.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +38,8 @@ pub struct Description {
     pub helpers: Vec<UserFunction>,
     /// One entry per axis, in the order of the axes.
     pub choices: Vec<AxisChoice>,
+    /// What the description declares and nothing uses.
+    pub warnings: Diagnostics,
 }
 
 /// The rows chosen on one axis, in order of preference.

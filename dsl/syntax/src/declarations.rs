@@ -7,7 +7,7 @@ use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType
 
 use crate::names;
 use crate::report::{FIRST, Report};
-use crate::unknown_name;
+use crate::{foreign_names, unknown_name};
 
 /// `name: type`, both as written.
 pub(crate) struct Declaration {
@@ -18,15 +18,24 @@ pub(crate) struct Declaration {
 /// Returns the attributes, and the names of those with an unknown format.
 pub(crate) fn attributes(declarations: Vec<Declaration>, report: &mut Report) -> (Vec<Attribute>, Vec<String>) {
     let formats = Format::ALL.map(|format| (format.keyword(), format));
-    let (known, invalid) = resolve_types(declarations, "attribute", &formats, report);
+    let what = Declared { name: "attribute", foreign: foreign_names::attribute_format };
+    let (known, invalid) = resolve_types(declarations, &what, &formats, report);
     (known.into_iter().map(|(name, format)| Attribute { name, format }).collect(), invalid)
 }
 
 /// Returns the uniforms, and the names of those with an unknown type.
 pub(crate) fn uniforms(declarations: Vec<Declaration>, report: &mut Report) -> (Vec<Uniform>, Vec<String>) {
     let types = UniformType::ALL.map(|ty| (ty.keyword(), ty));
-    let (known, invalid) = resolve_types(declarations, "uniform", &types, report);
+    let what = Declared { name: "uniform", foreign: foreign_names::uniform_type };
+    let (known, invalid) = resolve_types(declarations, &what, &types, report);
     (known.into_iter().map(|(name, kind)| Uniform { name, kind }).collect(), invalid)
+}
+
+/// What a block declares.
+struct Declared {
+    name: &'static str,
+    /// Returns the help for a type of a shading language.
+    foreign: fn(&str) -> Option<String>,
 }
 
 type NamedTypes<T> = Vec<(Spanned<String>, Spanned<T>)>;
@@ -34,7 +43,7 @@ type NamedTypes<T> = Vec<(Spanned<String>, Spanned<T>)>;
 /// Returns each name with its type, without duplicates, and separately the names with an unknown type.
 fn resolve_types<T: Copy>(
     declarations: Vec<Declaration>,
-    what: &str,
+    &Declared { name: what, foreign }: &Declared,
     types: &[(&str, T)],
     report: &mut Report,
 ) -> (NamedTypes<T>, Vec<String>) {
@@ -54,7 +63,7 @@ fn resolve_types<T: Copy>(
             None => {
                 let message = format!("unknown {what} type `{}`", type_name.value);
                 let keywords: Vec<&str> = types.iter().map(|(keyword, _)| *keyword).collect();
-                let help = unknown_name::help(&type_name.value, &keywords);
+                let help = foreign(&type_name.value).unwrap_or_else(|| unknown_name::help(&type_name.value, &keywords));
                 report.error(codes::UNKNOWN_FORMAT, &type_name.span, message, help);
                 invalid.push(name.value);
             }

@@ -3,7 +3,7 @@
 //! Input: a description as written. Output: a [`Draft`] in which every function is type-checked and lowered, and lists
 //! what it reads, including through helpers. A function with an error is reported and omitted.
 
-use fragbuf_model::{Draft, Format, Keep, UserFunction, codes};
+use fragbuf_model::{Draft, Format, Keep, Spanned, Unused, UserFunction, codes};
 
 use crate::check;
 use crate::environment::{Environment, Signature};
@@ -26,6 +26,7 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     reads::reject_recursion(&helpers, report);
     let keep = keep.map(|(count, _)| Keep { count, criterion: None });
     let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
+    draft.unused = unused(&checked, &environment, &helpers);
     for (role, function) in &checked {
         let Some(function) = function else { continue };
         let lowered = lower::function(function, &environment.helpers);
@@ -40,6 +41,22 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
         add_function(&mut draft, role, user);
     }
     draft
+}
+
+/// Returns the helpers that no closure calls, directly or through helpers, and the variables that nothing reads.
+fn unused(
+    checked: &[(Role, Option<Function>)],
+    environment: &Environment,
+    helpers: &[Option<&Function>],
+) -> Vec<Spanned<Unused>> {
+    let closures = checked.iter().filter(|(role, _)| !matches!(role, Role::Helper(_)));
+    let called = reads::called(closures.filter_map(|(_, function)| function.as_ref()), helpers);
+    let signatures = environment.helpers.iter().zip(called).filter(|(_, is_called)| !is_called);
+    let functions =
+        signatures.map(|(helper, _)| Spanned::new(Unused::Function(helper.name.clone()), helper.span.clone()));
+    let variables = checked.iter().filter_map(|(_, function)| function.as_ref()).flat_map(|function| &function.unused);
+    let variables = variables.map(|name| Spanned::new(Unused::Variable(name.value.clone()), name.span.clone()));
+    functions.chain(variables).collect()
 }
 
 fn add_function(draft: &mut Draft, role: &Role, function: UserFunction) {

@@ -62,27 +62,6 @@ pub(crate) fn is_method(name: &str) -> bool {
     METHODS.iter().any(|row| row.name == name)
 }
 
-/// Returns the expression for a function of a shading language.
-pub(crate) fn for_shader_function(name: &str) -> Option<&'static str> {
-    SHADER_FUNCTIONS.iter().find(|(function, _)| *function == name).map(|(_, method)| *method)
-}
-
-/// Functions of shading languages, and the equivalent Rust expressions.
-const SHADER_FUNCTIONS: [(&str, &str); 12] = [
-    ("mix", "a.lerp(b, t)"),
-    ("select", "if condition { a } else { b }"),
-    ("saturate", "x.clamp(0.0, 1.0)"),
-    ("sign", "x.signum()"),
-    ("inversesqrt", "x.sqrt().recip()"),
-    ("inverseSqrt", "x.sqrt().recip()"),
-    ("pow", "x.powf(y)"),
-    ("log", "x.ln()"),
-    ("fma", "a.mul_add(b, c)"),
-    ("radians", "x.to_radians()"),
-    ("degrees", "x.to_degrees()"),
-    ("mod", "x.rem_euclid(y)"),
-];
-
 /// Returns the names of the methods of this type, in the order of the table.
 pub(crate) fn names_on(receiver: Type) -> impl Iterator<Item = &'static str> {
     METHODS.iter().filter(move |row| row.on.contains(&receiver)).map(|row| row.name)

@@ -28,6 +28,20 @@ pub(crate) fn of(function: &Function, helpers: &[Option<&Function>]) -> Reads {
     reads
 }
 
+/// Tests for each helper whether one of the closures calls it, directly or through helpers.
+pub(crate) fn called<'a>(closures: impl Iterator<Item = &'a Function>, helpers: &[Option<&'a Function>]) -> Vec<bool> {
+    let mut called = vec![false; helpers.len()];
+    let mut open: Vec<&Function> = closures.collect();
+    while let Some(function) = open.pop() {
+        for used in &function.uses {
+            let Use::Helper(index, _) = used else { continue };
+            let first = called.get_mut(*index).is_some_and(|seen| !std::mem::replace(seen, true));
+            open.extend(helpers.get(*index).copied().flatten().filter(|_| first));
+        }
+    }
+    called
+}
+
 fn add(names: &mut Vec<String>, name: &str) {
     if !names.iter().any(|other| other == name) {
         names.push(name.to_string());

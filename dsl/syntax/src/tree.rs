@@ -2,7 +2,7 @@
 //!
 //! Input: none; these types are plain data. The type checker creates them; the WGSL printer and constant folding read them.
 
-use fragbuf_model::SourceSpan;
+use fragbuf_model::{SourceSpan, Spanned};
 
 use crate::infer::Inference;
 use crate::methods::Spelling;
@@ -24,6 +24,8 @@ pub(crate) struct Function {
     pub body: Block,
     /// The names outside the function that the body uses, in order.
     pub uses: Vec<Use>,
+    /// The names of `let`s that no expression reads.
+    pub unused: Vec<Spanned<String>>,
     /// The inferred types of numbers.
     pub inference: Inference,
 }
@@ -50,6 +52,8 @@ pub(crate) struct Variable {
     pub annotated: bool,
     pub ty: Type,
     pub span: SourceSpan,
+    /// The number of expressions that read it.
+    pub reads: usize,
 }
 
 /// A use of a name outside the function.

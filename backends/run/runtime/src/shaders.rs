@@ -65,7 +65,10 @@ impl Shaders {
     pub fn from_generation(generation: &Generation, target_name: &str, group: u32) -> Result<Self, Error> {
         let not_generated = || Error::Unsupported {
             what: format!("target `{target_name}` of this generation"),
-            help: "it was not requested, or it is unsupported: see `Generation::unsupported`".to_owned(),
+            help: format!(
+                "it was not requested, or it is unsupported (see `Generation::unsupported`); {}",
+                runnable(generation)
+            ),
         };
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target_name));
         let plan = planned.ok_or_else(not_generated)?.plan.clone();
@@ -78,7 +81,8 @@ impl Shaders {
                 .filter_map(|(stage, name)| stage_of(stage).map(|stage| EntryPoint { name: name.clone(), stage }));
             let entry_points: Vec<EntryPoint> = entry_points.collect();
             if !entry_points.is_empty() {
-                modules.push(Module { pass: file.pass.clone(), entry_points, code: code(&file.path, &file.bytes)? });
+                let code = code(&file.path, &file.bytes, generation)?;
+                modules.push(Module { pass: file.pass.clone(), entry_points, code });
             }
         }
         Ok(Shaders { plan, group, profile, modules })
@@ -148,15 +152,32 @@ fn stage_of(name: &str) -> Option<Stage> {
     }
 }
 
-fn code(path: &str, bytes: &[u8]) -> Result<Code, Error> {
+/// Returns which targets of a generation the runtime can run.
+fn runnable(generation: &Generation) -> String {
+    let is_run = |name: &str| {
+        let of_target = |path: &str| path.ends_with(".wgsl") || path.ends_with(".spv");
+        generation.files.iter().any(|file| file.target == name && of_target(&file.path))
+    };
+    let planned = generation.plans.iter().flat_map(|planned| &planned.targets);
+    let names: Vec<String> =
+        planned.filter(|target| is_run(target.name)).map(|target| format!("`{}`", target.name)).collect();
+    match names.as_slice() {
+        [] => "generate `wgsl`, `wgsl-native` or `spirv`, which wgpu accepts".to_owned(),
+        names => format!("the runtime can run {} of it", names.join(", ")),
+    }
+}
+
+fn code(path: &str, bytes: &[u8], generation: &Generation) -> Result<Code, Error> {
     let source = std::str::from_utf8(bytes);
     match (path.rsplit('.').next(), source) {
         (Some("wgsl"), Ok(source)) => Ok(Code::Wgsl(source.to_owned())),
         (Some("spv"), _) => Ok(Code::SpirV(from_bytes(bytes))),
         _ => Err(Error::Unsupported {
             what: format!("`{path}`"),
-            help: "wgpu accepts WGSL and SPIR-V; compile GLSL to SPIR-V first and fill in `Shaders::modules`"
-                .to_owned(),
+            help: format!(
+                "wgpu accepts WGSL and SPIR-V: {}, or compile GLSL to SPIR-V and fill in `Shaders::modules`",
+                runnable(generation)
+            ),
         }),
     }
 }

@@ -190,14 +190,14 @@ fn most_visible() {
     const NORMAL: u32 = 0;
     fn words(quad: &Quad) -> Words {
         let key = ordered_key(quad.depth - 0.25 * quad.rgba()[3]);
-        vec![key, u32::from_le_bytes(quad.color), quad.depth.to_bits(), NORMAL, quad.id]
+        vec![key, u32::from_le_bytes(quad.color), quad.depth.to_bits(), NORMAL]
     }
     let rules = Rules {
         admits: |quad| quad.depth < FAR,
         words,
         nearer: |quad| {
             let words = words(quad);
-            vec![words[2], words[1], words[4], words[0]]
+            vec![words[2], words[1], words[0]]
         },
         resolve: over,
     };

@@ -1,6 +1,9 @@
 //! A device with the limits of a plan runs it, and a device with fewer storage buffers does not.
 
+use fragbuf_codegen::Form;
 use fragbuf_runtime::{Error, Renderer, Shaders, block_on};
+use fragbuf_targets::{Request, generate, target};
+use fragbuf_templates::Registry;
 
 use crate::stage::{settings, shaders, technique};
 
@@ -56,4 +59,24 @@ fn a_device_with_one_storage_buffer_less_does_not_run_it() {
     assert!(needed >= 3 && with(needed).is_ok(), "{needed}");
     let error = with(needed - 1).unwrap_err();
     assert!(matches!(error, Error::TooLarge { needed: found, .. } if found == needed), "{error}");
+}
+
+/// A generation without the requested target, or with a target that wgpu does not accept: the error names those that it runs.
+#[test]
+fn targets_that_do_not_run_name_others() {
+    let targets = ["glsl", "hlsl", "spirv", "wgsl"].map(|name| target(name).unwrap());
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(&technique("kplus_array", &[]), &request, &Registry::builtin()).unwrap();
+    for name in ["glsl", "hlsl", "msl", "nothing"] {
+        let error = Shaders::from_generation(&generation, name, 0).unwrap_err().to_string();
+        assert!(
+            error.contains("the runtime can run `spirv`, `wgsl`") || error.contains("`wgsl`, `spirv`"),
+            "{name}: {error}"
+        );
+        assert!(!error.contains("`hlsl`, "), "{error}");
+    }
+    let request = Request { targets: &targets[..1], ..request };
+    let generation = generate(&technique("kplus_array", &[]), &request, &Registry::builtin()).unwrap();
+    let error = Shaders::from_generation(&generation, "glsl", 0).unwrap_err().to_string();
+    assert!(error.contains("generate `wgsl`, `wgsl-native` or `spirv`"), "{error}");
 }

@@ -45,6 +45,7 @@ impl Checker<'_, '_, '_> {
         }
         let place = self.expr(expr, None);
         self.require_mutable(&place, &place.span);
+        self.uncount_read(&place);
         place
     }
 

@@ -140,7 +140,9 @@ impl Checker<'_, '_, '_> {
             syn::Pat::Wild(_) => Some(Declaration::Wildcard),
             syn::Pat::Ident(name) if name.by_ref.is_none() && name.subpat.is_none() => {
                 let mutable = name.mutability.is_some();
-                Some(Declaration::Name(self.declare(&name.ident, mutable, annotated, ty)))
+                let id = self.declare(&name.ident, mutable, annotated, ty);
+                self.lets.push(id);
+                Some(Declaration::Name(id))
             }
             _ => {
                 let help = "write one `let` for each value";

@@ -12,7 +12,7 @@ use super::written_types::segments;
 use crate::methods::{self, Spelling};
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
-use crate::unknown_name;
+use crate::{foreign_names, unknown_name};
 
 type Arguments = syn::punctuated::Punctuated<syn::Expr, syn::Token![,]>;
 
@@ -122,16 +122,15 @@ impl Checker<'_, '_, '_> {
         }
         let mut existing: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
         existing.extend(["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"]);
-        let help = match nearest_name(name, &existing) {
+        let help = match (foreign_names::function(name), nearest_name(name, &existing)) {
             _ if self.lookup(name).is_some() => format!("`{name}` is a variable: remove `(…)`"),
-            Some(nearest) => format!("did you mean `{nearest}`?"),
-            None if methods::is_method(name) => {
-                format!("it is a method: write `a.{name}({})`", if arguments.len() > 1 { "b" } else { "" })
+            (Some(instead), _) => instead,
+            (None, Some(nearest)) => format!("did you mean `{nearest}`?"),
+            (None, None) if methods::is_method(name) => {
+                let others = ["b", "c", "d"].get(..arguments.len().saturating_sub(1)).unwrap_or(&["…"]);
+                format!("it is a method: write `a.{name}({})`", others.join(", "))
             }
-            None => match methods::for_shader_function(name) {
-                Some(method) => format!("write `{method}`"),
-                None => format!("declare it in the buffer: `fn {} (x: f32) -> f32 {{ … }}`", last_segment(name)),
-            },
+            (None, None) => format!("declare it in the buffer: `fn {}(x: f32) -> f32 {{ … }}`", last_segment(name)),
         };
         self.report.error(codes::UNKNOWN_NAME, name_span, format!("cannot find function `{name}`"), help);
         Expr::error(span)
@@ -195,9 +194,10 @@ impl Checker<'_, '_, '_> {
             return;
         }
         let existing: Vec<&str> = methods::names_on(ty).collect();
-        let help = match existing.is_empty() {
-            true => format!("{of} has no methods: use operators or fields"),
-            false => unknown_name::help(name, &existing),
+        let help = match foreign_names::function(name) {
+            _ if existing.is_empty() => format!("{of} has no methods: use operators or fields"),
+            Some(instead) => instead,
+            None => unknown_name::help(name, &existing),
         };
         self.report.error(codes::UNKNOWN_METHOD, name_span, format!("no method `{name}` for {of}"), help);
     }

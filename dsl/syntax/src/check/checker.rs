@@ -3,13 +3,13 @@
 //! Input: the environment of the function. Output: variables, scopes and diagnostics. The other files of this folder add
 //! the rules.
 
-use fragbuf_model::{SourceSpan, codes};
+use fragbuf_model::{SourceSpan, Spanned, codes};
 use proc_macro2::Span;
 
 use crate::environment::Environment;
 use crate::infer::Inference;
 use crate::report::Report;
-use crate::tree::{Expr, Use, Variable, VariableId};
+use crate::tree::{Expr, Kind, Use, Variable, VariableId};
 use crate::types::Type;
 
 /// The state of type checking one function.
@@ -31,6 +31,8 @@ pub(super) struct Checker<'e, 'r, 'p> {
     pub integers: Vec<IntegerLiteral>,
     /// Operands of `-`, which must not be unsigned.
     pub negated: Vec<(Type, SourceSpan)>,
+    /// The variables of `let`s.
+    pub lets: Vec<VariableId>,
 }
 
 /// An integer literal.
@@ -57,6 +59,7 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             depth: 0,
             integers: Vec::new(),
             negated: Vec::new(),
+            lets: Vec::new(),
         }
     }
 
@@ -70,7 +73,7 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
         span: &SourceSpan,
     ) -> VariableId {
         let span = span.clone();
-        self.variables.push(Variable { name: name.to_string(), mutable, annotated, ty, span });
+        self.variables.push(Variable { name: name.to_string(), mutable, annotated, ty, span, reads: 0 });
         self.variables.len() - 1
     }
 
@@ -80,6 +83,33 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
         if let Some(scope) = self.scopes.last_mut() {
             scope.push((name, id));
         }
+    }
+
+    /// Counts a read of a variable.
+    pub(super) fn count_read(&mut self, id: VariableId) {
+        if let Some(variable) = self.variables.get_mut(id) {
+            variable.reads += 1;
+        }
+    }
+
+    /// Removes the read that the place of an assignment counted: `x = …` and `x.y += …` do not read `x`.
+    pub(super) fn uncount_read(&mut self, place: &Expr) {
+        match &place.kind {
+            Kind::Variable(id) => {
+                if let Some(variable) = self.variables.get_mut(*id) {
+                    variable.reads = variable.reads.saturating_sub(1);
+                }
+            }
+            Kind::Attribute(base, _) | Kind::Element(base, _) | Kind::Components(base, _) => self.uncount_read(base),
+            _ => {}
+        }
+    }
+
+    /// Returns the names of `let`s that no expression reads, unless they begin with `_`.
+    pub(super) fn unused(&self) -> Vec<Spanned<String>> {
+        let variables = self.lets.iter().filter_map(|id| self.variables.get(*id));
+        let unread = variables.filter(|variable| variable.reads == 0 && !variable.name.starts_with('_'));
+        unread.map(|variable| Spanned::new(variable.name.clone(), variable.span.clone())).collect()
     }
 
     /// Returns the innermost variable of this name.

@@ -9,7 +9,7 @@ use super::checker::Checker;
 use super::mismatch::quoted;
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
-use crate::unknown_name;
+use crate::{foreign_names, unknown_name};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -69,19 +69,17 @@ impl Checker<'_, '_, '_> {
         if exists(&name) {
             return Expr::new(Kind::Components(Box::new(base), name), Type::F32, span);
         }
-        let swizzle = name.len() > 1 && name.chars().all(|letter| "xyzwrgba".contains(letter));
-        let help = match name.as_str() {
-            _ if swizzle && name.chars().all(|letter| "xyzw".contains(letter)) => {
-                format!("a swizzle is a method: `.{name}()`")
+        let letters = COMPONENTS.get(..usize::from(size)).unwrap_or_default();
+        let has_all = |name: &str| name.chars().all(|letter| letters.contains(&letter.to_string().as_str()));
+        let help = match (name.len(), foreign_names::swizzle(&name)) {
+            (2..=4, _) if has_all(&name) => format!("a swizzle is a method: `.{name}()`"),
+            (1, Some(component)) if has_all(&component) => {
+                format!("components are named x, y, z, w: `.{component}`")
             }
-            "r" | "g" | "b" | "a" => {
-                let index = "rgba".find(&name).unwrap_or(0);
-                format!("components are named x, y, z, w: `.{}`", COMPONENTS.get(index).unwrap_or(&"x"))
+            (2..=4, Some(swizzle)) if has_all(&swizzle) => {
+                format!("components are named x, y, z, w, and a swizzle is a method: `.{swizzle}()`")
             }
-            _ => format!(
-                "the components of `Vec{size}` are {}",
-                COMPONENTS.get(..usize::from(size)).unwrap_or_default().join(", ")
-            ),
+            _ => format!("the components of `Vec{size}` are {}", letters.join(", ")),
         };
         self.report.error(codes::UNKNOWN_FIELD, name_span, format!("no field `{name}` on `Vec{size}`"), help);
         Expr::error(span)

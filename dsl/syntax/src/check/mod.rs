@@ -39,10 +39,11 @@ pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut
     checker.written_result(&raw);
     let body = checker.body(&raw.body);
     checker.check_numbers();
+    let unused = checker.unused();
     let Checker { inference, variables, uses, .. } = checker;
     let name = raw.role.wgsl_name();
     let (span, rust) = (raw.span, raw.rust);
-    let function = Function { name, span, rust, parameters, variables, result, body, uses, inference };
+    let function = Function { name, span, rust, parameters, variables, result, body, uses, unused, inference };
     if report.count() == before {
         fold::reject_overflow(&function, report);
     }

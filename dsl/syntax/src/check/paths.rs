@@ -10,7 +10,7 @@ use super::written_types::segments;
 use crate::constants::{self, Constant};
 use crate::tree::{Expr, Kind};
 use crate::types::Type;
-use crate::unknown_name;
+use crate::{foreign_names, unknown_name};
 
 impl Checker<'_, '_, '_> {
     pub(super) fn path(&mut self, path: &syn::ExprPath) -> Expr {
@@ -27,6 +27,7 @@ impl Checker<'_, '_, '_> {
 
     fn name(&mut self, name: &str, span: SourceSpan) -> Expr {
         if let Some(id) = self.lookup(name) {
+            self.count_read(id);
             let ty = self.variables.get(id).map_or(Type::Error, |variable| variable.ty);
             return Expr::new(Kind::Variable(id), ty, span);
         }
@@ -40,7 +41,7 @@ impl Checker<'_, '_, '_> {
             "u" | "uniforms" if !uniforms && !self.environment.uniforms.is_empty() => {
                 format!("declare the uniforms as the closure's second parameter: `|f, {name}| …`")
             }
-            _ => self.help_for_name(name),
+            _ => foreign_names::value(name).unwrap_or_else(|| self.help_for_name(name)),
         };
         self.report.error(codes::UNKNOWN_NAME, &span, format!("cannot find value `{name}` in this scope"), help);
         Expr::error(span)

@@ -7,7 +7,7 @@ use syn::spanned::Spanned;
 
 use crate::report::Report;
 use crate::types::Type;
-use crate::unknown_name;
+use crate::{foreign_names, unknown_name};
 
 /// Returns the segments of a path without a leading `std` or `core`, or `None` if it has generics.
 pub(super) fn segments(path: &syn::Path) -> Option<Vec<String>> {
@@ -61,12 +61,8 @@ fn named_type(name: &str, span: &SourceSpan, report: &mut Report) -> Type {
         }
         None => {
             let names = Type::NAMED.map(|(name, _)| name);
-            report.error(
-                codes::UNKNOWN_NAME,
-                span,
-                format!("cannot find type `{name}`"),
-                unknown_name::help(name, &names),
-            );
+            let help = foreign_names::rust_type(name).unwrap_or_else(|| unknown_name::help(name, &names));
+            report.error(codes::UNKNOWN_NAME, span, format!("cannot find type `{name}`"), help);
         }
     }
     Type::Error
