@@ -90,6 +90,30 @@ fn names_of_other_shading_languages_have_their_rust_names() {
     }
 }
 
+#[test]
+fn syntax_of_other_shading_languages_has_its_rust_syntax() {
+    let with = |line: &str| format!("buffer B from kplus_array {{\n    {line}\n}}");
+    for (line, expected) in [
+        ("where |f| { let mut i = 0; i++; f.depth < 1.0 };", "write `i += 1`"),
+        ("where |f| { let mut i = 2; i--; f.depth < 1.0 };", "write `i -= 1`"),
+        ("where |f| { float x = 1.0; f.depth < x };", "declare variables with `let x = …;`"),
+        ("where |f| { var x = 1.0; f.depth < x };", "declare variables with `let x = …;`"),
+        ("where |f| { for (int i = 0; i < 4; i++) { } f.depth < 0.5 };", "write `for i in 0..4 { … }`"),
+        ("where |f| f.depth < 1.0f;", "write the suffix `f32` or none"),
+        ("uniform heat: float;", "write `uniform { heat: f32 }`"),
+        ("uniform float heat;", "write `uniform { heat: f32 }`"),
+        ("fragment vec3 normal;", "write `fragment { normal: f32 }`"),
+        ("sort = none;", "`sort: …;`"),
+        ("sort none;", "`sort: …;`"),
+    ] {
+        let help = help(&with(line));
+        assert!(help.contains(expected), "{line}: {help}");
+    }
+    assert_eq!(found(&with("where |f| { let x = - -f.depth; x < 0.5 };")), []);
+    let ternary = found(&with("where |f| f.depth < 0.5 ? true : false;"));
+    assert!(ternary[0].help.contains("`if condition { a } else { b }`"), "{ternary:?}");
+}
+
 /// Every code has a section in the guide with its meaning, cause and fix; its example has this diagnostic, and `explain` prints it.
 #[test]
 fn every_code_is_explained() {

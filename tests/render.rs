@@ -353,7 +353,7 @@ fn attribute_names_select_scene_data_and_arguments_set_uniforms() {
         resolve |fragments, u| {
             let mut sum = vec4(0.0, 0.0, 0.0, 0.0);
             for f in fragments {
-                if f.id == 1 { sum = u.tint.extend(1.0); }
+                if f.id == 1 && f.color.w > 0.0 && f.normal.z < 2.0 { sum = u.tint.extend(1.0); }
             }
             sum
         }

@@ -32,7 +32,7 @@ impl Checker<'_, '_, '_> {
             "usize" => Type::Usize,
             other => {
                 let help = "integers are `u32`, `i32` or `usize`";
-                return self.unsupported(span, format!("the type `{other}` is not supported"), help);
+                return self.unsupported(span, format!("integers have no suffix `{other}`"), help);
             }
         };
         let Ok(value) = number.base10_parse::<u64>() else {
@@ -48,7 +48,7 @@ impl Checker<'_, '_, '_> {
             "" => self.inference.float(),
             "f32" => Type::F32,
             other => {
-                let message = format!("the type `{other}` is not supported");
+                let message = format!("floats have no suffix `{other}` here");
                 return self.unsupported(span, message, "write the suffix `f32` or none");
             }
         };

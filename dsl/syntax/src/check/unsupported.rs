@@ -23,7 +23,7 @@ pub(super) fn describe(expr: &Expr) -> (&'static str, &'static str) {
         Expr::Range(_) => ("ranges outside a `for` are", "write `for i in a..b { … }`, or compare: `a <= x && x < b`"),
         Expr::RawAddr(_) | Expr::Reference(_) => ("references are", "pass the value itself: all values are copied"),
         Expr::Struct(_) => ("struct literals are", "use one variable per value"),
-        Expr::Try(_) | Expr::TryBlock(_) => ("`?` is", "test with `if` and `return` a value"),
+        Expr::Try(_) | Expr::TryBlock(_) => ("`?` is", "write `if condition { a } else { b }`"),
         Expr::Tuple(tuple) if tuple.elems.is_empty() => ("`()` is", "remove it"),
         Expr::Tuple(_) => ("tuples are", "use a vector, `vec2(a, b)`, or one variable each"),
         Expr::Unsafe(_) => ("`unsafe` is", "write the block without it"),

@@ -8,6 +8,7 @@ use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::spanned::Spanned as _;
 
+use super::c_syntax;
 use super::cursor::{Cursor, is_punct};
 use super::recovery::starts_item;
 use crate::raw_function::{FunctionTokens, RawFunction, RawParameter, Role};
@@ -208,7 +209,7 @@ fn parse<T: syn::parse::Parse>(tokens: &TokenStream, end: Span, report: &mut Rep
     };
     syn::parse::Parser::parse2(parser, TokenTree::from(group).into()).map_err(|error| {
         let message = format!("invalid Rust syntax: {error}");
-        let help = syntax_help(&error.to_string());
+        let help = c_syntax::help(tokens).unwrap_or_else(|| syntax_help(&error.to_string()));
         report.error(codes::UNEXPECTED_TOKEN, &report.at(error.span()), message, help);
         Stop
     })

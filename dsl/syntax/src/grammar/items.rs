@@ -6,7 +6,7 @@ use fragbuf_model::{SourceSpan, codes, nearest_name};
 use proc_macro2::TokenTree;
 
 use super::cursor::{Cursor, is_punct};
-use super::recovery::{end_of_item, recover};
+use super::recovery::{end_of_item, recover, starts_item};
 use super::{blocks, choices, closures};
 use crate::items::Items;
 use crate::raw_function::Role;
@@ -42,6 +42,9 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
         return Ok(());
     }
     match keyword.as_str() {
+        "fragment" | "uniform" if !matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
+            without_braces(&keyword, cursor, report);
+        }
         "fragment" => {
             cursor.take();
             let rows = blocks::declarations(cursor, "fragment { color: rgba8, depth: f32 }", report)?;
@@ -71,6 +74,22 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
         _ => return Err(unknown_item(cursor, Some(&keyword), report)),
     }
     Ok(())
+}
+
+/// Reports a declaration without braces, `uniform cut: f32;`, and moves behind it.
+fn without_braces(keyword: &str, cursor: &mut Cursor, report: &mut Report) {
+    cursor.take();
+    let found = cursor.describe();
+    let span = cursor.source_span(report);
+    let first = cursor.take_identifier();
+    let second = if cursor.take_punct(':') { None } else { cursor.take_identifier() };
+    // In other languages the type is first.
+    let name = second.or(first).map_or("cut".to_owned(), |name| name.to_string());
+    let help = format!("write `{keyword} {{ {name}: f32 }}`, all in one block");
+    report.error(codes::UNEXPECTED_TOKEN, &span, format!("expected `{{`, found {found}"), help);
+    while !cursor.is_done() && !starts_item(cursor) && !cursor.take_punct(';') {
+        cursor.take();
+    }
 }
 
 fn keep(items: &mut Items, cursor: &mut Cursor, span: SourceSpan, report: &mut Report) -> Result<(), Stop> {
@@ -103,6 +122,9 @@ fn unknown_item(cursor: &Cursor, keyword: Option<&str>, report: &mut Report) -> 
             "helper functions start with `fn`: remove this keyword".to_string()
         }
         Some(nearest) => format!("did you mean `{nearest}`?"),
+        None if is_punct(cursor.peek_second(), '=') || matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) => {
+            format!("a choice has a colon: `{}: …;`", keyword.unwrap_or("axis"))
+        }
         None => "items start with `fragment`, `uniform`, `keep`, `where`, `resolve`, `fn`, or `axis:`".to_string(),
     };
     report.error(codes::UNEXPECTED_TOKEN, &cursor.source_span(report), message, help);

@@ -1,0 +1,48 @@
+//! Syntax of GLSL, HLSL and WGSL in closures, and what Rust has instead.
+//!
+//! Input: tokens that are not Rust. Output: the help of the error, if they look like another language.
+
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+
+use super::cursor::is_punct;
+use crate::foreign_names;
+
+/// Returns the help for the first part that another language has.
+pub(super) fn help(tokens: &TokenStream) -> Option<&'static str> {
+    let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    (0..tokens.len()).find_map(|at| {
+        let rest = tokens.get(at..).unwrap_or_default();
+        match rest.first() {
+            Some(TokenTree::Group(group)) => help(&group.stream()),
+            _ => pattern(rest),
+        }
+    })
+}
+
+fn pattern(tokens: &[TokenTree]) -> Option<&'static str> {
+    let ident = |at: usize| match tokens.get(at) {
+        Some(TokenTree::Ident(name)) => Some(name.to_string()),
+        _ => None,
+    };
+    let parentheses =
+        matches!(tokens.get(1), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
+    let joint = |character: char| {
+        matches!(tokens.first(), Some(TokenTree::Punct(punct)) if punct.as_char() == character && punct.spacing() == Spacing::Joint)
+            && is_punct(tokens.get(1), character)
+    };
+    if ident(0).as_deref() == Some("for") && parentheses {
+        return Some("write `for i in 0..4 { … }`");
+    }
+    if joint('+') {
+        return Some("write `i += 1`");
+    }
+    // `--x` is a double negation in Rust.
+    if joint('-') && (tokens.len() == 2 || is_punct(tokens.get(2), ';')) {
+        return Some("write `i -= 1`");
+    }
+    let is_type = ident(0).is_some_and(|name| foreign_names::rust_type(&name).is_some());
+    if (is_type && ident(1).is_some() || ident(0).as_deref() == Some("var")) && is_punct(tokens.get(2), '=') {
+        return Some("declare variables with `let x = …;`, or `let mut x = …;` to change them later");
+    }
+    None
+}
