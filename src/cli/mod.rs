@@ -52,11 +52,11 @@ use output::{ColorChoice, Failure, MessageFormat};
 #[derive(Parser)]
 #[command(name = "fragbuf", version, about = "Fragment buffers as GPU passes in WGSL, GLSL and SPIR-V")]
 struct Arguments {
-    /// Format of errors and warnings on stderr
-    #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT")]
+    /// Format of errors and warnings on stderr. `json`: one object per line
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT", help_heading = "Messages")]
     message_format: MessageFormat,
     /// Colours of errors and warnings. `auto`: on a terminal, unless the environment has NO_COLOR
-    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN", help_heading = "Messages")]
     message_color: ColorChoice,
     #[command(subcommand)]
     command: Command,

@@ -13,22 +13,17 @@ use serde_json::json;
 /// The format of messages on stderr.
 #[derive(Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum MessageFormat {
-    /// For people
     #[default]
     Text,
-    /// One JSON object per line
     Json,
 }
 
 /// The use of colours.
 #[derive(Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum ColorChoice {
-    /// On a terminal, unless the environment has NO_COLOR
     #[default]
     Auto,
-    /// Always
     Always,
-    /// Never
     Never,
 }
 
