@@ -44,7 +44,7 @@ pub use fragbuf_model::{Diagnostic, Diagnostics, Draft, Selection, Severity, Sou
 pub use fragbuf_syntax::{Parsed, parse};
 pub use fragbuf_targets::{
     Checked, File, Generation, Limit, Needed, Request, SCHEMA, Sharing, TARGETS, TIERS, Target, WebGpuLimit, Workgroup,
-    generate, limits, manifest, plan_json, target, tier,
+    generate, limits, manifest, plan_json, select, target, tier,
 };
 pub use fragbuf_templates::{Registry, vocabulary};
 

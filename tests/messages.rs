@@ -340,6 +340,14 @@ fn a_target_without_support_is_an_error() {
         assert!(text.contains("choose a target that supports it (") && text.contains("spirv"), "{text}");
     }
     assert!(!folder.join("out").exists());
+    // The help names what works alone: no target supports modules with render targets of their own.
+    let module = ["generate", "z_buffer", "--target", "wgsl", "--form", "module", "--out", "out"];
+    let text = stderr(&fragbuf(&module, &folder));
+    assert!(text.contains("choose `--form program`") && !text.contains("a target that supports it"), "{text}");
+    let separate = ["generate", "kplus_array", "--target", "spirv", "--form", "module", "--out", "out"];
+    let text = stderr(&fragbuf(&separate, &folder));
+    assert!(text.contains("supports it (wgsl") && text.contains("`--form program`"), "{text}");
+    assert!(!text.contains("--group"), "{text}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use fragbuf::{Registry, Target, source_file};
+use fragbuf::{Form, Registry, Request, Target, source_file};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
@@ -19,6 +19,9 @@ use super::targets;
 
 /// The choice that counts events that are not losses too, so that every fragment is accounted for.
 const COUNT_ALL: (&str, &str) = ("counters", "all");
+
+/// The checker runs whole programs.
+const PROGRAM: Request<'_> = Request { targets: &[], form: Form::Program, prefix: "", group: 0 };
 
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "wgsl"])))]
@@ -171,7 +174,7 @@ impl Check {
     /// Returns the target of `--target`, or the first that supports the variant.
     fn target(&self, variant: &fragbuf::Variant) -> Result<&'static Target, Failure> {
         let Some(name) = &self.target else {
-            let supporting = targets::supporting(variant).first().copied();
+            let supporting = targets::supporting(variant, &PROGRAM).first().copied();
             return supporting.ok_or_else(|| Failure::Usage("no target supports the description".to_owned()));
         };
         targets::named(name)

@@ -69,7 +69,7 @@ impl Generate {
             let variant = input.variant(&self.set, &registry)?;
             let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() && !self.all {
-                return Err(targets::unsupported(&argument, &variant, &generation));
+                return Err(targets::unsupported(&argument, &variant, &request, &generation));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));

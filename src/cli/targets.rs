@@ -1,8 +1,7 @@
 //! Finds targets by name, and refuses a description that none of the requested targets supports.
 
-use fragbuf::{Diagnostic, Generation, SourceSpan, TARGETS, Target, Variant, target};
+use fragbuf::{Diagnostic, Form, Generation, Request, SourceSpan, TARGETS, Target, Variant, select, target};
 use fragbuf_model::codes;
-use fragbuf_templates::vocabulary::Feature;
 
 use super::output::Failure;
 
@@ -32,32 +31,38 @@ pub(crate) fn names() -> Vec<&'static str> {
     TARGETS.iter().map(|target| target.name).collect()
 }
 
-/// Returns the targets that support whole programs of a description.
-pub(crate) fn supporting(variant: &Variant) -> Vec<&'static Target> {
-    let supports = |target: &&Target| {
-        let mut provides = target.provides.to_vec();
-        provides.push(Feature::OwnEntryPoints);
-        variant.select(&provides).is_ok()
-    };
-    TARGETS.iter().filter(supports).collect()
+/// Returns the targets that support a description as `request` has it.
+pub(crate) fn supporting(variant: &Variant, request: &Request<'_>) -> Vec<&'static Target> {
+    TARGETS.iter().filter(|target| select(variant, target, request).is_ok()).collect()
 }
 
-/// Returns the failure if none of the requested targets supports the description.
-pub(crate) fn unsupported(description: &str, variant: &Variant, generation: &Generation) -> Failure {
+/// Returns the failure if none of the requested targets supports the description. The help names what works alone.
+pub(crate) fn unsupported(
+    description: &str,
+    variant: &Variant,
+    request: &Request<'_>,
+    generation: &Generation,
+) -> Failure {
     let reasons: Vec<String> =
         generation.unsupported.iter().map(|(target, missing)| format!("{}: {missing}", target.name)).collect();
-    let requested = |target: &&Target| generation.unsupported.iter().any(|(other, _)| other.name == target.name);
-    let others: Vec<&str> =
-        supporting(variant).iter().filter(|target| !requested(target)).map(|target| target.name).collect();
-    let others = match others.as_slice() {
-        [] => "choose other targets".to_owned(),
-        names => format!("choose a target that supports it ({})", names.join(", ")),
-    };
+    let others: Vec<&str> = supporting(variant, request).iter().map(|target| target.name).collect();
+    let mut fixes: Vec<String> = Vec::new();
+    if !others.is_empty() {
+        fixes.push(format!("choose a target that supports it ({})", others.join(", ")));
+    }
+    let works = |changed: &Request<'_>| request.targets.iter().any(|target| select(variant, target, changed).is_ok());
+    if works(&Request { form: Form::Program, ..*request }) {
+        fixes.push("choose `--form program`".to_owned());
+    }
+    if works(&Request { group: 0, ..*request }) {
+        fixes.push("choose a `--group` from 0 to 3".to_owned());
+    }
+    fixes.push("add an `else` alternative to the axis".to_owned());
     let diagnostic = Diagnostic::new(
         codes::UNSUPPORTED_TARGET,
         &SourceSpan::new(description, 1, 1),
         format!("none of the targets supports the description: {}", reasons.join("; ")),
-        format!("{others}, `--form program`, `--group` from 0 to 3, or add `else` alternatives to the axis"),
+        fixes.join(", or "),
     );
     Failure::Description(diagnostic.into(), Vec::new())
 }

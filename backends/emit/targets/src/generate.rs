@@ -1,7 +1,7 @@
 //! Generates the files of a variant for several targets. Targets that share a plan or a linked program share that work.
 
 use fragbuf_codegen::{Form, Linking, Plan, Profile, link, plan};
-use fragbuf_model::{Diagnostic, Diagnostics, MissingFeature, Variant, codes};
+use fragbuf_model::{Diagnostic, Diagnostics, MissingFeature, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Feature, Loads};
 
@@ -72,6 +72,20 @@ pub fn generate(variant: &Variant, request: &Request<'_>, registry: &Registry) -
     Ok(generation)
 }
 
+/// Returns the rows of a variant that `target` uses for a request, whose own targets do not matter here. `Err`: what the target lacks.
+pub fn select(variant: &Variant, target: &Target, request: &Request<'_>) -> Result<Selection, MissingFeature> {
+    let missing = |axis: &str, value: String, feature| MissingFeature { axis: axis.to_owned(), value, feature };
+    if request.form == Form::Module && !target.provides.contains(&Feature::Linkable) {
+        return Err(missing("form", "module".to_owned(), Feature::Linkable));
+    }
+    if request.group >= COMMON_BIND_GROUPS && !target.provides.contains(&Feature::BindGroups) {
+        return Err(missing("group", request.group.to_string(), Feature::BindGroups));
+    }
+    let mut provides = target.provides.to_vec();
+    provides.extend((request.form == Form::Program).then_some(Feature::OwnEntryPoints));
+    variant.select(&provides)
+}
+
 /// Returns the index of the plan that `target` uses; `None` if the target does not support the variant.
 fn plan_for(
     variant: &Variant,
@@ -80,20 +94,7 @@ fn plan_for(
     registry: &Registry,
     generation: &mut Generation,
 ) -> Result<Option<usize>, Diagnostics> {
-    if request.form == Form::Module && !target.provides.contains(&Feature::Linkable) {
-        let missing =
-            MissingFeature { axis: "form".to_owned(), value: "module".to_owned(), feature: Feature::Linkable };
-        generation.unsupported.push((target, missing));
-        return Ok(None);
-    }
-    if request.group >= COMMON_BIND_GROUPS && !target.provides.contains(&Feature::BindGroups) {
-        let (axis, value) = ("group".to_owned(), request.group.to_string());
-        generation.unsupported.push((target, MissingFeature { axis, value, feature: Feature::BindGroups }));
-        return Ok(None);
-    }
-    let mut provides = target.provides.to_vec();
-    provides.extend((request.form == Form::Program).then_some(Feature::OwnEntryPoints));
-    let selection = match variant.select(&provides) {
+    let selection = match select(variant, target, request) {
         Ok(selection) => selection,
         Err(missing) => {
             generation.unsupported.push((target, missing));

@@ -23,7 +23,7 @@ mod wgsl;
 
 pub use check::{Checked, capabilities, check};
 pub use emission::{Emission, File, Guards};
-pub use generate::{Generation, PlanForTargets, Request, generate};
+pub use generate::{Generation, PlanForTargets, Request, generate, select};
 pub use limits::{Limit, Needed, Sharing, WebGpuLimit, Workgroup, limits};
 pub use manifest::{SCHEMA, manifest, plan_json};
 pub use target::{TARGETS, TIERS, Target, target, tier};
