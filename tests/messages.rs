@@ -364,8 +364,11 @@ fn files_of_an_earlier_run_are_reported_and_removed() {
     assert_eq!(generate("wgsl,glsl", &[]), "", "every file is written again");
     std::fs::write(out.join("glsl/notes.txt"), "mine").unwrap();
     let warning = generate("wgsl", &[]);
-    assert!(warning.contains("files of an earlier run") && warning.contains("--clean"), "{warning}");
+    assert!(warning.contains("files of earlier runs") && warning.contains("--clean"), "{warning}");
     assert!(out.join("glsl").is_dir());
+    // The manifest still lists them.
+    assert_eq!(generate("wgsl", &["--clean"]), "");
+    assert_eq!(std::fs::read_dir(out.join("glsl")).unwrap().count(), 1);
     assert_eq!(generate("wgsl,glsl", &[]), "");
     assert_eq!(generate("wgsl", &["--clean"]), "");
     let left: Vec<_> = std::fs::read_dir(out.join("glsl")).unwrap().map(|entry| entry.unwrap().file_name()).collect();

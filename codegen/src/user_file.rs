@@ -12,6 +12,11 @@ use fragbuf_templates::vocabulary::{Capability, Host, Kind, Pass, Row, State, St
 use crate::link::{FunctionSignature, Item, grammar_errors, items, signatures, types};
 use crate::{CONTRACTS, Contract};
 
+/// Returns the byte offset of an operator or a branch that is one too many for naga, which recurses once for each, with a message.
+pub fn too_long(source: &str) -> Option<(usize, String)> {
+    crate::link::too_long(source)
+}
+
 /// Checks the row of a user file and completes it for the registry. Reports all errors.
 pub fn validate_user_row(user_row: UserRow, registry: &Registry) -> Result<Row, Diagnostics> {
     let UserRow { mut row, ref spans } = user_row;

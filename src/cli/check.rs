@@ -33,17 +33,17 @@ pub(crate) struct Check {
     #[arg(long, value_name = "FILE", requires = "entry", conflicts_with_all = ["set", "target", "k"])]
     wgsl: Option<PathBuf>,
     /// Entry point of the WGSL file
-    #[arg(long, value_name = "NAME", requires = "wgsl")]
+    #[arg(long, value_name = "NAME", requires = "wgsl", conflicts_with = "description")]
     entry: Option<String>,
     /// Initial words of one of the WGSL file's buffers, and channels of its textures: 3, -1, 0x1f or 0.5. Other words are 0, and
     /// other channels 1
-    #[arg(long, value_name = "NAME=WORD[,WORD…]", requires = "wgsl", value_parser = fill)]
+    #[arg(long, value_name = "NAME=WORD[,WORD…]", conflicts_with = "description", value_parser = fill)]
     fill: Vec<(String, Vec<u32>)>,
     /// Value of one of the WGSL file's `override` constants
-    #[arg(long = "override", value_name = "NAME=VALUE", requires = "wgsl", value_parser = override_value)]
+    #[arg(long = "override", value_name = "NAME=VALUE", conflicts_with = "description", value_parser = override_value)]
     overrides: Vec<(String, f64)>,
     /// Number of workgroups of a compute stage [default: as many as the invocations fill]
-    #[arg(long, value_name = "N", requires = "wgsl", value_parser = clap::value_parser!(u32).range(1..=8))]
+    #[arg(long, value_name = "N", conflicts_with = "description", value_parser = clap::value_parser!(u32).range(1..=8))]
     workgroups: Option<u32>,
     /// Change the description: axis=value, axis.option=value or k=8
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -61,7 +61,7 @@ pub(crate) struct Check {
     #[arg(long, value_enum, default_value_t = ModelArgument::Sc)]
     model: ModelArgument,
     /// Run this many random schedules per case instead of all interleavings
-    #[arg(long, alias = "random", value_name = "N")]
+    #[arg(long, alias = "random", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     random_schedules: Option<u32>,
     /// Greatest number of states of one case. If there are more, nothing is decided
     #[arg(long, value_name = "N", default_value_t = Limits::default().states, conflicts_with = "random_schedules",
@@ -222,6 +222,8 @@ enum Verdict {
 impl Verdict {
     fn of(limits: &Limits, report: &Report) -> Self {
         match (&report.failure, limits.random_schedules) {
+            // What was not visited may fail in another way.
+            (Some(_), None) if report.is_declared && !report.is_exhaustive => Verdict::Undecided,
             (Some(_), _) => Verdict::Fails,
             (None, Some(_)) => Verdict::Sampled,
             (None, None) if report.is_exhaustive => Verdict::Holds,
@@ -247,17 +249,19 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
     let notes: String = notes.iter().map(|note| format!("  note: {note}\n")).collect();
     let Some(schedule) = &report.failure else {
         let sentence = match (Verdict::of(limits, report), limits.random_schedules) {
-            (Verdict::Undecided, _) => format!(
-                "NOT DECIDED: no failure in the states that were visited, but the search ended before all were: at most {} states \
-                 per case, see `--states` and `--random-schedules`",
-                limits.states
-            ),
+            (Verdict::Undecided, _) => format!("NOT DECIDED: no failure found, but {}", undecided(limits)),
             (_, Some(count)) => format!("no failure in {count} random schedules per case; others may fail"),
             (_, None) => "no failure in any interleaving".to_owned(),
         };
         return format!("{subject}: {sentence} ({cases})\n{notes}");
     };
-    let verdict = if report.is_declared { "fails with declared hazards" } else { "FAILS" };
+    let verdict = match (Verdict::of(limits, report), report.is_declared) {
+        (Verdict::Undecided, _) => {
+            format!("NOT DECIDED: fails with declared hazards, but {}", undecided(limits))
+        }
+        (_, true) => "fails with declared hazards".to_owned(),
+        (_, false) => "FAILS".to_owned(),
+    };
     let mut text = format!("{subject}: {verdict} ({cases})\n\n");
     if report.is_declared {
         for (hazard, description) in &report.hazards {
@@ -271,6 +275,14 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
     text.push_str(&schedule_text(schedule));
     text.push_str(&notes);
     text
+}
+
+/// Says why a search decides nothing.
+fn undecided(limits: &Limits) -> String {
+    format!(
+        "not every state was visited (see the notes; at most {} states of a case are visited, see `--states` and `--random-schedules`)",
+        limits.states
+    )
 }
 
 fn schedule_text(schedule: &Schedule) -> String {
@@ -297,8 +309,8 @@ fn report_json(name: &str, on: &str, limits: &Limits, report: &Report) -> Value 
         "on": on,
         "model": model_name(limits.model),
         "holds": match Verdict::of(limits, report) {
-            Verdict::Undecided => Value::Null,
-            verdict => Value::Bool(verdict != Verdict::Fails),
+            Verdict::Undecided if report.failure.is_none() => Value::Null,
+            verdict => Value::Bool(matches!(verdict, Verdict::Holds | Verdict::Sampled)),
         },
         "exhaustive": report.is_exhaustive,
         "notes": report.notes,

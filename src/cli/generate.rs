@@ -82,7 +82,8 @@ impl Generate {
             limits::warn(generation, self.group, &others);
             if !generation.plans.is_empty() {
                 let stale = stale::files(folder, generation);
-                write(folder, generation, self.group)?;
+                let left: &[PathBuf] = if self.clean { &[] } else { &stale };
+                write(folder, generation, self.group, left)?;
                 stale::report(folder, &stale, self.clean)?;
             }
             for (target, missing) in &generation.unsupported {
@@ -109,8 +110,8 @@ fn prefix(text: &str) -> Result<String, String> {
     }
 }
 
-/// Writes every file once, and the manifest.
-fn write(folder: &Path, generation: &Generation, group: u32) -> Result<(), Failure> {
+/// Writes every file once, and the manifest, which also lists the files that are left of earlier runs.
+fn write(folder: &Path, generation: &Generation, group: u32, left: &[PathBuf]) -> Result<(), Failure> {
     let mut seen: Vec<&str> = Vec::new();
     for file in &generation.files {
         if !seen.contains(&file.path.as_str()) {
@@ -118,7 +119,9 @@ fn write(folder: &Path, generation: &Generation, group: u32) -> Result<(), Failu
             write_file(&folder.join(&file.path), &file.bytes)?;
         }
     }
-    write_file(&folder.join("manifest.json"), output::json(&manifest(generation, group)).as_bytes())
+    let mut manifest = manifest(generation, group);
+    stale::list(&mut manifest, folder, left);
+    write_file(&folder.join("manifest.json"), output::json(&manifest).as_bytes())
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
-//! Finds operators that need parentheses in WGSL (WGSL §8.18 and §3.9). naga parses mixtures of operators that browsers reject; it rejects
+//! Finds operators that need parentheses in WGSL (WGSL §8.18 and §3.9), and expressions and branches too long for naga. naga parses mixtures of operators that browsers reject; it rejects
 //! comparisons that are read as a template list, without help.
 //!
-//! Input: the source of a user file. Output: the operators that need parentheses. Everything else is left to naga.
+//! Input: the source of a user file. Output: the operators and branches that are errors. Everything else is left to naga.
 
 use super::token::{Token, TokenKind, tokens};
 
@@ -14,6 +14,18 @@ pub(crate) struct GrammarError {
     pub(crate) operator: &'static str,
     pub(crate) message: String,
     pub(crate) help: &'static str,
+    /// Whether the expression or branch is too long.
+    pub(crate) is_length: bool,
+}
+
+/// The most operators of one expression, and the most branches of one `if`. naga recurses once for each.
+const MOST_OPERATORS: usize = 500;
+const MOST_BRANCHES: usize = 150;
+
+/// Returns the byte offset of an operator or a branch that is too many for naga, with a message.
+pub(crate) fn too_long(source: &str) -> Option<(usize, String)> {
+    let errors = grammar_errors(source);
+    errors.into_iter().find(|error| error.is_length).map(|error| (error.at, error.message))
 }
 
 /// A binary operator in the source.
@@ -107,12 +119,45 @@ pub(crate) fn grammar_errors(source: &str) -> Vec<GrammarError> {
                 operator: "<",
                 message: format!("`{name} <` starts a template list, which a later `>` ends"),
                 help: "put the right operand of `<` in parentheses: `a < (b >> c)`",
+                is_length: false,
             });
         }
     }
     mixed_operators(&code, &templates, &mut errors);
+    errors.extend(long_branch(&code));
     errors.sort_by_key(|error| error.at);
     errors
+}
+
+/// Reports an `if` of too many branches.
+fn long_branch(code: &[Token<'_>]) -> Option<GrammarError> {
+    let is = |index: usize, text: &str| code.get(index).is_some_and(|token| token.text == text);
+    // Per open brace, the branches of the `if` that is being read there.
+    let mut branches = vec![0usize];
+    for (index, token) in code.iter().enumerate() {
+        match token.text {
+            "{" => branches.push(0),
+            "}" => {
+                if branches.len() > 1 {
+                    branches.pop();
+                }
+                if let Some(count) = branches.last_mut() {
+                    *count = if is(index + 1, "else") { *count + 1 } else { 0 };
+                    if *count > MOST_BRANCHES {
+                        return Some(GrammarError {
+                            at: code.get(index + 1).map_or(token.at, |next| next.at),
+                            operator: "else",
+                            message: format!("an `if` of more than {MOST_BRANCHES} branches"),
+                            help: "use a `switch`, or a loop over an array",
+                            is_length: true,
+                        });
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Tests whether WGSL has a template list after this name.
@@ -237,6 +282,15 @@ fn class(operator: Operator) -> Option<Class> {
 
 /// Returns the first operator of an expression that cannot follow the ones before it.
 fn mixture(operators: &[Operator]) -> Option<GrammarError> {
+    if let Some(operator) = operators.get(MOST_OPERATORS) {
+        return Some(GrammarError {
+            at: operator.at,
+            operator: operator.text,
+            message: format!("an expression of more than {MOST_OPERATORS} operators"),
+            help: "divide the expression: `let part = …;`",
+            is_length: true,
+        });
+    }
     let is = |operator: &Operator, wanted: Class| class(*operator) == Some(wanted);
     // `&`, `|`, `^`, `&&` and `||` stand alone or repeat, except that `&&` and `||` join comparisons.
     for (index, operator) in operators.iter().enumerate() {
@@ -262,6 +316,7 @@ fn mixture(operators: &[Operator]) -> Option<GrammarError> {
                 operator: operator.text,
                 message: format!("WGSL does not combine `{}` and `{}` without parentheses", other.text, operator.text),
                 help: "put one of the two operations in parentheses: Rust's precedence does not apply",
+                is_length: false,
             });
         }
     }

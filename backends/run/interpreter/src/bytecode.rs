@@ -197,6 +197,22 @@ impl Bytecode {
         one.iter().zip(other).zip(live).all(|((one, other), word)| one == other || counters.contains(&word))
     }
 
+    /// Returns the first instruction of every loop that has a retry counter.
+    pub fn retry_loops(&self) -> impl Iterator<Item = u32> {
+        self.retry_loops.iter().map(|retry| retry.instructions.start)
+    }
+
+    /// Returns whether the program calls a marker function.
+    pub fn calls(&self, marker: Marker) -> bool {
+        let is_call = |op: &Op| match marker {
+            Marker::Fence => *op == Op::Fence,
+            Marker::HelperLane => matches!(op, Op::HelperLane { .. }),
+            Marker::CriticalBegin => *op == Op::CriticalBegin,
+            Marker::CriticalEnd => *op == Op::CriticalEnd,
+        };
+        self.ops.iter().any(is_call)
+    }
+
     /// Returns whether the program has workgroup barriers.
     pub fn has_barriers(&self) -> bool {
         self.ops.iter().any(|op| matches!(op, Op::Barrier(_)))

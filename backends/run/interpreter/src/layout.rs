@@ -4,6 +4,9 @@
 
 use naga::{ArraySize, Handle, Module, Scalar, ScalarKind, Type, TypeInner, VectorSize};
 
+/// The most words of a value in an invocation.
+const MOST_WORDS: u32 = 1 << 20;
+
 /// The layouts of the types of one module.
 #[derive(Clone, Copy)]
 pub(crate) struct Layouts<'m> {
@@ -45,18 +48,23 @@ impl<'m> Layouts<'m> {
 
     /// Returns the size of a densely packed value in words.
     pub(crate) fn dense(&self, inner: &TypeInner) -> Result<u32, String> {
+        let words = self.unlimited(inner)?;
+        u32::try_from(words).ok().filter(|words| *words <= MOST_WORDS).ok_or(format!("a value of {words} words"))
+    }
+
+    fn unlimited(&self, inner: &TypeInner) -> Result<u64, String> {
+        let count = |size: VectorSize| u64::from(count(size));
+        let scalar_words = |scalar: Scalar| Self::scalar_words(scalar).map(u64::from);
         match inner {
-            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Self::scalar_words(*scalar),
-            TypeInner::Vector { size, scalar } => Ok(count(*size) * Self::scalar_words(*scalar)?),
-            TypeInner::Matrix { columns, rows, scalar } => {
-                Ok(count(*columns) * count(*rows) * Self::scalar_words(*scalar)?)
-            }
+            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => scalar_words(*scalar),
+            TypeInner::Vector { size, scalar } => Ok(count(*size) * scalar_words(*scalar)?),
+            TypeInner::Matrix { columns, rows, scalar } => Ok(count(*columns) * count(*rows) * scalar_words(*scalar)?),
             TypeInner::Array { base, size: ArraySize::Constant(length), .. } => {
-                Ok(length.get() * self.dense(self.inner(*base))?)
+                Ok(u64::from(length.get()).saturating_mul(self.unlimited(self.inner(*base))?))
             }
-            TypeInner::Struct { members, .. } => {
-                members.iter().try_fold(0, |sum, member| Ok(sum + self.dense(self.inner(member.ty))?))
-            }
+            TypeInner::Struct { members, .. } => members.iter().try_fold(0u64, |sum, member| {
+                Ok::<_, String>(sum.saturating_add(self.unlimited(self.inner(member.ty))?))
+            }),
             other => Err(format!("a value of the type {}", type_name(other))),
         }
     }

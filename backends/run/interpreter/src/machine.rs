@@ -16,7 +16,7 @@ pub enum Exit {
     Discarded,
     /// Memory stopped the machine before this event.
     Stopped(Event),
-    /// The machine reached the limit of backward jumps: the program does not terminate.
+    /// The machine reached the limit of backward jumps: the program does not terminate, or takes very long.
     Endless,
 }
 
@@ -30,6 +30,9 @@ pub struct OutOfBoundsAccess {
 
 /// The limit of backward jumps of one run.
 const BACKWARD_JUMP_LIMIT: u32 = 1 << 24;
+
+/// The most backward jumps in which [`Machine::repeats`] looks for a cycle.
+const LONGEST_CYCLE: u32 = 1 << 18;
 
 /// One invocation of a program.
 #[derive(Clone, Debug)]
@@ -126,8 +129,31 @@ impl<'p> Machine<'p> {
 
     /// Runs the program until it ends or `shared` stops it.
     pub fn run<S: SharedMemory>(&mut self, shared: &mut S) -> Exit {
+        self.run_jumps(shared, BACKWARD_JUMP_LIMIT)
+    }
+
+    /// Returns whether the machine comes back to a state in which it has been, before `shared` stops it. It has reached the limit of
+    /// backward jumps. `false` if it does not within [`LONGEST_CYCLE`] backward jumps.
+    pub fn repeats<S: SharedMemory>(&mut self, shared: &mut S) -> bool {
+        let (mut earlier, mut limit) = ((self.at, self.words.clone()), 1);
+        for jump in 0..LONGEST_CYCLE {
+            // One jump, up to the next one.
+            if self.run_jumps(shared, 2) != Exit::Endless {
+                return false;
+            }
+            if self.at == earlier.0 && self.words == earlier.1 {
+                return true;
+            }
+            if jump == limit {
+                (earlier, limit) = ((self.at, self.words.clone()), 2 * limit);
+            }
+        }
+        false
+    }
+
+    fn run_jumps<S: SharedMemory>(&mut self, shared: &mut S, limit: u32) -> Exit {
         let program = self.program;
-        let mut jumps = BACKWARD_JUMP_LIMIT;
+        let mut jumps = limit;
         loop {
             let at = self.at as usize;
             let words = &mut self.words;

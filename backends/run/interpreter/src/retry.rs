@@ -36,13 +36,18 @@ pub(crate) fn retry_loops(ops: &[Op], live: &Liveness, first_constant: Word, con
     });
     let with_counters = loops.map(|range| {
         let flow = Flow { ops, live, range: range.clone(), first_constant, constants };
-        let is_counter = |word: &Word| {
-            let uses = flow.uses(*word);
-            uses.is_some_and(|uses| {
-                initial_values(&flow, &predecessors, *word).is_some_and(|from| has_many(&uses, from))
-            })
+        let mut limits = BTreeSet::new();
+        let mut is_counter = |word: &Word| {
+            let is_limit = |uses: &CounterUses| {
+                initial_values(&flow, &predecessors, *word).is_some_and(|from| has_many(uses, from))
+            };
+            let uses = flow.uses(*word).filter(is_limit);
+            limits.extend(uses.iter().flat_map(|uses| &uses.limits));
+            uses.is_some()
         };
-        let counters = flow.candidates().into_iter().filter(is_counter).collect();
+        let counters: Vec<Word> = flow.candidates().into_iter().filter(|word| is_counter(word)).collect();
+        // A loop that only its counters end does not wait for anything.
+        let counters = if flow.has_other_exit(&limits) { counters } else { Vec::new() };
         RetryLoop { instructions: range.start as u32..range.end as u32, counters }
     });
     with_counters.filter(|one| !one.counters.is_empty()).collect()

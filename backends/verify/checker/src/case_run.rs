@@ -47,20 +47,27 @@ pub(crate) struct CaseResult {
 }
 
 /// A property of which the first declared hazard is a failure, so that a search finds the shortest schedule of one.
-struct FirstHazard<'a>(&'a mut dyn Property);
+struct FirstHazard<'a> {
+    property: &'a mut dyn Property,
+    /// Whether it was found. Otherwise the failure is another one.
+    is_found: bool,
+}
 
 impl Property for FirstHazard<'_> {
     fn instant(&mut self, words: &[u32]) -> Option<String> {
-        self.0.instant(words)
+        self.property.instant(words)
     }
 
     fn watched(&self) -> Vec<Range<usize>> {
-        self.0.watched()
+        self.property.watched()
     }
 
     fn final_state(&mut self, words: &[u32]) -> StateVerdict {
-        match self.0.final_state(words) {
-            StateVerdict::Hazard(text) => StateVerdict::Wrong(text),
+        match self.property.final_state(words) {
+            StateVerdict::Hazard(text) => {
+                self.is_found = true;
+                StateVerdict::Wrong(text)
+            }
             other => other,
         }
     }
@@ -133,7 +140,7 @@ impl<'s> CaseRun<'s> {
             Err((fragment, error)) => {
                 let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(*fragment, *error) });
                 let result = SearchResult { states: 1, is_exhaustive: true, failure, ..SearchResult::default() };
-                return (result, HashMap::new());
+                return (result.decided(), HashMap::new());
             }
             Ok(first) => first,
         };
@@ -143,14 +150,19 @@ impl<'s> CaseRun<'s> {
             None => {
                 let mut result = explore_reduced(context, first.clone(), &mut property, options.limit);
                 if options.wants_hazard && result.failure.is_none() && result.hazard.is_some() {
-                    let mut first_hazard = FirstHazard(&mut property);
+                    let mut first_hazard = FirstHazard { property: &mut property, is_found: false };
                     let shortest = explore(context, first.clone(), &mut first_hazard, options.limit);
                     result.states += shortest.states;
-                    result.hazard = shortest.failure.or(result.hazard);
+                    match first_hazard.is_found {
+                        true => result.hazard = shortest.failure.or(result.hazard),
+                        false => result.failure = shortest.failure,
+                    }
                 }
                 result
             }
         };
+        let mut result = result.decided();
+        result.is_exhaustive &= !context.has_forgotten.get();
         (result, property.next_iterations)
     }
 }

@@ -47,6 +47,12 @@ impl SharedMemory for Pausing<'_, '_> {
         match event {
             Event::Access(access) => {
                 let location = self.context.locations[usize::from(access.address.buffer)];
+                // Loads of one word are constants of the program. Those of two words come here.
+                if let BufferLocation::ReadOnly(index) = location {
+                    let words = self.context.read_only[index].get(access.address.word as usize..);
+                    let words = words.filter(|words| words.len() >= usize::from(access.words));
+                    return Reply::Done(words.map_or(0, |words| value(words, access.words)));
+                }
                 if let BufferLocation::State { first, commutes: true, .. } = location {
                     if self.is_helper {
                         return Reply::Done(0);

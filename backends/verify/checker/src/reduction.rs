@@ -32,11 +32,21 @@ pub(crate) fn independent(
         return None;
     }
     running.iter().find_map(|&fragment| match &state.fragments[fragment] {
-        Status::Before { event, at, .. } if comes_first(context, watched, event, fragment) => {
+        Status::Before { event, at, .. }
+            if comes_first(context, watched, event, fragment) && !may_forget(context, state, event) =>
+        {
             Some((fragment, context.program.is_in_loop(*at)))
         }
         _ => None,
     })
+}
+
+/// Returns whether a step may remove writes that others can still observe, so that its order matters.
+fn may_forget(context: &SearchContext<'_>, state: &State, event: &Event) -> bool {
+    let Event::Access(access) = event else { return false };
+    access.is_atomic
+        && access.operation == Operation::Store
+        && context.word(access.address).is_some_and(|word| state.may_forget(word, access.value))
 }
 
 fn comes_first(context: &SearchContext<'_>, watched: &WatchedWords, event: &Event, fragment: usize) -> bool {

@@ -35,7 +35,7 @@ pub struct Schedule {
     pub race: Option<Race>,
 }
 
-/// Two accesses of the same word that nothing orders. At least one writes, and at least one is not atomic.
+/// Two accesses of the same word that nothing orders. At least one writes. Neither is atomic, because types of WGSL are atomic or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Race {
     /// The word, by the name of its variable and its indices.
@@ -167,7 +167,10 @@ fn action(event: &Event, reply: Reply, choice: u32, program: &Bytecode, names: &
     let value = |value: u64| (names.value)(value);
     let observed = match reply {
         Reply::Done(observed) | Reply::Failed(observed) => observed,
-        Reply::Stop if access.writes() => return format!("accesses {word}"),
+        Reply::Stop if access.operation == Operation::Store => {
+            return format!("writes {} to {word}", value(access.value));
+        }
+        Reply::Stop if access.writes() => return format!("changes {word}"),
         Reply::Stop => return format!("reads {word}"),
     };
     match access.operation {
@@ -234,7 +237,7 @@ fn violation(kind: &FailureKind, context: &SearchContext<'_>, source: &CheckedSo
                 let access = |step: &ScheduleStep| format!("{} {} at {}", step.fragment, step.action, step.location);
                 format!(" on {}: {}, and {}", race.word, access(&race.first), access(&race.second))
             });
-            format!("data race{places}. At least one of the two accesses is not atomic, and nothing orders them")
+            format!("data race{places}. The accesses are not atomic, and nothing orders them")
         }
         FailureKind::Step(fragment, error) => step_violation(context, *fragment, *error, source),
     }
@@ -255,6 +258,7 @@ pub(crate) fn step_violation(
         StepError::Endless => {
             format!("{fragment} loops without end, and no memory that it reads in the loop can change")
         }
+        StepError::TooLong => format!("{fragment} loops for very long without accessing memory"),
         StepError::Barrier { waits, at, missing } => format!(
             "divergent barrier: {} waits at {}, and {} of its workgroup does not reach this barrier",
             letter(waits),

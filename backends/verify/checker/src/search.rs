@@ -47,6 +47,17 @@ pub(crate) struct SearchResult {
 }
 
 impl SearchResult {
+    /// Returns the result without a failure that decides nothing.
+    pub(crate) fn decided(self) -> Self {
+        let is_undecided = |failure: &Failure| matches!(failure.kind, FailureKind::Step(_, StepError::TooLong));
+        match &self.failure {
+            Some(failure) if is_undecided(failure) => {
+                SearchResult { failure: None, hazard: None, is_exhaustive: false, ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// Records the verdict on a final state that the steps lead to; returns the failure, if it is one.
     pub(crate) fn record(
         &mut self,

@@ -78,6 +78,11 @@ impl Status {
 }
 
 impl State {
+    /// Returns whether a write of a value to a word may remove a write that a fragment can observe.
+    pub(crate) fn may_forget(&self, word: usize, value: u64) -> bool {
+        self.order.may_forget(word as u32, value)
+    }
+
     /// Returns the words of a final state. Where a loop waits for samples, the number of samples that passed is appended.
     pub(crate) fn final_words(&self, context: &SearchContext<'_>) -> Vec<u32> {
         let mut words = self.words.clone();
@@ -104,8 +109,10 @@ impl State {
 pub(crate) enum StepError {
     /// An index is out of bounds, at this instruction.
     OutOfBounds(u32),
-    /// A fragment loops without accessing memory and does not end.
+    /// A fragment loops without accessing memory and comes back to a state in which it has been.
     Endless,
+    /// A fragment loops without accessing memory for longer than is followed: nothing is decided.
+    TooLong,
     /// An invocation waits at a barrier, at this instruction, that another invocation of its workgroup does not reach.
     Barrier { waits: usize, at: u32, missing: usize },
     /// The access of this word of the state and an earlier one of this fragment are a data race.
@@ -154,7 +161,10 @@ impl SearchContext<'_> {
         match exit {
             Exit::Ended => Ok(Status::Ended(true)),
             Exit::Discarded => Ok(Status::Ended(!self.counts_samples)),
-            Exit::Endless => Err(StepError::Endless),
+            Exit::Endless => {
+                let repeats = machine.repeats(&mut Pausing { context: self, reply: None, words, is_helper });
+                Err(if repeats { StepError::Endless } else { StepError::TooLong })
+            }
             Exit::Stopped(event) => {
                 let event = self.placed(fragment, event);
                 let mut saved = Vec::new();

@@ -171,9 +171,108 @@ fn holds() -> bool { return atomicLoad(&n) % size == 0u; }";
     let shader = Shader { file: "large.wgsl", source, entry: "main", ..Shader::default() };
     let report = check_shader(&shader, &Limits::default()).unwrap();
     assert_eq!((report.failure, report.cases), (None, 4));
-    assert!(report.notes.iter().any(|note| note.starts_with("a part of the 64 invocations")), "{:?}", report.notes);
+    assert!(report.notes.iter().any(|note| note.starts_with("2 of the 64 invocations")), "{:?}", report.notes);
+    // What all invocations would do is not known.
+    let all = source.replace("% size", "/ 64u");
+    let report = check_shader(&Shader { source: &all, ..shader }, &Limits::default()).unwrap();
+    assert_eq!((report.failure, report.is_exhaustive), (None, false));
+    assert!(report.notes.iter().any(|note| note.contains("this decides nothing")), "{:?}", report.notes);
     let small = Shader { overrides: &[("size".to_owned(), 0.25)], ..shader };
     assert!(check_shader(&small, &Limits::default()).is_err(), "0.25 is no value of a u32");
     let other = Shader { overrides: &[("sise".to_owned(), 1.0)], ..shader };
     assert!(check_shader(&other, &Limits::default()).is_err());
+}
+
+/// Sources that a review found to pass or to fail wrongly, with the verdict under both models.
+#[test]
+fn faults_of_a_review_stay_mended() {
+    const HEAD: &str = "
+@group(0) @binding(0) var<storage, read_write> x: u32;
+@group(0) @binding(1) var<storage, read_write> y: array<u32, 2>;
+@group(3) @binding(1000000) var<storage, read_write> flag: atomic<u32>;
+@group(1) @binding(0) var<storage, read> wide: array<u64, 2>;
+@group(1) @binding(1) var<storage, read_write> d: u32;
+fn memory_fence() {}
+";
+    // A barrier before a read orders nothing after it; workgroupBarrier orders no storage buffer.
+    let barrier = "@compute @workgroup_size(2) fn main(@builtin(local_invocation_index) id: u32) {
+        storageBarrier();
+        if id == 0u { y[0] = x; }
+        workgroupBarrier();
+        if id == 1u { x = 1u; }
+    }";
+    let fence = "@compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        if id.x == 0u { memory_fence(); y[0] = x; atomicStore(&flag, 1u); return; }
+        if atomicLoad(&flag) == 1u { memory_fence(); x = 1u; }
+    }";
+    // The loop ends by its counter alone, so it does not wait.
+    let sampling = "@compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        if id.x == 0u { d = 1u; atomicStore(&flag, 1u); return; }
+        var seen = 0u;
+        for (var i = 0u; i < 64u; i++) { seen = atomicLoad(&flag); }
+        d = 2u + seen;
+    }";
+    // A load before the five stores is an interleaving of its own.
+    let stores = "@compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        if id.x == 0u { for (var i = 0u; i < 5u; i++) { atomicStore(&flag, 1u); } d = 1u; return; }
+        if atomicLoad(&flag) == 0u { d = 2u; }
+    }";
+    let wide = "@compute @workgroup_size(1) fn main() { if wide[0] != 0lu { atomicStore(&flag, 1u); } }
+        fn holds() -> bool { return atomicLoad(&flag) == 0u; }";
+    let long = "@compute @workgroup_size(1) fn main() {
+        for (var i = 0u; i < 17000000u; i++) {}
+        atomicStore(&flag, 1u);
+    }";
+    let scratch = "@compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id: vec3<u32>) { atomicStore(&flag, id.x); }
+        fn holds() -> bool { y[0] += 1u; return y[0] == 1u && d == 0u; }";
+    for (source, fill, [sequential, relaxed]) in [
+        (barrier, &[][..], ["race", "race"]),
+        (fence, &[], ["holds", "race"]),
+        (sampling, &[], ["race", "race"]),
+        (stores, &[], ["race", "race"]),
+        (wide, &[("wide".to_owned(), vec![5, 0, 6, 0])], ["wrong", "wrong"]),
+        (long, &[], ["undecided", "undecided"]),
+        (scratch, &[], ["holds", "holds"]),
+    ] {
+        let source = format!("{HEAD}{source}");
+        for (model, expected) in [(Model::Sequential, sequential), (Model::Relaxed, relaxed)] {
+            let shader = Shader { file: "fault.wgsl", source: &source, entry: "main", fill, ..Shader::default() };
+            let report = check_shader(&shader, &Limits { fragments: vec![2], model, ..Limits::default() }).unwrap();
+            assert_eq!(verdict(&report), expected, "{model:?} {source} {:#?}", report.failure);
+        }
+    }
+}
+
+/// Nothing that a file contains ends in a panic, a stack overflow or more memory than a check has.
+#[test]
+fn extreme_sources_are_rejected() {
+    let head = "@group(0) @binding(0) var<storage, read_write> n: atomic<u32>;\n";
+    let main = |body: &str| format!("{head}@compute @workgroup_size(1) fn main() {{ let x = atomicLoad(&n); {body} }}");
+    let sum = vec!["x"; 100_000].join(" + ");
+    let branches: String =
+        (0..20_000).map(|number| format!(" else if x == {number}u {{ atomicAdd(&n, 2u); }}")).collect();
+    let calls: String = (0..40)
+        .map(|number| format!("fn f{}() -> u32 {{ return f{number}() + f{number}(); }}\n", number + 1))
+        .collect();
+    for source in [
+        main(&format!("atomicAdd(&n, {sum});")),
+        main(&format!("if x == 7u {{ atomicAdd(&n, 1u); }}{branches}")),
+        format!("fn f0() -> u32 {{ return atomicLoad(&n); }}\n{calls}{}", main("atomicAdd(&n, f40());")),
+        format!("var<private> p: array<u32, 400000000>;\n{}", main("p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
+        format!("var<workgroup> p: array<u32, 400000000>;\n{}", main("p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
+        format!("{}", main("var p: array<u32, 400000000>; p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
+        format!(
+            "struct S {{ a: atomic<u32>, b: u32 }}\n@group(1) @binding(0) var<storage, read_write> s: array<S, 100000000>;\n{}",
+            main("atomicAdd(&s[x].a, 1u);")
+        ),
+        main("").replace("@workgroup_size(1)", "@workgroup_size(0)"),
+        format!("{}fn holds(x: u32) -> bool {{ return true; }}", main("")),
+        format!("{}fn holds() -> u32 {{ return 1u; }}", main("")),
+        format!("var<workgroup> w: u32;\n{}fn holds() -> bool {{ return w == 0u; }}", main("w = 1u;")),
+        format!("var<workgroup> w: array<bool, 4>;\n{}", main("w[x] = true;")),
+    ] {
+        let shader = Shader { file: "extreme.wgsl", source: &source, entry: "main", ..Shader::default() };
+        let result = check_shader(&shader, &Limits::default());
+        assert!(result.is_err(), "{}", source.get(..300).unwrap_or(&source));
+    }
 }

@@ -6,6 +6,9 @@ use super::compiler::{Compiler, InlinedCall, Result, Value};
 use crate::bytecode::{InterfaceVariable, Marker};
 use crate::operation::{Op, Word};
 
+/// The most instructions before a call.
+const MOST_INSTRUCTIONS: usize = 1 << 18;
+
 impl<'m> Compiler<'m> {
     /// Compiles the outermost function; returns its inputs and outputs.
     pub(super) fn outermost(
@@ -97,6 +100,10 @@ impl<'m> Compiler<'m> {
         arguments: &[Handle<Expression>],
         result: Option<Handle<Expression>>,
     ) -> Result<()> {
+        // Every call is inlined, so calls of calls may be exponentially many.
+        if self.ops.len() > MOST_INSTRUCTIONS {
+            return Err(format!("a program of more than {MOST_INSTRUCTIONS} instructions"));
+        }
         let function = &self.module.functions[callee];
         let words = match &function.result {
             Some(result) => self.layouts.dense(self.layouts.inner(result.ty))?,

@@ -3,12 +3,15 @@
 use std::ops::Range;
 
 use naga::valid::FunctionInfo;
-use naga::{AddressSpace, ArraySize, GlobalVariable, MemoryDecorations, TypeInner};
+use naga::{AddressSpace, ArraySize, GlobalVariable, Handle, MemoryDecorations, Scalar, TypeInner};
 
 use super::compiler::{Compiler, Result, Value};
 use super::pointer::Pointer;
 use crate::bytecode::{Buffer, Space, Unsupported};
 use crate::operation::Word;
+
+/// The most ranges of words of atomic types in one buffer.
+const MOST_RANGES: usize = 1 << 16;
 
 /// The initial word of a private variable that the program writes before it reads: no index, no depth and not EMPTY.
 const UNWRITTEN: Word = 0xdead_beef;
@@ -51,6 +54,9 @@ impl Compiler<'_> {
             AddressSpace::Handle => return self.texture(variable),
             _ => return Err("a variable of this address space".to_owned()),
         };
+        if space == Space::Workgroup && self.is_composite_of_booleans(inner) {
+            return Err("workgroup variables of several booleans".to_owned());
+        }
         let number = u16::try_from(self.buffers.len()).map_err(|_| "more than 65536 buffers".to_owned())?;
         let element = self.open_element(inner);
         self.buffers.push(Buffer {
@@ -63,8 +69,8 @@ impl Compiler<'_> {
             commutes: false,
             is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
             is_wide: false,
-            atomics: self.atomics(inner),
-            element_atomics: element.map_or(Vec::new(), |(element, _)| self.atomics(element)),
+            atomics: self.atomics(inner)?,
+            element_atomics: element.map_or(Ok(Vec::new()), |(element, _)| self.atomics(element))?,
         });
         Ok(Value::Pointer(Pointer::to_buffer(number)))
     }
@@ -73,6 +79,20 @@ impl Compiler<'_> {
     fn initial_word(&self, variable: &GlobalVariable) -> Word {
         let is_written_first = |name: &String| self.options.written_first.contains(name);
         if variable.name.as_ref().is_some_and(is_written_first) { UNWRITTEN } else { 0 }
+    }
+
+    /// Returns whether a type has booleans as parts. WGSL does not lay them out.
+    fn is_composite_of_booleans(&self, inner: &TypeInner) -> bool {
+        let has = |kind: &Handle<naga::Type>| {
+            let inner = self.layouts.inner(*kind);
+            crate::layout::scalar_of(inner) == Some(Scalar::BOOL) || self.is_composite_of_booleans(inner)
+        };
+        match inner {
+            TypeInner::Array { base, .. } => has(base),
+            TypeInner::Struct { members, .. } => members.iter().any(|member| has(&member.ty)),
+            TypeInner::Vector { scalar, .. } => *scalar == Scalar::BOOL,
+            _ => false,
+        }
     }
 
     /// Returns the element of the runtime-sized array at the end of a buffer, and the distance between two in words.
@@ -89,7 +109,7 @@ impl Compiler<'_> {
     }
 
     /// Returns the words of atomic types in a value in a buffer, without a runtime-sized array.
-    fn atomics(&self, inner: &TypeInner) -> Vec<Range<u32>> {
+    fn atomics(&self, inner: &TypeInner) -> Result<Vec<Range<u32>>> {
         let mut ranges: Vec<Range<u32>> = Vec::new();
         let mut add = |range: Range<u32>| match ranges.last_mut() {
             Some(last) if last.end == range.start => last.end = range.end,
@@ -99,21 +119,28 @@ impl Compiler<'_> {
             TypeInner::Atomic(scalar) => add(0..u32::from(scalar.width) / 4),
             TypeInner::Struct { members, .. } => {
                 for member in members {
-                    let inside = self.atomics(self.layouts.inner(member.ty));
+                    let inside = self.atomics(self.layouts.inner(member.ty))?;
                     let first = member.offset / 4;
                     inside.into_iter().for_each(|range| add(first + range.start..first + range.end));
                 }
             }
             TypeInner::Array { base, size: ArraySize::Constant(length), stride } => {
-                let inside = self.atomics(self.layouts.inner(*base));
+                let inside = self.atomics(self.layouts.inner(*base))?;
                 let count = if inside.is_empty() { 0 } else { length.get() };
+                let is_dense = inside.as_slice() == [0..stride / 4];
+                if is_dense {
+                    return Ok(vec![0..count.saturating_mul(stride / 4)]);
+                }
+                if count as usize * inside.len() > MOST_RANGES {
+                    return Err("an array of so many structures with atomic members".to_owned());
+                }
                 for first in (0..count).map(|number| number * (stride / 4)) {
                     inside.iter().for_each(|range| add(first + range.start..first + range.end));
                 }
             }
             _ => {}
         }
-        ranges
+        Ok(ranges)
     }
 
     /// Returns the words of a buffer without a runtime-sized array at its end.

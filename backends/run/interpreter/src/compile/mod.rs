@@ -26,6 +26,9 @@ use naga::{Function, Module, Span};
 use crate::bytecode::{Bytecode, Options, Unsupported};
 use compiler::{Compiler, InlinedCall};
 
+/// The most words of an invocation.
+const MOST_WORDS: u32 = 1 << 22;
+
 impl Bytecode {
     /// Compiles the entry point with this name. `Err`: every construct in it that the interpreter does not run.
     pub fn entry_point(
@@ -72,6 +75,10 @@ fn compile<'m>(
     match compiler.outermost(function) {
         Err(what) => {
             compiler.report_unsupported(what);
+            Err(compiler.unsupported)
+        }
+        Ok(_) if compiler.peak > MOST_WORDS => {
+            compiler.report_unsupported(format!("an invocation of {} words", compiler.peak));
             Err(compiler.unsupported)
         }
         Ok(_) if !compiler.unsupported.is_empty() => Err(compiler.unsupported),

@@ -28,6 +28,8 @@ pub(super) struct CounterUses {
     /// The constants that it is set to inside of the loop.
     pub(super) resets: BTreeSet<u32>,
     pub(super) comparisons: BTreeSet<Comparison>,
+    /// The jumps that leave the loop at the limit.
+    pub(super) limits: BTreeSet<usize>,
 }
 
 /// A comparison of the variable with a constant.
@@ -183,6 +185,7 @@ impl Flow<'_> {
                 Some([(to, Derived::Condition)].into())
             }
             Op::JumpUnless { condition, to } if is_condition(condition) => {
+                uses.limits.insert(at);
                 (self.leaves(at + 1) || self.leaves(to as usize)).then(DerivedWords::new)
             }
             _ => None,
@@ -199,6 +202,27 @@ impl Flow<'_> {
             Op::Copy { from, count: 1, .. } => self.constant(from),
             _ => None,
         }
+    }
+
+    /// Returns whether the loop can end otherwise than by jumps at its limits.
+    pub(super) fn has_other_exit(&self, limits: &BTreeSet<usize>) -> bool {
+        let (mut seen, mut pending) = (BTreeSet::new(), vec![self.range.start]);
+        while let Some(at) = pending.pop() {
+            if !seen.insert(at) {
+                continue;
+            }
+            let mut successors = self.ops[at].successors(at).into_iter().flatten().peekable();
+            if successors.peek().is_none() {
+                return true;
+            }
+            for next in successors.filter(|next| !limits.contains(&at) || !self.leaves(*next)) {
+                if !self.range.contains(&next) {
+                    return true;
+                }
+                pending.push(next);
+            }
+        }
+        false
     }
 
     /// Returns whether an instruction leads out of the loop, and on the way there are only constants and jumps.

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::view::View;
 
 /// How many writes of one value to one word memory keeps. A loop that writes the same values again and again would otherwise have
-/// infinitely many states. Only a load that observes a write from before the last ones of its value is left out.
-const REPEATED: usize = 4;
+/// infinitely many states. Every older write of the word is forgotten, too, so a search in which that occurs is not exhaustive.
+pub(crate) const REPEATED: usize = 4;
 
 /// The history of one word. Position 0 is the oldest write that a running fragment may still observe.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -20,6 +20,7 @@ mod view;
 
 use fragbuf_interpreter::{Access, Atomic, Operation};
 
+pub(crate) use history::REPEATED;
 use history::{Accessor, History, PlainRead, Write};
 use view::{MemoryKind, View, clock};
 
@@ -210,6 +211,12 @@ impl RelaxedMemory {
             self.release(fragment, at);
         }
         None
+    }
+
+    /// Returns whether another write of a value to a word may remove a write that a fragment can observe.
+    pub(crate) fn may_forget(&self, word: u32, value: u64) -> bool {
+        let count = |history: &History| history.writes.iter().filter(|write| write.value == value).count();
+        self.history(word).is_some_and(|history| count(history) >= REPEATED)
     }
 
     /// Returns the last value of a word that has a history.

@@ -85,8 +85,12 @@ impl RelaxedMemory {
     /// removed a write that one can observe, because the word has been given the same value too often since.
     pub(crate) fn forget(&mut self, is_running: impl Fn(usize) -> bool) -> bool {
         if self.histories.is_empty() {
-            // No word has more than one write, so views are empty.
-            self.fragments.iter_mut().for_each(|views| views.epoch = 1);
+            // No word has more than one write, so views hold nothing but clocks, and there is no read that a clock could order.
+            for views in &mut self.fragments {
+                let outside = views.outside.take().map(|_| View::default());
+                *views = Views { epoch: 1, outside, ..Views::default() };
+            }
+            self.sections = View::default();
         }
         for (fragment, views) in self.fragments.iter_mut().enumerate() {
             if !is_running(fragment) {

@@ -25,7 +25,7 @@ pub(super) struct Invocations {
 impl Invocations {
     /// Returns the sets for `count` invocations. `workgroups`: the number of workgroups, if the caller gives it.
     pub(super) fn sets(program: &Bytecode, stage: ShaderStage, count: u32, workgroups: Option<u32>) -> Vec<Self> {
-        let size = program.workgroup_size.iter().product::<u32>().max(1);
+        let size = program.workgroup_size.iter().fold(1u32, |size, length| size.saturating_mul(*length)).max(1);
         let set = |workgroups: u32, members: u32| Invocations { stage, workgroups, members, size };
         match (stage, workgroups) {
             (ShaderStage::Compute, Some(workgroups)) if size <= WHOLE => vec![set(workgroups, size)],
@@ -70,6 +70,7 @@ impl Invocations {
                 (Some(Binding::BuiltIn(BuiltIn::Position { .. })), _) => {
                     [0.5, 0.5, 0.125 * (number + 1) as f32, 1.0].map(f32::to_bits).to_vec()
                 }
+                (Some(Binding::BuiltIn(_)), Some(ScalarKind::Bool)) => vec![number % 2],
                 (Some(Binding::BuiltIn(_)), _) => vec![number, 0, 0],
                 (_, Some(ScalarKind::Float)) => vec![((number + 1) as f32 / 8.0).to_bits(); input.words.len()],
                 _ => vec![number + 1; input.words.len()],
@@ -106,8 +107,8 @@ impl Invocations {
         self.members == self.size
     }
 
-    /// Returns the number of invocations of a workgroup.
-    pub(super) fn size(&self) -> u32 {
-        self.size
+    /// Returns how many invocations of each workgroup run, and how many it has.
+    pub(super) fn part(&self) -> (u32, u32) {
+        (self.members, self.size)
     }
 }

@@ -3,7 +3,7 @@
 //! Input: the programs of a shader and the words by name. Output: the words of every binding. A texture holds one in every
 //! channel of every texel, as a cleared depth buffer does.
 
-use fragbuf_interpreter::{Bytecode, Space};
+use fragbuf_interpreter::{Buffer, Bytecode, Space};
 use fragbuf_model::nearest_name;
 use naga::ScalarKind;
 
@@ -18,49 +18,96 @@ const OPEN_WORDS: u32 = 64;
 /// The least elements of a runtime-sized array.
 const OPEN_ELEMENTS: u32 = 16;
 
+/// The most words of all buffers, including workgroup variables. Every state has them.
+pub(super) const MOST_WORDS: u64 = 1 << 14;
+
+/// The most words of all states of a search that are in memory at a time, about.
+pub(super) const STATE_WORDS: usize = 1 << 29;
+
 /// The textures of a shader.
 pub(super) const TEXELS: TexelLayout = TexelLayout { width: 16, height: 16, channels: 4 };
 
+/// A buffer or a texture. Several variables may have one binding.
+#[derive(Default)]
+struct Bound<'a> {
+    names: Vec<&'a str>,
+    words: usize,
+    /// Whether it ends in a runtime-sized array.
+    is_open: bool,
+    /// The content of words that the caller does not give.
+    other: u32,
+}
+
 /// Returns the initial content of every binding.
 pub(super) fn memory(programs: &[&Bytecode], shader: &Shader<'_>) -> Result<Memory, Error> {
-    let mut memory: Memory = Vec::new();
-    let mut names: Vec<&str> = Vec::new();
-    let mut set = |name: &str, binding: Option<(u32, u32)>, least: usize, word: u32| {
-        let given = shader.fill.iter().rfind(|(filled, _)| filled == name);
-        let mut words = given.map_or(Vec::new(), |(_, words)| words.clone());
-        words.resize(words.len().max(least), word);
-        let index = memory_index(binding);
-        if memory.len() <= index {
-            memory.resize(index + 1, Vec::new());
-        }
-        memory[index] = words;
-    };
+    check_size(programs)?;
+    let mut bound: Vec<Bound<'_>> = Vec::new();
     for program in programs {
         for buffer in program.buffers.iter().filter(|buffer| buffer.space != Space::Workgroup) {
-            let open = match buffer.element_words {
-                0 => 0,
-                element => OPEN_WORDS.max(element.saturating_mul(OPEN_ELEMENTS)),
-            };
-            set(&buffer.name, buffer.binding, (buffer.words.saturating_add(open)) as usize, 0);
-            names.push(&buffer.name);
+            let known = at_binding(&mut bound, buffer.binding);
+            known.names.push(&buffer.name);
+            known.words = known.words.max(buffer.words.saturating_add(open_words(buffer)) as usize);
+            known.is_open |= buffer.element_words > 0;
         }
         for texture in &program.textures {
-            let one = if texture.kind == ScalarKind::Float { 1f32.to_bits() } else { 1 };
-            set(&texture.name, texture.binding, (TEXELS.width * TEXELS.height * TEXELS.channels) as usize, one);
-            names.push(&texture.name);
+            let known = at_binding(&mut bound, texture.binding);
+            known.names.push(&texture.name);
+            known.words = (TEXELS.width * TEXELS.height * TEXELS.channels) as usize;
+            known.other = if texture.kind == ScalarKind::Float { 1f32.to_bits() } else { 1 };
         }
     }
-    for (name, words) in shader.fill {
-        if !names.contains(&name.as_str()) {
-            return Err(unknown(name, &names, shader));
-        }
-        let fixed = programs.iter().flat_map(|program| &program.buffers).find(|buffer| buffer.name == *name);
-        if let Some(buffer) = fixed.filter(|buffer| buffer.element_words == 0 && words.len() > buffer.words as usize) {
-            let text = format!("`{name}` has {} words, and is filled with {}", buffer.words, words.len());
+    let mut names: Vec<&str> = bound.iter().flat_map(|bound| bound.names.iter().copied()).collect();
+    names.sort_unstable();
+    names.dedup();
+    if let Some((name, _)) = shader.fill.iter().find(|(name, _)| !names.contains(&name.as_str())) {
+        return Err(unknown(name, &names, shader));
+    }
+    bound.iter().map(|bound| content(bound, shader)).collect()
+}
+
+fn at_binding<'b, 'a>(bound: &'b mut Vec<Bound<'a>>, binding: Option<(u32, u32)>) -> &'b mut Bound<'a> {
+    let index = memory_index(binding);
+    if bound.len() <= index {
+        bound.resize_with(index + 1, Bound::default);
+    }
+    &mut bound[index]
+}
+
+/// Returns the words of a binding.
+fn content(bound: &Bound<'_>, shader: &Shader<'_>) -> Result<Vec<u32>, Error> {
+    let mut given = shader.fill.iter().filter(|(name, _)| bound.names.contains(&name.as_str()));
+    let Some((name, filled)) = given.next() else { return Ok(vec![bound.other; bound.words]) };
+    if let Some((other, _)) = given.next() {
+        return Err(Error::Unable(format!("`{name}` and `{other}` fill the same words: give one of the two")));
+    }
+    let most = if bound.is_open { MOST_WORDS as usize } else { bound.words };
+    if filled.len() > most {
+        return Err(Error::Unable(format!("`{name}` can have {most} words, and is filled with {}", filled.len())));
+    }
+    let mut words = filled.clone();
+    words.resize(words.len().max(bound.words), bound.other);
+    Ok(words)
+}
+
+/// Returns the words that a runtime-sized array has at least.
+fn open_words(buffer: &Buffer) -> u32 {
+    match buffer.element_words {
+        0 => 0,
+        element => OPEN_WORDS.max(element.saturating_mul(OPEN_ELEMENTS)),
+    }
+}
+
+/// Checks that states are small.
+fn check_size(programs: &[&Bytecode]) -> Result<(), Error> {
+    for program in programs {
+        let words = program.buffers.iter().map(|buffer| u64::from(buffer.words) + u64::from(open_words(buffer)));
+        let sum: u64 = words.sum();
+        if sum > MOST_WORDS {
+            let text = format!("the buffers have {sum} words, and a check can have {MOST_WORDS}: use smaller arrays");
             return Err(Error::Unable(text));
         }
     }
-    Ok(memory)
+    Ok(())
 }
 
 fn unknown(name: &str, names: &[&str], shader: &Shader<'_>) -> Error {

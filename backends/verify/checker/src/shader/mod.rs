@@ -12,15 +12,17 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use fragbuf_interpreter::{Buffer, Bytecode, Exit, Machine, Space};
+use naga::ShaderStage;
+use naga::ShaderStage;
 
 use crate::context::SearchContext;
 use crate::memory::Memory;
 use crate::random_walk::walk;
 use crate::reduced::explore_reduced;
+use crate::relaxed::REPEATED;
 use crate::report::{Names, Schedule, code_location, failing_schedule, letter, step_violation};
-use crate::search::{Property, SearchResult, StateVerdict};
+use crate::search::{Failure, FailureKind, Property, SearchResult, StateVerdict};
 use crate::sequential::run_alone;
-use crate::state::State;
 use crate::verdict::{Error, Limits, Report};
 use crate::word_name::word_path;
 
@@ -51,108 +53,156 @@ const HOLDS: &str = "holds";
 /// of `memory_fence()`, `critical_begin()` and `critical_end()` have the same meaning as in fragbuf's templates.
 pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Error> {
     let source = ShaderSource::new(shader)?;
-    let mut report = Report::new(limits);
-    report.notes.extend(source.marker_note());
+    if shader.workgroups.is_some() && source.stage != ShaderStage::Compute {
+        return Err(Error::Unable(format!("`{}` is not a compute stage: it has no workgroups", shader.entry)));
+    }
     let programs: Vec<&Bytecode> = std::iter::once(&source.program).chain(&source.holds).collect();
     let memory = memory::memory(&programs, shader)?;
+    let mut check = ShaderCheck { source: &source, memory, limits, report: Report::new(limits) };
+    source.notes().into_iter().for_each(|note| check.note(note));
     let mut all: Vec<Invocations> = Vec::new();
     for &count in &limits.fragments {
         all.extend(Invocations::sets(&source.program, source.stage, count, shader.workgroups));
     }
     all.dedup();
+    if let Some(large) = all.iter().find(|invocations| invocations.count() > MOST) {
+        return Err(Error::Unable(format!("{} are more than {MOST} invocations", large.description())));
+    }
     for invocations in &all {
-        if invocations.count() > MOST {
-            let text = format!("{} are more than {MOST} invocations", invocations.description());
-            return Err(Error::Unable(text));
-        }
-        report.cases += 1;
-        // WGSL lets an index out of bounds reach any word of the buffer. wgpu and browsers drop the access, or clamp the index.
-        for clamps in [false, true] {
-            let places = check_invocations(&source, invocations, &memory, (limits, clamps), &mut report);
-            for place in &places {
-                let note = format!(
-                    "the index at {place} may be out of bounds: it was dropped and then clamped, and a device may reach any word of the \
-                     buffer"
-                );
-                if !report.notes.contains(&note) {
-                    report.notes.push(note);
-                }
-            }
-            if places.is_empty() || report.failure.is_some() {
-                break;
-            }
-        }
-        if report.failure.is_some() {
+        check.run(invocations);
+        if check.report.failure.is_some() {
             break;
         }
     }
-    if let Some(part) = all.iter().find(|set| !set.is_whole()) {
-        report.notes.push(format!(
-            "a part of the {} invocations of a workgroup runs, and no other invocation of it: what depends on the others is not checked",
-            part.size()
-        ));
-    }
-    Ok(report)
+    Ok(check.report)
 }
 
-/// Checks one set of invocations; returns where an index was out of bounds. `clamps`: it is then that of the last element.
-fn check_invocations(
-    source: &ShaderSource<'_>,
-    invocations: &Invocations,
-    memory: &Memory,
-    (limits, clamps): (&Limits, bool),
-    report: &mut Report,
-) -> BTreeSet<String> {
-    let program = &source.program;
-    let (mut context, words) = SearchContext::with_workgroups(program, memory, limits.model, invocations.workgroups());
-    context.has_weak_exchange = true;
-    context.is_reduced = limits.reduce;
-    context.texels = memory::TEXELS;
-    context.out_of_bounds = Some(RefCell::default());
-    context.clamps = clamps;
-    let case = format!("{} of {}", invocations.description(), source.shader.entry);
-    let fragments: Vec<(String, String)> =
-        (0..invocations.count()).map(|number| (letter(number as usize), invocations.name(number))).collect();
-    let resource = |buffer: &Buffer, word: u32| source.word_name(buffer, word);
-    let names = Names { resource: &resource, value: &|value| value.to_string() };
-    match context.start(words, invocations.machines(program)) {
-        Err((fragment, error)) => {
-            let violation = step_violation(&context, fragment, error, &source.text);
-            report.failure = Some(Schedule { case, fragments, violation, ..Schedule::default() });
+/// A check of one entry point.
+struct ShaderCheck<'a> {
+    source: &'a ShaderSource<'a>,
+    memory: Memory,
+    limits: &'a Limits,
+    report: Report,
+}
+
+/// What one search of a set of invocations has found.
+struct Found {
+    result: SearchResult,
+    failure: Option<Schedule>,
+    /// Whether the failure may come from invocations of a workgroup that do not run.
+    is_of_part: bool,
+    /// Where an index was out of bounds.
+    out_of_bounds: BTreeSet<String>,
+    has_forgotten: bool,
+}
+
+impl ShaderCheck<'_> {
+    /// Adds a note once.
+    fn note(&mut self, note: String) {
+        if !self.report.notes.contains(&note) {
+            self.report.notes.push(note);
         }
-        Ok(first) => {
-            let result = search(source, &context, &first, memory, limits);
-            report.states += result.states;
-            report.is_exhaustive &= result.is_exhaustive;
-            if let Some(failure) = &result.failure {
-                let schedule = failing_schedule(&context, &first, failure, &source.text, &names);
-                report.failure = Some(Schedule { case, fragments, ..schedule });
+    }
+
+    /// Checks one set of invocations.
+    fn run(&mut self, invocations: &Invocations) {
+        self.report.cases += 1;
+        // WGSL lets an index out of bounds reach any word of the buffer. wgpu and browsers drop the access, or clamp the index.
+        for clamps in [false, true] {
+            let found = self.search(&self.source.program, invocations, clamps);
+            self.report.states += found.result.states;
+            self.report.is_exhaustive &= found.result.is_exhaustive && !found.has_forgotten;
+            if found.has_forgotten {
+                self.note(format!(
+                    "a word gets one value more than {REPEATED} times: loads that observe earlier writes of the word are not checked"
+                ));
+            }
+            for place in &found.out_of_bounds {
+                self.note(format!(
+                    "the index at {place} may be out of bounds: the access was dropped, then clamped; a device may reach any word of \
+                     the buffer"
+                ));
+            }
+            match found.failure {
+                Some(schedule) if found.is_of_part => {
+                    self.report.is_exhaustive = false;
+                    let (members, size) = invocations.part();
+                    self.note(format!(
+                        "with {members} of {size} invocations of a workgroup: {}. The others do not run, so this decides nothing",
+                        schedule.violation
+                    ));
+                }
+                failure => self.report.failure = failure,
+            }
+            if !invocations.is_whole() {
+                let (members, size) = invocations.part();
+                self.note(format!(
+                    "{members} of the {size} invocations of a workgroup run: what depends on the others is not checked"
+                ));
+            }
+            if found.out_of_bounds.is_empty() || self.report.failure.is_some() {
+                break;
+            }
+        }
+        // The order of some accesses cannot be observed, so they are no steps. A schedule shows them.
+        let commutes = self.source.program.buffers.iter().any(|buffer| buffer.commutes);
+        if self.report.failure.is_some() && commutes {
+            let mut program = self.source.program.clone();
+            program.buffers.iter_mut().for_each(|buffer| buffer.commutes = false);
+            if let Some(schedule) = self.search(&program, invocations, false).failure {
+                self.report.failure = Some(schedule);
             }
         }
     }
-    if context.has_forgotten.get() {
-        let note =
-            "a word gets the same values again and again: a load that observes a value from long before is not checked"
-                .to_owned();
-        if !report.notes.contains(&note) {
-            report.notes.push(note);
-        }
-    }
-    let known = context.out_of_bounds.take().map(RefCell::into_inner).unwrap_or_default();
-    known.iter().map(|at| code_location(program, *at, &source.text)).collect()
-}
 
-fn search(
-    source: &ShaderSource<'_>,
-    context: &SearchContext<'_>,
-    first: &State,
-    memory: &Memory,
-    limits: &Limits,
-) -> SearchResult {
-    let mut property = HoldsProperty { holds: source.holds.as_ref(), memory: memory.clone(), context };
-    match limits.random_schedules {
-        Some(seeds) => walk(context, first, &mut property, seeds),
-        None => explore_reduced(context, first.clone(), &mut property, limits.states),
+    /// Searches one set of invocations. `clamps`: an index out of bounds is that of the last element.
+    fn search(&self, program: &Bytecode, invocations: &Invocations, clamps: bool) -> Found {
+        let ShaderCheck { source, memory, limits, .. } = self;
+        let (mut context, words) =
+            SearchContext::with_workgroups(program, memory, limits.model, invocations.workgroups());
+        context.has_weak_exchange = true;
+        context.is_reduced = limits.reduce;
+        context.texels = memory::TEXELS;
+        context.out_of_bounds = Some(RefCell::default());
+        context.clamps = clamps;
+        let states = limits.states.min(memory::STATE_WORDS / (words.len() + 1));
+        let names = Names {
+            resource: &|buffer: &Buffer, word: u32| source.word_name(buffer, word),
+            value: &|value| value.to_string(),
+        };
+        let (result, schedule) = match context.start(words, invocations.machines(program)) {
+            Err((fragment, error)) => {
+                let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(fragment, error) });
+                let result = SearchResult { is_exhaustive: true, failure, ..SearchResult::default() }.decided();
+                let violation = step_violation(&context, fragment, error, &source.text);
+                (result, Schedule { violation, ..Schedule::default() })
+            }
+            Ok(first) => {
+                let holds = source.holds.as_ref();
+                let mut property = HoldsProperty { holds, initial: memory, context: &context };
+                let result = match limits.random_schedules {
+                    Some(seeds) => walk(&context, &first, &mut property, seeds),
+                    None => explore_reduced(&context, first.clone(), &mut property, states),
+                };
+                let result = result.decided();
+                let schedule = result.failure.as_ref();
+                let schedule =
+                    schedule.map(|failure| failing_schedule(&context, &first, failure, &source.text, &names));
+                (result, schedule.unwrap_or_default())
+            }
+        };
+        let is_of_part = !invocations.is_whole()
+            && result.failure.as_ref().is_some_and(|failure| !matches!(failure.kind, FailureKind::Step(..)));
+        let failure = result.failure.as_ref().map(|_| Schedule {
+            case: format!("{} of {}", invocations.description(), source.shader.entry),
+            fragments: (0..invocations.count())
+                .map(|number| (letter(number as usize), invocations.name(number)))
+                .collect(),
+            ..schedule
+        });
+        let known = context.out_of_bounds.take().map(RefCell::into_inner).unwrap_or_default();
+        let out_of_bounds = known.iter().map(|at| code_location(program, *at, &source.text)).collect();
+        Found { has_forgotten: context.has_forgotten.get(), result, failure, is_of_part, out_of_bounds }
     }
 }
 
@@ -176,7 +226,7 @@ impl ShaderSource<'_> {
 /// The property that the shader's function `holds` returns true in final states.
 struct HoldsProperty<'a, 'p> {
     holds: Option<&'a Bytecode>,
-    memory: Memory,
+    initial: &'a Memory,
     context: &'a SearchContext<'p>,
 }
 
@@ -187,11 +237,12 @@ impl Property for HoldsProperty<'_, '_> {
 
     fn final_state(&mut self, words: &[u32]) -> StateVerdict {
         let Some(holds) = self.holds else { return StateVerdict::Correct };
+        let mut memory = self.initial.clone();
         for (index, first, count) in self.context.state_buffers() {
-            self.memory[index].copy_from_slice(&words[first..first + count]);
+            memory[index].copy_from_slice(&words[first..first + count]);
         }
         let mut machine = Machine::new(holds);
-        match run_alone(&mut machine, &mut self.memory) {
+        match run_alone(&mut machine, &mut memory) {
             Ok(Exit::Ended) if machine.result() == [1] => StateVerdict::Correct,
             Ok(Exit::Ended) => StateVerdict::Wrong(format!("`{HOLDS}` returns false")),
             Ok(_) => StateVerdict::Wrong(format!("`{HOLDS}` does not end")),

@@ -3,15 +3,16 @@
 //! Input: WGSL source. Output: the programs of the entry point and of the function `holds`, with the module that names its
 //! variables. Pipeline-overridable constants have their values.
 
-use fragbuf_codegen::{Profile, SourceMap};
-use fragbuf_interpreter::{Bytecode, Options, Unsupported};
+use fragbuf_codegen::{Profile, SourceMap, too_long};
+use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT, Options, Space, Unsupported};
 use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
 use fragbuf_targets::capabilities;
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides};
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
-use naga::{Module, ShaderStage, SourceLocation};
+use naga::{Module, ResourceBinding, ShaderStage, SourceLocation, TypeInner};
 
 use crate::programs::{CheckedSource, MARKERS};
+use crate::report::code_location;
 use crate::verdict::Error;
 
 use super::{HOLDS, Shader};
@@ -34,14 +35,20 @@ impl<'a> ShaderSource<'a> {
     pub(super) fn new(shader: &'a Shader<'a>) -> Result<Self, Error> {
         let (module, info) = validated(shader, shader.source)?;
         let stage = entry_stage(&module, shader)?;
-        let has_holds = module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(HOLDS));
+        let has_holds = has_holds(&module, shader)?;
         let compiled = |module: &Module, info: &ModuleInfo, is_holds: bool| {
             let options = Options { markers: &MARKERS, ..Options::default() };
             let program = match is_holds {
                 true => Bytecode::function(module, info, HOLDS, &options).and_then(Bytecode::without_textures),
                 false => Bytecode::entry_point(module, info, shader.entry, &options),
             };
-            program.map_err(|unsupported| unsupported_error(&unsupported, shader))
+            let program = program.map_err(|unsupported| unsupported_error(&unsupported, shader))?;
+            if is_holds && program.buffers.iter().any(|buffer| buffer.space == Space::Workgroup) {
+                let text =
+                    format!("{}: `{HOLDS}` reads workgroup variables, which end with the workgroup", shader.file);
+                return Err(Error::Unable(text));
+            }
+            Ok(program)
         };
         let text =
             CheckedSource { text: shader.source.to_owned(), lines: SourceMap::default(), file: shader.file.to_owned() };
@@ -64,14 +71,33 @@ impl<'a> ShaderSource<'a> {
         Ok(ShaderSource { shader, module: constant, stage, program, holds, text })
     }
 
+    /// Returns notes on what the verdict depends on: that nothing states what is right, and loops that are taken to wait.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let mut notes: Vec<String> = self.marker_note().into_iter().collect();
+        if self.holds.is_none() {
+            notes.push(format!(
+                "{} has no `fn {HOLDS}() -> bool`, which would state what is right in the end: nothing checks the final state",
+                self.shader.file
+            ));
+        }
+        let mut places: Vec<String> =
+            self.program.retry_loops().map(|at| code_location(&self.program, at, &self.text)).collect();
+        places.dedup();
+        for place in places {
+            notes.push(format!(
+                "the loop at {place} is taken to wait while another invocation can change what it reads, because it has at least \
+                 {LEAST_RETRY_LIMIT} attempts"
+            ));
+        }
+        notes
+    }
+
     /// Returns a note on functions that stand for what WGSL does not have.
-    pub(super) fn marker_note(&self) -> Option<String> {
-        let is_declared = |name: &str| self.module.functions.iter().any(|(_, one)| one.name.as_deref() == Some(name));
+    fn marker_note(&self) -> Option<String> {
         let names: Vec<String> = MARKERS
             .iter()
-            .map(|(name, _)| *name)
-            .filter(|name| is_declared(name))
-            .map(|name| format!("`{name}`"))
+            .filter(|(_, marker)| self.program.calls(*marker))
+            .map(|(name, _)| format!("`{name}`"))
             .collect();
         let (last, before) = names.split_last()?;
         let all = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
@@ -80,13 +106,34 @@ impl<'a> ShaderSource<'a> {
     }
 }
 
+/// Gives bindings consecutive numbers, because memory is a list by number. Variables of equal bindings stay together.
+fn renumber(module: &mut Module) {
+    let mut known = Vec::new();
+    for (_, variable) in module.global_variables.iter_mut() {
+        let Some(binding) = &mut variable.binding else { continue };
+        let number = known.iter().position(|other| other == binding).unwrap_or_else(|| {
+            known.push(*binding);
+            known.len() - 1
+        });
+        *binding = ResourceBinding { group: 0, binding: number as u32 };
+    }
+}
+
 /// Parses and validates source.
 fn validated(shader: &Shader<'_>, text: &str) -> Result<(Module, ModuleInfo), Error> {
+    if let Some((at, message)) = too_long(text) {
+        let before = text.get(..at).unwrap_or_default();
+        let line = before.matches('\n').count() as u32 + 1;
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) as u32 + 1;
+        let span = SourceSpan::new(shader.file, line, column);
+        return Err(Error::Description(Diagnostic::new(codes::INVALID_WGSL, &span, message, "divide it").into()));
+    }
     let capabilities = capabilities(Profile::Native);
     let options = naga::front::wgsl::Options { parse_doc_comments: false, capabilities };
-    let module = naga::front::wgsl::Frontend::new_with_options(options)
+    let mut module = naga::front::wgsl::Frontend::new_with_options(options)
         .parse(text)
         .map_err(|error| invalid(shader, error.location(text), error.message().to_owned()))?;
+    renumber(&mut module);
     let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|error| invalid(shader, error.location(text), causes(error.as_inner())))?;
@@ -107,6 +154,21 @@ fn invalid(shader: &Shader<'_>, location: Option<SourceLocation>, message: Strin
     });
     let help = "the checker reads WGSL as naga does";
     Error::Description(Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into())
+}
+
+/// Returns whether the module has the function `holds`, whose signature is checked.
+fn has_holds(module: &Module, shader: &Shader<'_>) -> Result<bool, Error> {
+    let mut functions = module.functions.iter();
+    let Some((handle, function)) = functions.find(|(_, function)| function.name.as_deref() == Some(HOLDS)) else {
+        return Ok(false);
+    };
+    let result = function.result.as_ref().map(|result| &module.types[result.ty].inner);
+    let is_bool = matches!(result, Some(TypeInner::Scalar(scalar)) if *scalar == naga::Scalar::BOOL);
+    if is_bool && function.arguments.is_empty() {
+        return Ok(true);
+    }
+    let location = module.functions.get_span(handle).location(shader.source);
+    Err(invalid(shader, Some(location), format!("`{HOLDS}` has no arguments and returns `bool`")))
 }
 
 fn entry_stage(module: &Module, shader: &Shader<'_>) -> Result<ShaderStage, Error> {

@@ -1,5 +1,5 @@
 // entry: main; fragments: 2,3; sc: holds; relaxed: holds
-// why: The table is written before a fence and the flag; whoever observes the flag fences before the read. The lock orders the slow path.
+// why: The table is written before a fence and the flag; an invocation that observes the flag fences before the read. The lock orders the slow path.
 // after: double-checked locking (Schmidt and Harrison 1996)
 @group(0) @binding(0) var<storage, read_write> lock: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> ready: atomic<u32>;

@@ -1,5 +1,5 @@
 // entry: store; fragments: 2; sc: wrong; relaxed: wrong
-// why: A fragment gives up after eight attempts, although the lock is released later. Loops below 32 attempts are followed exactly.
+// why: A fragment ends after eight attempts, although the lock is released later. Loops below 32 attempts are followed exactly.
 // after: spin locks with a bound against GPU hangs
 @group(0) @binding(0) var<storage, read_write> lock: atomic<u32>;
 @coherent @group(0) @binding(1) var<storage, read_write> sum: u32;

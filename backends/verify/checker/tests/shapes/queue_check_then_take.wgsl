@@ -1,5 +1,5 @@
 // entry: main; fragments: 3; sc: deadlock; relaxed: deadlock
-// why: Two consumers can both read a count of 1 and both take a position; the second waits for an item that nobody produces.
+// why: Two consumers can both read a count of 1 and both take a position; the second waits for an item that no invocation produces.
 // after: cryvosh/queue without the decrement that reserves an item
 @group(0) @binding(0) var<storage, read_write> count: atomic<i32>;
 @group(0) @binding(1) var<storage, read_write> ends: array<atomic<u32>, 2>;
