@@ -35,16 +35,21 @@ pub mod verdict {}
 #[doc = include_str!("guide/diagnostics.md")]
 pub mod diagnostics {}
 #[doc = include_str!("guide/codes.md")]
+#[doc = include_str!("guide/model_warnings.md")]
 pub mod codes {}
 
-/// The chapter [`codes`] as Markdown.
-const CODES: &str = include_str!("guide/codes.md");
+/// The chapter [`codes`] as Markdown: descriptions, then models.
+const CODES: [&str; 2] = [include_str!("guide/codes.md"), include_str!("guide/model_warnings.md")];
 
-/// Returns the section about a code of a diagnostic, from the chapter [`codes`].
-pub fn explanation(code: &str) -> Option<&'static str> {
+/// Returns the sections about a code of a diagnostic, from the chapter [`codes`]. Descriptions and models share two codes.
+pub fn explanation(code: &str) -> Option<String> {
     let heading = format!("## `{code}`\n");
-    let start = CODES.find(&heading)?;
-    let rest = CODES.get(start + heading.len()..)?;
-    let end = rest.find("\n## ").map_or(rest.len(), |end| end + 1);
-    CODES.get(start..start + heading.len() + end)
+    let section = |part: &&'static str| {
+        let start = part.find(&heading)?;
+        let rest = part.get(start + heading.len()..)?;
+        let end = rest.find("\n## ").map_or(rest.len(), |end| end + 1);
+        part.get(start..start + heading.len() + end)
+    };
+    let sections: Vec<&str> = CODES.iter().filter_map(section).collect();
+    (!sections.is_empty()).then(|| sections.join("\n"))
 }

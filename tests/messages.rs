@@ -155,6 +155,12 @@ fn every_code_is_explained() {
         };
         assert!(found.iter().any(|found| found.code == *code), "{section}\n{found}");
     }
+    for kind in fragbuf_scene::WarningKind::ALL {
+        let section = guide::explanation(kind.code()).unwrap_or_else(|| panic!("no section about {}", kind.code()));
+        assert!(section.contains("*Cause:* ") && section.contains("*Fix:* "), "{section}");
+    }
+    let models = include_str!("../src/guide/model_warnings.md").matches("\n## ").count();
+    assert_eq!(models, fragbuf_scene::WarningKind::ALL.len(), "a section about no code");
     let sections = include_str!("../src/guide/codes.md").matches("\n## ").count();
     assert_eq!(sections, codes::ALL.len(), "a section about no code");
     let unknown = fragbuf(&["explain", "unknwon-axis"], root);

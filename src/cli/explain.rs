@@ -24,6 +24,6 @@ impl Explain {
             let known: Vec<&str> = codes::ALL.iter().map(|code| code.name).collect();
             return Err(Failure::unknown("diagnostic", name, &known));
         };
-        output::print(section)
+        output::print(&section)
     }
 }

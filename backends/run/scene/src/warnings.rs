@@ -48,6 +48,19 @@ pub enum WarningKind {
 }
 
 impl WarningKind {
+    /// Every kind.
+    pub const ALL: [WarningKind; 9] = [
+        WarningKind::MissingFile,
+        WarningKind::MissingMaterial,
+        WarningKind::MissingScene,
+        WarningKind::InvalidNormal,
+        WarningKind::DegenerateFace,
+        WarningKind::UnknownStatement,
+        WarningKind::OutOfRange,
+        WarningKind::Invisible,
+        WarningKind::NotRead,
+    ];
+
     /// Returns the code of the warning in messages.
     pub fn code(self) -> &'static str {
         match self {

@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 
 use fragbuf_interpreter::{Buffer, Bytecode, Exit, Machine, Space};
 use naga::ShaderStage;
-use naga::ShaderStage;
 
 use crate::context::SearchContext;
 use crate::memory::Memory;

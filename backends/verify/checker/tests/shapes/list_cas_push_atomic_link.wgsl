@@ -1,5 +1,5 @@
-// entry: main; fragments: 2,3; sc: holds; relaxed: holds
-// why: As list_cas_push with atomic links: the exchange succeeds only on the link that was stored last. The loop ends if weak failures do.
+// entry: main; fragments: 2,3; sc: holds; relaxed: undecided
+// why: As list_cas_push with atomic links: the exchange succeeds only on the link that was stored last. The loop ends if weak failures do. Under relaxed memory the loop has infinitely many histories.
 // after: Treiber stack (IBM RJ 5118, 1986)
 @group(0) @binding(0) var<storage, read_write> head: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> next: array<atomic<u32>, 4>;

@@ -1,5 +1,5 @@
-// entry: main; fragments: 2; sc: holds; relaxed: holds
-// why: The waiting invocation changes another word in each attempt, but a schedule that ends exists from every state.
+// entry: main; fragments: 2; sc: holds; relaxed: undecided
+// why: The waiting invocation changes another word in each attempt, but a schedule that ends exists from every state. Under relaxed memory the loop has infinitely many histories.
 // after: a lock that announces interest while it waits (Dekker)
 @group(0) @binding(0) var<storage, read_write> a: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> b: atomic<u32>;
