@@ -1,4 +1,4 @@
-//! Parses `name=value` arguments of `--set` and `--uniform`.
+//! Parses `name=value` arguments of `--set`, `--uniform` and `--attribute`.
 
 /// Parses `axis=value`, `axis.option=value` or `k=8`.
 pub(crate) fn assignment(text: &str) -> Result<(String, String), String> {
@@ -15,6 +15,18 @@ pub(crate) fn uniform(text: &str) -> Result<(String, String), String> {
         Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
         _ => Err(
             "write name=value: a uniform of the description and its value, as `cut=0.5`, or `tint=1,0,0` for a vector"
+                .to_owned(),
+        ),
+    }
+}
+
+/// Parses `name=value` of an attribute.
+#[cfg(feature = "pictures")]
+pub(crate) fn attribute(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err(
+            "write name=value: an attribute of the fragments and its value, as `heat=0.3`, or `flow=0,1` for a vector"
                 .to_owned(),
         ),
     }

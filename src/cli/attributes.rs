@@ -1,10 +1,12 @@
-//! Converts the scene's vertices to a description's payload. The name of an attribute selects the scene's data.
+//! Converts the scene's vertices to a description's payload. The name of an attribute selects the scene's data, data of the model, or a
+//! value of `--attribute`.
 
 use std::ops::Range;
 
+use fragbuf::Variant;
 use fragbuf_codegen::Plan;
-use fragbuf_model::Format;
-use fragbuf_scene::{Object, Scene};
+use fragbuf_model::{Format, nearest_name};
+use fragbuf_scene::{AttributeRequest, AvailableAttribute, Object, Scene};
 
 use super::memory::Budget;
 use super::output::Failure;
@@ -21,7 +23,7 @@ pub(crate) struct Geometry {
 /// A function that returns the words of one attribute of a vertex.
 type ReadWords = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
 
-/// The data of a scene: its names, the formats that it can be read as, and the function that reads it.
+/// The data of every scene: its names, the formats that it can be read as, and the function that reads it.
 const SCENE_DATA: [(&[&str], &[Format], ReadWords); 4] = [
     (&["color", "colour"], &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3], |object, _, vertex| {
         bits(&object.colors, vertex)
@@ -31,12 +33,107 @@ const SCENE_DATA: [(&[&str], &[Format], ReadWords); 4] = [
     (&["id", "object"], &[Format::U32], |_, id, _| [id, 0, 0, 0]),
 ];
 
+/// The attribute that the rasteriser computes.
+const DEPTH: &str = "depth";
+
+/// The greatest number of attributes of a model that a message lists.
+const MAX_LISTED: usize = 12;
+
+/// Where the words of an attribute come from.
+enum Source {
+    /// The data of every scene.
+    Scene(ReadWords),
+    /// An attribute of the model, by its index in the scene.
+    Model(usize),
+    /// A value of the command line, for every vertex.
+    Value([u32; 4]),
+}
+
+/// An attribute that the scene must be opened with, and its format in the description.
+#[derive(Clone, PartialEq)]
+pub(crate) struct ModelAttribute {
+    pub(crate) request: AttributeRequest,
+    format: Format,
+}
+
+/// Returns the attributes of descriptions that are neither data of every scene nor `given` on the command line, and checks those
+/// that are given.
+pub(crate) fn model_attributes(
+    variants: &[&Variant],
+    given: &[(String, String)],
+) -> Result<Vec<ModelAttribute>, Failure> {
+    let attributes = || {
+        let attributes = variants.iter().flat_map(|variant| &variant.attributes);
+        attributes.map(|attribute| (attribute.name.value.as_str(), attribute.format.value))
+    };
+    let names: Vec<&str> = attributes().map(|(name, _)| name).filter(|name| *name != DEPTH).collect();
+    if let Some((name, _)) = given.iter().find(|(name, _)| !names.contains(&name.as_str())) {
+        let known = match (nearest_name(name, &names), names.is_empty()) {
+            (_, true) => "it has none that can be set".to_owned(),
+            (Some(nearest), false) => format!("did you mean `{nearest}`? it has {}", names.join(", ")),
+            (None, false) => format!("it has {}", names.join(", ")),
+        };
+        return Err(Failure::Usage(format!("the description has no attribute `{name}` to set: {known}")));
+    }
+    let mut found: Vec<ModelAttribute> = Vec::new();
+    for (name, format) in attributes().filter(|(name, _)| *name != DEPTH) {
+        if value(name, format, given)?.is_some() || SCENE_DATA.iter().any(|(names, ..)| names.contains(&name)) {
+            continue;
+        }
+        let attribute = ModelAttribute { request: request(name, format), format };
+        if found.iter().all(|other| other.request != attribute.request) {
+            found.push(attribute);
+        }
+    }
+    Ok(found)
+}
+
+/// Returns the failure for a scene without one of the attributes that it was opened with.
+pub(crate) fn missing(
+    scene: &str,
+    request: &AttributeRequest,
+    available: &[AvailableAttribute],
+    attributes: &[ModelAttribute],
+) -> Failure {
+    let attribute = attributes.iter().find(|attribute| attribute.request == *request);
+    let format = attribute.map_or("", |attribute| attribute.format.keyword());
+    let name = &request.name;
+    let names = available.iter().map(|attribute| attribute.name.as_str());
+    let names: Vec<&str> = names.chain(SCENE_DATA.iter().flat_map(|(names, ..)| names.iter().copied())).collect();
+    let nearest = nearest_name(name, &names).filter(|nearest| !nearest.eq_ignore_ascii_case(name));
+    let nearest = nearest.map_or(String::new(), |nearest| format!("did you mean `{nearest}`? "));
+    let of_model: Vec<String> = available
+        .iter()
+        .take(MAX_LISTED)
+        .map(|attribute| {
+            let formats = ["f32 or u32", "vec2", "vec3", "vec4"];
+            let format = attribute.components.checked_sub(1).and_then(|index| formats.get(index));
+            format!("{} ({}), ", attribute.name, format.unwrap_or(&"more components"))
+        })
+        .collect();
+    let more = available.len().saturating_sub(MAX_LISTED);
+    let more = if more == 0 { String::new() } else { format!("{more} more of the model, ") };
+    Failure::Input(format!(
+        "{scene}: the scene has no `{name}: {format}` for the fragments: {nearest}it has {}{more}{}, and {DEPTH}; {}",
+        of_model.concat(),
+        scene_data(),
+        advice(request)
+    ))
+}
+
 /// Returns the vertices as the plan's geometry passes read them: the position, then the attributes in their order, without
-/// depth. They are taken from `memory`.
-pub(crate) fn geometry(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Geometry, Failure> {
-    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != "depth");
-    let columns = attributes.map(|attribute| column(&attribute.name.value, attribute.format.value));
-    let columns: Vec<(usize, ReadWords)> = columns.collect::<Result<_, _>>()?;
+/// depth. `given` are values of the command line. The vertices are taken from `memory`.
+pub(crate) fn geometry(
+    (scene, given): (&Scene, &[(String, String)]),
+    plan: &Plan,
+    memory: Budget,
+) -> Result<Geometry, Failure> {
+    let attributes = plan.variant.attributes.iter().filter(|attribute| attribute.name.value != DEPTH);
+    let columns = attributes.map(|attribute| {
+        let (name, format) = (attribute.name.value.as_str(), attribute.format.value);
+        Ok((words(format), source(name, format, scene, given)?))
+    });
+    let columns: Vec<(usize, Source)> = columns.collect::<Result<_, Failure>>()?;
     let stride = 3 + columns.iter().map(|(words, _)| words).sum::<usize>();
     let words = stride.saturating_mul(scene.vertices());
     let bytes = (words as u64).saturating_add(3 * scene.triangles() as u64).saturating_mul(4);
@@ -49,10 +146,14 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Geo
     let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
     for (id, object) in (0..).zip(&scene.objects) {
         for vertex in 0..object.positions.len() {
-            let position = bits(&object.positions, vertex);
-            let attributes = columns.iter().map(|(words, read)| (*words, read(object, id, vertex)));
-            for (words, values) in std::iter::once((3, position)).chain(attributes) {
-                vertices.extend(values.iter().take(words));
+            vertices.extend(bits(&object.positions, vertex).iter().take(3));
+            for (words, source) in &columns {
+                let values = match source {
+                    Source::Scene(read) => read(object, id, vertex),
+                    Source::Model(index) => model_words(object, *index, (*words, vertex)),
+                    Source::Value(value) => *value,
+                };
+                vertices.extend(values.iter().take(*words));
             }
         }
         let begin = indices.len() as u32;
@@ -63,30 +164,84 @@ pub(crate) fn geometry(scene: &Scene, plan: &Plan, memory: Budget) -> Result<Geo
     Ok(Geometry { vertices, indices, objects, memory })
 }
 
-/// Returns the number of words of an attribute in a vertex, and the function that reads them.
-fn column(name: &str, format: Format) -> Result<(usize, ReadWords), Failure> {
-    let found = SCENE_DATA.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format));
-    let Some((_, _, read)) = found else {
-        let known: Vec<String> = SCENE_DATA
-            .iter()
-            .map(|(names, formats, _)| {
-                let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
-                format!("{} ({})", names.join(" or "), formats.join(", "))
-            })
-            .collect();
-        return Err(Failure::Input(format!(
-            "the scene has no `{name}: {}` for the fragments: it has {}, and depth",
+/// Returns the source of an attribute. A value of the command line has precedence.
+fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)]) -> Result<Source, Failure> {
+    if let Some(value) = value(name, format, given)? {
+        return Ok(Source::Value(value));
+    }
+    if let Some((_, _, read)) =
+        SCENE_DATA.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format))
+    {
+        return Ok(Source::Scene(*read));
+    }
+    let request = request(name, format);
+    let index = scene.attributes.iter().position(|attribute| *attribute == request);
+    index.map(Source::Model).ok_or_else(|| {
+        Failure::Input(format!(
+            "the scene has no `{name}: {}` for the fragments: it has {}, and {DEPTH}; {}",
             format.keyword(),
-            known.join(", ")
-        )));
+            scene_data(),
+            advice(&request)
+        ))
+    })
+}
+
+/// Returns the advice to set an attribute on the command line.
+fn advice(AttributeRequest { name, components, is_integer }: &AttributeRequest) -> String {
+    let value = vec![if *is_integer { "1" } else { "0.5" }; *components].join(",");
+    format!("`--attribute {name}={value}` sets a value for every vertex")
+}
+
+/// Returns the names and formats of the data of every scene.
+fn scene_data() -> String {
+    let one = |(names, formats, _): &(&[&str], &[Format], ReadWords)| {
+        let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
+        format!("{} ({})", names.join(" or "), formats.join(", "))
     };
-    let words = match format {
+    SCENE_DATA.iter().map(one).collect::<Vec<String>>().join(", ")
+}
+
+/// Returns the attribute of a model for one of a description.
+fn request(name: &str, format: Format) -> AttributeRequest {
+    AttributeRequest { name: name.to_owned(), components: words(format), is_integer: format == Format::U32 }
+}
+
+/// Returns the number of words of a format in a vertex.
+fn words(format: Format) -> usize {
+    match format {
         Format::F32 | Format::U32 => 1,
         Format::Vec2 => 2,
         Format::Vec3 | Format::Octahedral => 3,
         Format::Vec4 | Format::Rgba8 | Format::Rgba16 => 4,
+    }
+}
+
+/// Parses the last value for an attribute on the command line. `None`: there is none.
+fn value(name: &str, format: Format, given: &[(String, String)]) -> Result<Option<[u32; 4]>, Failure> {
+    let Some((_, text)) = given.iter().rev().find(|(other, _)| other == name) else { return Ok(None) };
+    let word = |part: &str| match format {
+        Format::U32 => part.parse().ok(),
+        _ => part.parse().ok().filter(|value: &f32| value.is_finite()).map(f32::to_bits),
     };
-    Ok((words, *read))
+    let parsed: Option<Vec<u32>> = text.split(',').map(|part| word(part.trim())).collect();
+    let count = words(format);
+    match parsed.filter(|parsed| parsed.len() == count) {
+        Some(parsed) => Ok(Some(std::array::from_fn(|index| parsed.get(index).copied().unwrap_or(0)))),
+        None => {
+            let expected = match (format, count) {
+                (Format::U32, _) => "one whole number, 0 or more".to_owned(),
+                (_, 1) => "one number".to_owned(),
+                _ => format!("{count} numbers, separated by commas"),
+            };
+            Err(Failure::Usage(format!("attribute `{name}: {}` takes {expected}, not `{text}`", format.keyword())))
+        }
+    }
+}
+
+/// Returns the words of an attribute of the model, padded with 0.
+fn model_words(object: &Object, index: usize, (count, vertex): (usize, usize)) -> [u32; 4] {
+    let words = object.attributes.get(index).and_then(|words| words.get(vertex * count..(vertex + 1) * count));
+    std::array::from_fn(|index| words.and_then(|words| words.get(index)).copied().unwrap_or(0))
 }
 
 /// Returns the bits of a vertex's values, padded with 0.

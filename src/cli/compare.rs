@@ -1,14 +1,20 @@
 //! `fragbuf compare`: renders a scene with two descriptions and measures the difference between the images. The image that it
-//! writes is a heat map of the difference, from black (none) over red and yellow to white (the greatest difference).
+//! writes is a heat map of the difference: black is 0, red a third of the greatest difference, yellow two thirds, white all of it.
 
+use std::collections::BTreeMap;
+
+use fragbuf::{Registry, Variant};
 use serde_json::json;
 
 use super::assignment::{assignment, uniform};
+use super::attributes::model_attributes;
+use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
 use super::rendering::{RenderRequest, render};
 use super::statistics::{FragmentCounts, statistics};
+use super::uniforms;
 use super::view::{View, scenes};
 
 #[derive(clap::Args)]
@@ -27,9 +33,15 @@ pub(crate) struct Compare {
     /// Change only the second description
     #[arg(long = "set-second", value_name = "NAME=VALUE", value_parser = assignment)]
     set_second: Vec<(String, String)>,
-    /// Set a uniform of both descriptions [default: 0]
+    /// Set a uniform of each description that has it [default: 0]
     #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
     uniforms: Vec<(String, String)>,
+    /// Set a uniform of the first description, after `--uniform`
+    #[arg(long = "uniform-first", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
+    uniforms_first: Vec<(String, String)>,
+    /// Set a uniform of the second description, after `--uniform`
+    #[arg(long = "uniform-second", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
+    uniforms_second: Vec<(String, String)>,
     #[command(flatten)]
     view: View,
 }
@@ -43,17 +55,18 @@ impl Compare {
         }
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
-        let (scene, opaque) = view.scene_views()?;
+        let [mut first, mut second] = self.sides()?;
+        let attributes = model_attributes(&[&first.variant, &second.variant], &view.attributes)?;
+        let (scene, opaque) = view.scene_views(&attributes)?;
         let opaque = opaque.as_ref();
-        let one = |description: &str, set: &[(String, String)], held: u64| {
-            let set = [&self.set, set].concat();
+        let one = |side: &mut Side<'_>, held: u64| {
+            let Side { description, input, set, uniforms, .. } = side;
             // The hit ratio needs every event.
-            let request =
-                RenderRequest { description, set: &set, uniforms: &self.uniforms, count_all: true, opaque, held };
-            render(&request, view, &scene, &progress)
+            let request = RenderRequest { description, set, uniforms, count_all: true, opaque, held };
+            render(&request, input, view, &scene, &progress)
         };
-        let first = one(&self.first, &self.set_first, view.image_bytes(DIFFERENCE))?;
-        let second = one(&self.second, &self.set_second, view.image_bytes(DIFFERENCE + IMAGE))?;
+        let first = one(&mut first, view.image_bytes(DIFFERENCE))?;
+        let second = one(&mut second, view.image_bytes(DIFFERENCE + IMAGE))?;
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         let pixels = first.stats.pixels.iter().map(shown).zip(second.stats.pixels.iter().map(shown));
         let difference = Difference::of(pixels);
@@ -65,6 +78,7 @@ impl Compare {
                 "psnr": difference.psnr(),
                 "max_error": difference.greatest,
                 "different_pixels": difference.count,
+                "heat_map": COLORS.into_iter().zip(difference.scale()).collect::<BTreeMap<_, _>>(),
                 "hit_ratio": hits,
                 "first": statistics(&self.first, &first, &scene),
                 "second": statistics(&self.second, &second, &scene),
@@ -72,15 +86,52 @@ impl Compare {
         }
         let psnr = difference.psnr().map_or("infinite".to_owned(), |psnr| format!("{psnr:.2} dB"));
         let [a, b] = hits.map(|hit| hit.map_or("not counted".to_owned(), |hit| format!("{hit:.4}")));
+        let colors = COLORS.into_iter().zip(difference.scale());
+        let colors: Vec<String> = colors.map(|(color, value)| format!("{color} {value:.4}")).collect();
         output::print(&format!(
-            "PSNR       {psnr}\nmax error  {:.2}/255 ({} pixels differ)\nhit ratio  {a} {}, {b} {}\n",
+            "PSNR       {psnr}\nmax error  {:.4} ({:.2}/255), {} pixels differ\nheat map   {}\nhit ratio  {a} {}, {b} {}\n",
+            difference.greatest,
             255.0 * difference.greatest,
             difference.count,
+            colors.join(", "),
             self.first,
             self.second
         ))
     }
+
+    /// Reads both descriptions with their changes and uniforms.
+    fn sides(&self) -> Result<[Side<'_>; 2], Failure> {
+        let registry = Registry::builtin();
+        let side = |description, set: &[(String, String)]| {
+            let mut input = Input::read(description, &registry)?;
+            let set = [&self.set, set].concat();
+            let variant = input.variant(&set, &registry)?;
+            Ok::<_, Failure>(Side { description, input, variant, set, uniforms: Vec::new() })
+        };
+        let (mut first, mut second) = (side(&self.first, &self.set_first)?, side(&self.second, &self.set_second)?);
+        let [shared_first, shared_second] = uniforms::shared(&self.uniforms, [&first.variant, &second.variant])?;
+        first.uniforms = [&shared_first[..], &self.uniforms_first].concat();
+        second.uniforms = [&shared_second[..], &self.uniforms_second].concat();
+        // Before the first image is rendered.
+        for side in [&first, &second] {
+            uniforms::values(&side.uniforms, &side.variant)?;
+        }
+        Ok([first, second])
+    }
 }
+
+/// One of the two descriptions.
+struct Side<'a> {
+    description: &'a str,
+    input: Input,
+    /// The variant without the choices that a rendering adds.
+    variant: Variant,
+    set: Vec<(String, String)>,
+    uniforms: Vec<(String, String)>,
+}
+
+/// The colours of the heat map at equal distances.
+const COLORS: [&str; 4] = ["black", "red", "yellow", "white"];
 
 /// The bytes per pixel of an image.
 const IMAGE: u64 = 16;
@@ -118,6 +169,11 @@ impl Difference {
     /// Returns the peak signal-to-noise ratio over all channels in dB. `None`: the images are equal.
     fn psnr(&self) -> Option<f64> {
         (self.mean_square > 0.0).then(|| -10.0 * self.mean_square.log10())
+    }
+
+    /// Returns the difference that each of [`COLORS`] shows.
+    fn scale(&self) -> [f32; 4] {
+        [0.0, 1.0, 2.0, 3.0].map(|third| third / 3.0 * self.greatest)
     }
 
     /// Returns the pixels of the heat map.

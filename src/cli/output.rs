@@ -147,7 +147,9 @@ impl From<fragbuf_scene::Error> for Failure {
         match error {
             fragbuf_scene::Error::Unreadable { .. } => Failure::Files(text),
             fragbuf_scene::Error::TooLarge { .. } => Failure::Device(format!("{text} (`--memory`)")),
-            fragbuf_scene::Error::Malformed { .. } => Failure::Input(text),
+            fragbuf_scene::Error::Malformed { .. } | fragbuf_scene::Error::MissingAttribute { .. } => {
+                Failure::Input(text)
+            }
             fragbuf_scene::Error::Unknown(_) => Failure::Usage(text),
         }
     }

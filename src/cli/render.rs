@@ -1,6 +1,10 @@
 //! `fragbuf render`: renders a scene through one description and prints the statistics of its frame.
 
+use fragbuf::Registry;
+
 use super::assignment::{assignment, uniform};
+use super::attributes::model_attributes;
+use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
@@ -29,7 +33,10 @@ impl Render {
         view.check()?;
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
-        let (scene, opaque) = view.scene_views()?;
+        let registry = Registry::builtin();
+        let mut input = Input::read(&self.description, &registry)?;
+        let variant = input.variant(&self.set, &registry)?;
+        let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
         let request = RenderRequest {
             description: &self.description,
             set: &self.set,
@@ -38,7 +45,7 @@ impl Render {
             opaque: opaque.as_ref(),
             held: 0,
         };
-        let result = render(&request, view, &scene, &progress)?;
+        let result = render(&request, &mut input, view, &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;

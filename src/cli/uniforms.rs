@@ -10,13 +10,7 @@ use super::output::Failure;
 pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Vec<(String, Value)>, Failure> {
     let value = |(name, text): &(String, String)| {
         let Some(uniform) = variant.uniforms.iter().find(|uniform| uniform.name.value == *name) else {
-            let names: Vec<&str> = variant.uniforms.iter().map(|uniform| uniform.name.value.as_str()).collect();
-            let known = match (nearest_name(name, &names), names.is_empty()) {
-                (_, true) => "it has none".to_owned(),
-                (Some(nearest), false) => format!("did you mean `{nearest}`? it has {}", names.join(", ")),
-                (None, false) => format!("it has {}", names.join(", ")),
-            };
-            return Err(Failure::Usage(format!("the description has no uniform `{name}`: {known}")));
+            return Err(unknown("the description has no", name, "it has", &[variant]));
         };
         let kind = uniform.kind.value;
         let value = read(text, kind);
@@ -25,6 +19,34 @@ pub(crate) fn values(given: &[(String, String)], variant: &Variant) -> Result<Ve
             .ok_or_else(|| Failure::Usage(format!("uniform `{name}` takes {}, not `{text}`", expected(kind))))
     };
     given.iter().map(value).collect()
+}
+
+/// Returns the values for each of the descriptions that have the uniform. `Err`: none of them has it.
+pub(crate) fn shared(
+    given: &[(String, String)],
+    variants: [&Variant; 2],
+) -> Result<[Vec<(String, String)>; 2], Failure> {
+    let has = |variant: &Variant, name: &str| variant.uniforms.iter().any(|uniform| uniform.name.value == name);
+    if let Some((name, _)) = given.iter().find(|(name, _)| !variants.iter().any(|variant| has(variant, name))) {
+        return Err(unknown("neither description has a", name, "they have", &variants));
+    }
+    Ok(variants.map(|variant| given.iter().filter(|(name, _)| has(variant, name)).cloned().collect()))
+}
+
+/// Returns the failure for a uniform that none of the descriptions has.
+fn unknown(missing: &str, name: &str, they_have: &str, variants: &[&Variant]) -> Failure {
+    let mut names: Vec<&str> = Vec::new();
+    for uniform in variants.iter().flat_map(|variant| &variant.uniforms) {
+        if !names.contains(&uniform.name.value.as_str()) {
+            names.push(&uniform.name.value);
+        }
+    }
+    let known = match (nearest_name(name, &names), names.is_empty()) {
+        (_, true) => format!("{they_have} none"),
+        (Some(nearest), false) => format!("did you mean `{nearest}`? {they_have} {}", names.join(", ")),
+        (None, false) => format!("{they_have} {}", names.join(", ")),
+    };
+    Failure::Usage(format!("{missing} uniform `{name}`: {known}"))
 }
 
 fn read(text: &str, kind: UniformType) -> Option<Value> {

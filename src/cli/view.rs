@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use fragbuf_cpu::FragmentOrder;
 use fragbuf_model::nearest_name;
-use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Limits, Scene};
+use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
+use super::assignment::attribute;
+use super::attributes::{self, ModelAttribute};
 use super::device::{self, DeviceRequest, SelectedDevice};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
@@ -38,6 +40,9 @@ pub(crate) struct View {
     /// Colour of parts for which the model gives none: linear, straight alpha
     #[arg(long, value_name = "r,g,b,a", default_value = "0.15,0.45,0.35,0.4", value_parser = color)]
     color: [f32; 4],
+    /// Set an attribute of fragments to a value for every vertex, instead of the scene's data
+    #[arg(long = "attribute", value_name = "NAME=VALUE[,VALUE]", value_parser = attribute)]
+    pub(crate) attributes: Vec<(String, String)>,
     /// Write linear values to the PNG instead of sRGB
     #[arg(long)]
     pub(crate) linear: bool,
@@ -83,15 +88,15 @@ pub(crate) struct SceneView {
 }
 
 impl View {
-    /// Loads or generates the scene and the opaque scene, whose alpha becomes 1. The camera frames both.
-    pub(crate) fn scene_views(&self) -> Result<(SceneView, Option<SceneView>), Failure> {
-        let mut scene = self.open(&self.scene, self.memory)?;
+    /// Loads or generates the scene with these attributes, and the opaque scene, whose alpha becomes 1. The camera frames both.
+    pub(crate) fn scene_views(&self, attributes: &[ModelAttribute]) -> Result<(SceneView, Option<SceneView>), Failure> {
+        let mut scene = self.open(&self.scene, attributes, self.memory)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&[&scene]);
             return Ok((self.scene_view(scene, camera), None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
-        let mut opaque = self.open(opaque, rest)?;
+        let mut opaque = self.open(opaque, &[], rest)?;
         scene.share_placement(&mut opaque);
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
@@ -100,13 +105,17 @@ impl View {
     }
 
     /// Loads or generates a scene within the rest of a budget, and prints its warnings. An error has the whole budget as its limit.
-    fn open(&self, name: &str, memory: Budget) -> Result<Scene, Failure> {
-        let opened = fragbuf_scene::open(name, self.color, &Limits { memory: memory.left() });
+    fn open(&self, name: &str, attributes: &[ModelAttribute], memory: Budget) -> Result<Scene, Failure> {
+        let requests: Vec<AttributeRequest> = attributes.iter().map(|attribute| attribute.request.clone()).collect();
+        let opened = fragbuf_scene::open_with(name, self.color, &requests, &Limits { memory: memory.left() });
         let mut scene = opened.map_err(|error| match error {
             Error::TooLarge { file, what, needed, left, .. } => {
-                Error::TooLarge { file, what, needed, left, limit: memory.whole() }
+                Error::TooLarge { file, what, needed, left, limit: memory.whole() }.into()
             }
-            other => other,
+            Error::MissingAttribute { scene, request, available } => {
+                attributes::missing(&scene, &request, &available, attributes)
+            }
+            other => Failure::from(other),
         })?;
         if self.strict && !scene.warnings.is_empty() {
             return Err(Failure::Model(scene.warnings));

@@ -34,7 +34,7 @@ pub(super) fn render(
     let code = Arc::new(code);
     let external = external_textures(&code.plan, *opaque)?;
     let opaque = opaque.map(|opaque| render_opaque(task, opaque, order, registry)).transpose()?;
-    let geometry = geometry(&scene.scene, &code.plan, *memory)?;
+    let geometry = geometry((&scene.scene, &view.attributes), &code.plan, *memory)?;
     let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
     let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
     let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?.left();
@@ -128,7 +128,7 @@ fn render_opaque(
     let code =
         Code::of(&opaque.variant, registry).map_err(|error| failure(error, |errors| opaque.input.failure(errors)))?;
     let code = Arc::new(code);
-    let geometry = geometry(&opaque.scene.scene, &code.plan, task.memory)?;
+    let geometry = geometry((&opaque.scene.scene, &[]), &code.plan, task.memory)?;
     let (width, height) = task.view.size;
     let depths = task.view.image_bytes(size_of::<f32>() as u64);
     let memory = geometry.memory.without(depths, "the depth buffer of the opaque scene")?.left();

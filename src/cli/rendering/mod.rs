@@ -27,16 +27,16 @@ use super::output::Failure;
 use super::progress::Progress;
 use super::view::{SceneView, View};
 
-/// Renders the scene.
+/// Renders the scene through the description `input`.
 pub(crate) fn render(
     request: &RenderRequest<'_>,
+    input: &mut Input,
     view: &View,
     scene: &SceneView,
     progress: &Progress,
 ) -> Result<RenderResult, Failure> {
     let registry = Registry::builtin();
     let selected = view.select_device()?;
-    let mut input = Input::read(request.description, &registry)?;
     let scenes: Vec<&SceneView> = std::iter::once(scene).chain(request.opaque).collect();
     let memory = view.memory_beside(&scenes)?.without(request.held, "the other image")?;
     let opaque = request.opaque.map(|scene| OpaqueScene::new(scene, &registry)).transpose()?;
@@ -57,9 +57,9 @@ pub(crate) fn render(
         let has_fixed_layers = *has_fixed_layers.get_or_insert_with(|| sets_layers(&variant));
         let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: opaque.as_ref(), memory };
         let mut result = match &selected {
-            SelectedDevice::Cpu(order) => cpu::render(&task, *order, (&input, &registry), &mut redraw)?,
+            SelectedDevice::Cpu(order) => cpu::render(&task, *order, (input, &registry), &mut redraw)?,
             #[cfg(feature = "gpu")]
-            SelectedDevice::Gpu(choice) => gpu::render(&task, choice, (&input, &registry), &mut redraw)?,
+            SelectedDevice::Gpu(choice) => gpu::render(&task, choice, (input, &registry), &mut redraw)?,
         };
         match result.more_layers().filter(|_| !has_fixed_layers) {
             Some((option, layers)) => set.push((option, layers.to_string())),

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::attribute::{AttributeRequest, AvailableAttribute};
+
 /// Why a scene cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
@@ -34,6 +36,15 @@ pub enum Error {
         /// The bytes of the whole limit.
         limit: u64,
     },
+    /// The vertices of a scene have no attribute of this name and number of components.
+    MissingAttribute {
+        /// The file, or the name of the generated scene.
+        scene: String,
+        /// The attribute that the caller requested.
+        request: AttributeRequest,
+        /// The attributes that can be requested.
+        available: Vec<AvailableAttribute>,
+    },
     /// `builtin:…` names an unknown scene or parameter, or an invalid value.
     Unknown(String),
 }
@@ -58,6 +69,10 @@ impl fmt::Display for Error {
                 f,
                 "{file}: out of the memory budget: {what} needs {needed} bytes or more, and {left} of {limit} bytes are left: use a smaller model or a larger budget"
             ),
+            Error::MissingAttribute { scene, request: AttributeRequest { name, components, .. }, .. } => {
+                let plural = if *components == 1 { "" } else { "s" };
+                write!(f, "{scene}: vertices have no attribute `{name}` with {components} component{plural}")
+            }
             Error::Unknown(message) => f.write_str(message),
         }
     }
@@ -83,6 +98,8 @@ pub(crate) enum FileError {
     InElement { list: &'static str, index: usize, message: String },
     /// A part of the scene exceeds the limits.
     TooLarge { what: String, needed: u64, left: u64, limit: u64 },
+    /// Vertices do not have an attribute that the caller requested.
+    MissingAttribute(AttributeRequest, Vec<AvailableAttribute>),
 }
 
 impl FileError {
@@ -109,6 +126,9 @@ impl FileError {
             FileError::Malformed(position, message) => Error::Malformed { file, position, message },
             FileError::InElement { message, .. } => Error::Malformed { file, position: FilePosition::Whole, message },
             FileError::TooLarge { what, needed, left, limit } => Error::TooLarge { file, what, needed, left, limit },
+            FileError::MissingAttribute(request, available) => {
+                Error::MissingAttribute { scene: file, request, available }
+            }
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Scenes: triangles with normals, colours and objects, from a model file or generated.
 //!
 //! Input: the path of an OBJ, PLY or glTF model, or `builtin:NAME[,parameter=value]`. Output: a complete and checked
-//! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex. A malformed model is never corrected
-//! silently: it is an [`Error`] with its position, or a [`Warning`] where other readers of the format go on, too. A scene beyond the
-//! [`Limits`] is an error before its memory is allocated. This crate is independent of fragment buffers and devices.
+//! [`Scene`]: finite numbers, indices in range, a normal and a colour for every vertex, and the attributes that the caller requests. A
+//! malformed model is never corrected silently: it is an [`Error`] with its position, or a [`Warning`] where other readers of the
+//! format go on, too. A scene beyond the [`Limits`] is an error before its memory is allocated. This crate is independent of fragment buffers and devices.
 
+mod attribute;
 mod builtin;
 mod camera;
 mod color_range;
@@ -25,11 +26,12 @@ mod shading;
 mod text;
 mod warnings;
 
+pub use attribute::{AttributeRequest, AvailableAttribute};
 pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
 pub use camera::{Camera, Eye};
 pub use error::{Error, FilePosition};
 pub use limits::Limits;
-pub use load::{load, open};
+pub use load::{load, load_with, open, open_with};
 pub use placement::Placement;
 pub use scene::{Object, Scene};
 pub use shading::light;

@@ -5,6 +5,7 @@
 
 use std::cell::Cell;
 
+use crate::attribute::AttributeRequest;
 use crate::error::FileError;
 use crate::model::ModelObject;
 
@@ -25,7 +26,8 @@ impl Default for Limits {
 /// The bytes of a vertex of a generated scene, and of the sum of its triangles' normals.
 const VERTEX: u64 = 12 + 12 + 16 + 12;
 
-/// The bytes of a vertex of a model while its positions are converted from doubles, which are dropped before the sums of normals.
+/// The bytes of a vertex of a model, without its attributes, while its positions are converted from doubles, which are dropped before
+/// the sums of normals.
 const MODEL_VERTEX: u64 = 24 + 12 + 12 + 16;
 
 /// The bytes of a triangle of a scene.
@@ -39,6 +41,8 @@ pub(crate) const OBJECT: u64 = (size_of::<crate::Object>() + size_of::<ModelObje
 pub(crate) struct Budget {
     limit: u64,
     left: Cell<u64>,
+    /// The bytes of a vertex of a model: [`MODEL_VERTEX`], and its attributes.
+    vertex: u64,
 }
 
 /// Memory that returns to its budget when this value is dropped.
@@ -50,7 +54,13 @@ pub(crate) struct Held<'a> {
 
 impl Budget {
     pub(crate) fn new(limits: &Limits) -> Self {
-        Budget { limit: limits.memory, left: Cell::new(limits.memory) }
+        Budget { limit: limits.memory, left: Cell::new(limits.memory), vertex: MODEL_VERTEX }
+    }
+
+    /// Returns a budget for models with these attributes.
+    pub(crate) fn with_attributes(limits: &Limits, attributes: &[AttributeRequest]) -> Self {
+        let vertex = MODEL_VERTEX + attributes.iter().map(AttributeRequest::bytes).sum::<u64>();
+        Budget { vertex, ..Budget::new(limits) }
     }
 
     /// Returns the bytes that are left.
@@ -87,7 +97,7 @@ impl Budget {
         if total > u64::from(u32::MAX) {
             return Err(FileError::whole(format!("an object with {total} vertices: it can have {}", u32::MAX)));
         }
-        self.take(count, MODEL_VERTEX, "the scene's vertices")
+        self.take(count, self.vertex, "the scene's vertices")
     }
 
     /// Takes the memory of triangles of the scene.

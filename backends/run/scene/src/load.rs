@@ -6,18 +6,40 @@ use crate::error::{Error, FileError};
 use crate::file::{beside, read};
 use crate::limits::Budget;
 use crate::warnings::{FileWarnings, WarningKind, Warnings};
-use crate::{BuiltinScene, Limits, Scene, Warning, gltf, normals, obj, placement, ply, text};
+use crate::{AttributeRequest, BuiltinScene, Limits, Scene, Warning, gltf, normals, obj, placement, ply, text};
 
 /// Opens the scene `name`. `color` is the colour of parts for which the model gives none: linear, straight alpha.
 pub fn open(name: &str, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
-    match name.strip_prefix("builtin:") {
-        Some(builtin) => builtin.parse::<BuiltinScene>()?.generate(limits),
-        None => load(Path::new(name), color, limits),
-    }
+    open_with(name, color, &[], limits)
+}
+
+/// Opens a scene like [`open`], with attributes of its vertices. `Err`: it does not have one of them; generated scenes have none.
+pub fn open_with(
+    name: &str,
+    color: [f32; 4],
+    attributes: &[AttributeRequest],
+    limits: &Limits,
+) -> Result<Scene, Error> {
+    let Some(builtin) = name.strip_prefix("builtin:") else {
+        return load_with(Path::new(name), color, attributes, limits);
+    };
+    let scene = builtin.parse::<BuiltinScene>()?;
+    none_of(attributes).map_err(|error| error.in_file(name))?;
+    scene.generate(limits)
 }
 
 /// Loads a model: OBJ, PLY, glTF or GLB by its extension, optionally compressed as `.gz`.
 pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
+    load_with(path, color, &[], limits)
+}
+
+/// Loads a model like [`load`], with attributes of its vertices. `Err`: it does not have one of them. An OBJ has none.
+pub fn load_with(
+    path: &Path,
+    color: [f32; 4],
+    attributes: &[AttributeRequest],
+    limits: &Limits,
+) -> Result<Scene, Error> {
     let file = path.display().to_string();
     let name = file.to_lowercase();
     let plain = name.strip_suffix(".gz").unwrap_or(&name);
@@ -28,27 +50,40 @@ pub fn load(path: &Path, color: [f32; 4], limits: &Limits) -> Result<Scene, Erro
             FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz").in_file(&file)
         );
     };
-    let (budget, warnings) = (Budget::new(limits), Warnings::default());
+    let (budget, warnings) = (Budget::with_attributes(limits, attributes), Warnings::default());
     let bytes = read(path, &budget)?;
     let objects = match extension {
         "obj" => {
             let folder = path.parent().unwrap_or(Path::new(""));
             let libraries =
                 |statement: &str, line: usize| libraries(folder, (statement, line), warnings.in_file(&file), &budget);
+            none_of(attributes).map_err(|error| error.in_file(&file))?;
             let model = obj::Model { bytes: &bytes, file: &file, libraries: &libraries, warnings: &warnings };
             obj::parse(&model, color, &budget)?
         }
-        "ply" => ply::parse(&bytes, color, (&budget, warnings.in_file(&file))).map_err(|error| error.in_file(&file))?,
-        _ => gltf::parse(&bytes, path, color, (&budget, warnings.in_file(&file)))?,
+        "ply" => {
+            let objects = ply::parse(&bytes, (color, attributes), (&budget, warnings.in_file(&file)));
+            objects.map_err(|error| error.in_file(&file))?
+        }
+        _ => gltf::parse(&bytes, path, (color, attributes), (&budget, warnings.in_file(&file)))?,
     };
     drop(bytes);
     let mut scene = placement::place(objects);
+    scene.attributes = attributes.to_vec();
     scene.warnings = warnings.into_list();
     if scene.triangles() == 0 {
         return Err(without_triangles(&file, &scene.warnings));
     }
     scene.objects.iter_mut().for_each(normals::complete);
     Ok(scene)
+}
+
+/// Checks that no attribute is requested of a scene that has none.
+fn none_of(attributes: &[AttributeRequest]) -> Result<(), FileError> {
+    match attributes.first() {
+        Some(request) => Err(FileError::MissingAttribute(request.clone(), Vec::new())),
+        None => Ok(()),
+    }
 }
 
 /// Returns the error about a model without triangles. The first warning is the most likely reason.

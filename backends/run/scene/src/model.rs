@@ -12,11 +12,18 @@ pub(crate) struct ModelObject {
     pub(crate) normals: Vec<[f32; 3]>,
     /// Linear red, green and blue with straight alpha.
     pub(crate) colors: Vec<[f32; 4]>,
+    /// The words of each attribute that the caller requested: those of one vertex after the other.
+    pub(crate) attributes: Vec<Vec<u32>>,
     /// Three vertex indices each, in range.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl ModelObject {
+    /// Returns an object without vertices that has `attributes` attributes.
+    pub(crate) fn new(name: String, attributes: usize) -> Self {
+        ModelObject { name, attributes: vec![Vec::new(); attributes], ..ModelObject::default() }
+    }
+
     /// Adds a vertex and returns its index. A zero normal is computed later from the triangles around the vertex.
     pub(crate) fn vertex(&mut self, position: [f64; 3], normal: [f32; 3], color: [f32; 4]) -> u32 {
         self.positions.push(position);

@@ -72,9 +72,10 @@ pub(crate) fn place(objects: Vec<ModelObject>) -> Scene {
         positions: object.positions.into_iter().map(|position| placement.to_scene(position)).collect(),
         normals: object.normals,
         colors: object.colors,
+        attributes: object.attributes,
         triangles: object.triangles,
     };
-    Scene { objects: objects.into_iter().map(placed).collect(), placement, warnings: Vec::new() }
+    Scene { objects: objects.into_iter().map(placed).collect(), placement, ..Scene::default() }
 }
 
 fn bounds(positions: impl Iterator<Item = [f64; 3]>) -> Option<Bounds> {

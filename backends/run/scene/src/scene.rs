@@ -1,6 +1,6 @@
 //! A scene: indexed triangles per object.
 
-use crate::{Placement, Warning};
+use crate::{AttributeRequest, Placement, Warning};
 
 /// The triangles of a scene, object after object.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,6 +9,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The coordinates of the objects, relative to those of the model.
     pub placement: Placement,
+    /// The attributes that the scene was opened with.
+    pub attributes: Vec<AttributeRequest>,
     /// What was replaced by a default, and what was not read.
     pub warnings: Vec<Warning>,
 }
@@ -24,6 +26,8 @@ pub struct Object {
     pub normals: Vec<[f32; 3]>,
     /// Linear red, green and blue with straight alpha.
     pub colors: Vec<[f32; 4]>,
+    /// The words of each attribute of the scene: those of one vertex after the other.
+    pub attributes: Vec<Vec<u32>>,
     /// Three vertex indices each, in range.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -48,7 +52,12 @@ impl Scene {
     pub fn bytes(&self) -> u64 {
         let bytes = |object: &Object| {
             let vertices = size_of_val(&object.positions[..]) + size_of_val(&object.normals[..]);
-            size_of::<Object>() + vertices + size_of_val(&object.colors[..]) + size_of_val(&object.triangles[..])
+            let attributes: usize = object.attributes.iter().map(|words| size_of_val(&words[..])).sum();
+            size_of::<Object>()
+                + vertices
+                + attributes
+                + size_of_val(&object.colors[..])
+                + size_of_val(&object.triangles[..])
         };
         self.objects.iter().map(|object| bytes(object) as u64).sum()
     }

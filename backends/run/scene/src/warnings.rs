@@ -35,6 +35,10 @@ pub enum WarningKind {
     MissingScene,
     /// A normal does not exist, or is not finite. It is computed.
     InvalidNormal,
+    /// A value of an attribute is not finite. It is 0.
+    InvalidAttribute,
+    /// A part of the model has no attribute that others have. It is 0.
+    MissingAttribute,
     /// A face has fewer than three corners. It is skipped.
     DegenerateFace,
     /// A statement is unknown, or is not where it has a meaning. It is skipped.
@@ -68,6 +72,8 @@ impl WarningKind {
             WarningKind::MissingMaterial => "missing-material",
             WarningKind::MissingScene => "missing-scene",
             WarningKind::InvalidNormal => "invalid-normal",
+            WarningKind::InvalidAttribute => "invalid-attribute",
+            WarningKind::MissingAttribute => "missing-attribute",
             WarningKind::DegenerateFace => "degenerate-face",
             WarningKind::UnknownStatement => "unknown-statement",
             WarningKind::OutOfRange => "out-of-range",

@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use base64::Engine as _;
-use fragbuf_scene::{Error, FilePosition, Limits, Scene, load};
+use fragbuf_scene::{AttributeRequest, Error, FilePosition, Limits, Scene, load, load_with};
 use tempfile::TempDir;
 
 /// The number of models that the test command tries.
@@ -49,10 +49,10 @@ const MTL: &str = "# library\nnewmtl red\nKa 0 0 0\nKd 1 0 0\nd 0.5\nTr 0.5\nill
 
 const PLY_HEADER: &str = "ply\nformat ascii 1.0\ncomment exported\nobj_info none\nelement vertex 4\nproperty double x\nproperty float y\n\
     property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\n\
-    property ushort blue\nelement face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nelement edge 1\nproperty int a\n\
+    property ushort blue\nproperty float own\nelement face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nelement edge 1\nproperty int a\n\
     property list ushort float values\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
 
-const PLY_BODY: &str = "-1 -1 0.5 0 0 1 255 0 0\n1 -1 .5 0 0 1 0 255 0\n1 1 0.5 0 1 0 0 0 65535\n-1 1 5e-1 nan 0 0 9 9 9\n4 0 1 2 3 255\n\
+const PLY_BODY: &str = "-1 -1 0.5 0 0 1 255 0 0 1\n1 -1 .5 0 0 1 0 255 0 2.5\n1 1 0.5 0 1 0 0 0 65535 inf\n-1 1 5e-1 nan 0 0 9 9 9 -4\n4 0 1 2 3 255\n\
     3 0 1 2 7\n5 2 0.5 1\n5 0 1 2 -1 3\n";
 
 const GLTF: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}, {}],
@@ -105,6 +105,7 @@ fn binary_ply(is_big: bool) -> Vec<u8> {
         push(vec![255]);
         push(vec![0]);
         push(65_535_u16.to_le_bytes().into());
+        push(0.25_f32.to_le_bytes().into());
     }
     for face in [&[0, 1, 2, 3][..], &[0, 1, 2]] {
         push(vec![face.len() as u8]);
@@ -207,7 +208,10 @@ fn attempt(number: u64, models: &[Model], folder: &Path) -> Result<Scene, Error>
     (0..changes).for_each(|_| change(&mut bytes, &mut rng));
     let path = folder.join(name);
     std::fs::write(&path, &bytes).unwrap();
-    load(&path, [0.5; 4], &LIMITS)
+    // Half of the models are loaded with attributes, which an OBJ does not have.
+    let own = [AttributeRequest { name: "own".to_owned(), components: 1, is_integer: number % 3 == 0 }];
+    let requests = if number % 2 == 0 || name == "m.obj" { &[][..] } else { &own };
+    load_with(&path, [0.5; 4], requests, &LIMITS)
 }
 
 fn check_scene(scene: &Scene) {
@@ -220,6 +224,11 @@ fn check_scene(scene: &Scene) {
         assert!(object.positions.iter().chain(&object.normals).flatten().all(|value| value.is_finite()));
         assert!(object.normals.iter().all(|[x, y, z]| (x * x + y * y + z * z - 1.0).abs() < 1.0e-3));
         assert!(object.colors.iter().flatten().all(|value| value.is_finite()));
+        assert_eq!(object.attributes.len(), scene.attributes.len());
+        for (request, words) in scene.attributes.iter().zip(&object.attributes) {
+            assert_eq!(words.len(), request.components * count);
+            assert!(request.is_integer || words.iter().all(|word| f32::from_bits(*word).is_finite()));
+        }
     }
     assert!(scene.warnings.len() < 40, "{}", scene.warnings.len());
     let extent =
@@ -240,6 +249,7 @@ fn check_error(error: &Error) {
             );
         }
         Error::Malformed { .. } | Error::TooLarge { .. } | Error::Unreadable { .. } => {}
+        Error::MissingAttribute { available, .. } => assert!(available.len() < 1000),
         Error::Unknown(_) => panic!("{text}"),
     }
     assert!(text.chars().count() < 1200, "{text}");

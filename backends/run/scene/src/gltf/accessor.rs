@@ -89,6 +89,15 @@ impl<'a> Elements<'a> {
         }
     }
 
+    /// Returns a number like [`Elements::float`]. Integers of 32 bits are exact.
+    pub(super) fn number(&self, element: usize, component: usize) -> f64 {
+        let bytes = || self.bytes(element)?.get(component * self.kind.size()..).and_then(chunk);
+        match self.kind {
+            DataType::U32 => bytes().map_or(0, u32::from_le_bytes).into(),
+            _ => self.float(element, component).into(),
+        }
+    }
+
     /// Returns the first number of an element, an unsigned integer.
     pub(super) fn index(&self, element: usize) -> u32 {
         let Some(bytes) = self.bytes(element) else { return 0 };

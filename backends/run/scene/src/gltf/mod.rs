@@ -1,11 +1,12 @@
 //! glTF 2.0, as JSON or GLB: the triangles of the default scene, with the transforms of nodes, normals, vertex colours and base
-//! colour factors of materials in their alpha modes, and the default weights of morph targets. Textures, the pose of a skin and
-//! instances by an extension are not read, which is a warning; animations are ignored.
+//! colour factors of materials in their alpha modes, the default weights of morph targets, and requested attributes. Textures, the pose
+//! of a skin and instances by an extension are not read, which is a warning; animations are ignored.
 //!
 //! Everything is checked before it is used: the memory of the JSON, the length of every buffer, the type and range of every
 //! accessor that is read, and that the nodes are a forest.
 
 mod accessor;
+mod attributes;
 mod buffers;
 mod json;
 mod locate;
@@ -20,6 +21,7 @@ use std::path::Path;
 use glam::DMat4;
 use gltf::{Gltf, Mesh, Node};
 
+use crate::attribute::AttributeRequest;
 use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
 use crate::model::ModelObject;
@@ -28,11 +30,12 @@ use crate::warnings::{FileWarnings, WarningKind};
 use locate::Text;
 use primitive::Reader;
 
-/// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material.
+/// Reads the model of `path`, whose bytes are `bytes`. `color` is the colour of primitives without a material; `requests` are
+/// attributes of their vertices.
 pub(crate) fn parse(
     bytes: &[u8],
     path: &Path,
-    color: [f32; 4],
+    (color, requests): ([f32; 4], &[AttributeRequest]),
     (budget, warnings): (&Budget, FileWarnings<'_>),
 ) -> Result<Vec<ModelObject>, Error> {
     let (file, bytes) = (path.display().to_string(), without_mark(bytes));
@@ -40,9 +43,10 @@ pub(crate) fn parse(
     let located = |error: FileError| text.located(error).in_file(&file);
     let mut model = document(bytes, budget).map_err(located)?;
     missing::warn(model.as_json(), text, warnings);
+    attributes::check(model.as_json(), requests).map_err(located)?;
     let blob = model.blob.take();
     let buffers = buffers::read(&model, blob, (path, text), budget)?;
-    let reader = Reader { buffers: &buffers, color, text, budget, warnings };
+    let reader = Reader { buffers: &buffers, root: model.as_json(), color, requests, text, budget, warnings };
     objects(&model, &reader).map_err(located)
 }
 
@@ -131,7 +135,7 @@ fn object(
 ) -> Result<ModelObject, FileError> {
     let name = name.unwrap_or_default().to_owned();
     reader.budget.take(1, OBJECT + name.len() as u64, "the scene's objects")?;
-    let mut object = ModelObject { name, ..ModelObject::default() };
+    let mut object = ModelObject::new(name, reader.requests.len());
     for primitive in mesh.primitives() {
         let added = reader.primitive(&primitive, mesh.index(), (transform, weights), &mut object);
         added.map_err(|error| error.in_element("meshes", mesh.index()))?;

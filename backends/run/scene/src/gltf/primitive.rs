@@ -2,12 +2,14 @@
 
 use glam::{DMat3, DMat4, DVec3};
 use gltf::accessor::{DataType, Dimensions};
+use gltf::json::Root;
 use gltf::mesh::Mode;
 use gltf::{Primitive, Semantic};
 
 use super::accessor::{Elements, Types};
 use super::locate::Text;
 use super::material::{factor, visible};
+use crate::attribute::AttributeRequest;
 use crate::error::FileError;
 use crate::limits::Budget;
 use crate::model::{ModelObject, normal};
@@ -37,7 +39,10 @@ const MORPH_OFFSET: u64 = 12;
 /// The buffers of a model and the settings for its primitives.
 pub(super) struct Reader<'a> {
     pub(super) buffers: &'a [Vec<u8>],
+    pub(super) root: &'a Root,
     pub(super) color: [f32; 4],
+    /// The attributes that the caller requests.
+    pub(super) requests: &'a [AttributeRequest],
     pub(super) text: Text<'a>,
     pub(super) budget: &'a Budget,
     pub(super) warnings: FileWarnings<'a>,
@@ -137,6 +142,7 @@ impl Reader<'_> {
         let material = primitive.material();
         let factor = factor(&material, colors.is_some(), self.color);
         let morphs = self.morphs(primitive, weights, positions.count)?;
+        let attributes = self.attributes(primitive, mesh, positions.count)?;
         let directions = DMat3::from_mat4(*transform).inverse().transpose();
         for index in 0..positions.count {
             let moved = morphs.iter().map(|(weight, offsets)| f64::from(*weight) * vector(offsets, index));
@@ -160,6 +166,9 @@ impl Reader<'_> {
             }
             let color = visible(&material, color);
             object.vertex(position.to_array(), direction, color);
+            for (values, words) in attributes.iter().zip(&mut object.attributes) {
+                values.add(index, mesh, self, words);
+            }
         }
         Ok(positions.count)
     }

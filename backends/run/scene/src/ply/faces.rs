@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::body::Body;
 use super::header::{Element, Kind, Property};
 use super::{RED, channel, is_color, skip_property, slot};
+use crate::attribute::AttributeRequest;
 use crate::color_range::ColorRange;
 use crate::error::FileError;
 use crate::limits::{Budget, Held};
@@ -18,6 +19,7 @@ const KNOWN: u64 = 64;
 /// Adds the faces of a file to the object that has its vertices.
 pub(super) struct Faces<'a> {
     object: &'a mut ModelObject,
+    attributes: &'a [AttributeRequest],
     budget: &'a Budget,
     warnings: FileWarnings<'a>,
     /// The number of vertices in the file.
@@ -31,7 +33,7 @@ pub(super) struct Faces<'a> {
 
 impl<'a> Faces<'a> {
     pub(super) fn new(
-        object: &'a mut ModelObject,
+        (object, attributes): (&'a mut ModelObject, &'a [AttributeRequest]),
         budget: &'a Budget,
         warnings: FileWarnings<'a>,
         has_vertex_colors: bool,
@@ -39,6 +41,7 @@ impl<'a> Faces<'a> {
         let count = object.positions.len();
         Faces {
             object,
+            attributes,
             budget,
             warnings,
             count,
@@ -141,7 +144,7 @@ impl<'a> Faces<'a> {
 
     /// Replaces the corners of the face by copies with this colour.
     fn recolor(&mut self, color: [f32; 4]) -> Result<(), FileError> {
-        let Faces { object, budget, known, .. } = self;
+        let Faces { object, budget, known, attributes, .. } = self;
         let bits = color.map(f32::to_bits);
         self.triangulator.replace(|vertex| {
             if let Some(copy) = known.get(&(vertex, bits)) {
@@ -152,6 +155,10 @@ impl<'a> Faces<'a> {
             let position = object.positions.get(vertex as usize).copied().unwrap_or_default();
             let normal = object.normals.get(vertex as usize).copied().unwrap_or_default();
             let copy = object.vertex(position, normal, color);
+            for (words, request) in object.attributes.iter_mut().zip(*attributes) {
+                let first = vertex as usize * request.components;
+                words.extend_from_within(first..first + request.components);
+            }
             known.insert((vertex, bits), copy);
             Ok(copy)
         })

@@ -1,27 +1,30 @@
 //! PLY, ASCII or binary in both byte orders: the positions, normals and colours of `vertex`, the polygons and colours of `face`, and
-//! triangle strips. Other elements and properties are skipped.
+//! triangle strips, and properties of `vertex` that the caller requests. Other elements and properties are skipped.
 //!
 //! The reader is our own because every error needs its line, or its byte: `ply-rs-bw` reports no bytes in binary files.
 //! Integer colours are divided by their greatest value. Elements may have any order: faces before the vertices are read after them.
 
+mod attributes;
 mod body;
 mod faces;
 mod header;
 
+use crate::attribute::{AttributeRequest, MAX_COMPONENTS};
 use crate::color_range::ColorRange;
 use crate::error::FileError;
 use crate::limits::{Budget, OBJECT};
 use crate::model::{ModelObject, normal};
 use crate::text::{MAX_NUMBER, quoted};
 use crate::warnings::{FileWarnings, WarningKind};
+use attributes::Component;
 use body::Body;
 use faces::Faces;
 use header::{Element, Header, Property};
 
-/// Reads a model. `color` is the colour of vertices without one.
+/// Reads a model. `color` is the colour of vertices without one; `attributes` are properties of vertices.
 pub(crate) fn parse(
     bytes: &[u8],
-    color: [f32; 4],
+    (color, attributes): ([f32; 4], &[AttributeRequest]),
     (budget, warnings): (&Budget, FileWarnings<'_>),
 ) -> Result<Vec<ModelObject>, FileError> {
     let header = Header::parse(bytes)?;
@@ -30,12 +33,12 @@ pub(crate) fn parse(
     }
     budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
-    let mut object = ModelObject::default();
+    let mut object = ModelObject::new(String::new(), attributes.len());
     // The elements with faces, each with its position in the body.
     let mut face_elements = Vec::new();
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => Vertices::of(element, color)?.read(&mut body, (&mut object, budget), warnings)?,
+            "vertex" => Vertices::of(element, (color, attributes))?.read(&mut body, (&mut object, budget), warnings)?,
             "face" | "tristrips" => {
                 face_elements.push((element, body.clone()));
                 skip(element, &mut body)?;
@@ -44,7 +47,7 @@ pub(crate) fn parse(
         }
     }
     body.end()?;
-    let mut faces = Faces::new(&mut object, budget, warnings, has_colors(&header));
+    let mut faces = Faces::new((&mut object, attributes), budget, warnings, has_colors(&header));
     for (element, mut body) in face_elements {
         faces.read(element, &mut body)?;
     }
@@ -93,10 +96,13 @@ struct Vertices<'a> {
     /// The index of each property in [`PROPERTIES`].
     slots: Vec<Option<usize>>,
     color: [f32; 4],
+    attributes: &'a [AttributeRequest],
+    /// The components of attributes that each property is.
+    components: Vec<Vec<Component>>,
 }
 
 impl<'a> Vertices<'a> {
-    fn of(element: &'a Element, color: [f32; 4]) -> Result<Self, FileError> {
+    fn of(element: &'a Element, (color, attributes): ([f32; 4], &'a [AttributeRequest])) -> Result<Self, FileError> {
         let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
         if let Some(name) = PROPERTIES.iter().take(3).zip(0..).find(|(_, axis)| !slots.contains(&Some(*axis))) {
             return Err(FileError::line(element.line, format!("vertices have no `{}`", name.0)));
@@ -104,7 +110,8 @@ impl<'a> Vertices<'a> {
         let has_colors = slots.iter().flatten().any(|slot| is_color(*slot));
         let [r, g, b, a] = color;
         // A colour without alpha is opaque.
-        Ok(Vertices { element, slots, color: [r, g, b, if has_colors { 1.0 } else { a }] })
+        let color = [r, g, b, if has_colors { 1.0 } else { a }];
+        Ok(Vertices { element, slots, color, attributes, components: attributes::find(element, attributes)? })
     }
 
     fn read(
@@ -114,14 +121,22 @@ impl<'a> Vertices<'a> {
         warnings: FileWarnings<'_>,
     ) -> Result<(), FileError> {
         let (first, mut range) = (object.colors.len(), ColorRange::default());
+        let mut values = vec![[0.0; MAX_COMPONENTS]; self.attributes.len()];
         for _ in 0..self.element.count {
             let (mut position, mut direction, mut color) = ([0.0; 3], [0.0; 3], self.color.map(f64::from));
-            for (property, slot) in self.element.properties.iter().zip(&self.slots) {
-                let Some(slot) = slot else {
+            for ((property, slot), components) in self.element.properties.iter().zip(&self.slots).zip(&self.components)
+            {
+                if slot.is_none() && components.is_empty() {
                     skip_property(property, body)?;
                     continue;
-                };
+                }
                 let value = body.scalar(property.kind)?;
+                for Component { attribute, index } in components {
+                    if let Some(component) = values.get_mut(*attribute).and_then(|values| values.get_mut(*index)) {
+                        *component = value;
+                    }
+                }
+                let Some(slot) = slot else { continue };
                 match slot {
                     0..3 if !value.is_finite() => {
                         return Err(body.error(format!("{} is not finite", quoted(&property.name))));
@@ -141,6 +156,10 @@ impl<'a> Vertices<'a> {
                 [0.0; 3]
             });
             object.vertex(position, direction, range.add(color, body.position()));
+            for ((request, values), words) in self.attributes.iter().zip(&values).zip(&mut object.attributes) {
+                let values = values.iter().take(request.components);
+                words.extend(values.map(|value| request.word(*value, || body.position(), warnings)));
+            }
         }
         range.apply(object.colors.iter_mut().skip(first), warnings);
         Ok(())

@@ -1,0 +1,82 @@
+//! Finds the properties of vertices that are the components of requested attributes.
+//!
+//! An attribute with one component is the property of its name. One with several is a property per component, with the name and an ending:
+//! `heat_x heat_y`, `heat_0 heat_1` or `heat_r heat_g`. Lists are not attributes.
+
+use super::header::Element;
+use crate::attribute::{AttributeRequest, AvailableAttribute, MAX_COMPONENTS};
+use crate::error::FileError;
+
+/// The endings of the names of components.
+const ENDINGS: [[&str; MAX_COMPONENTS]; 3] =
+    [["_x", "_y", "_z", "_w"], ["_0", "_1", "_2", "_3"], ["_r", "_g", "_b", "_a"]];
+
+/// The greatest number of properties that an error lists.
+const MAX_LISTED: usize = 256;
+
+/// A component of an attribute.
+#[derive(Clone, Copy)]
+pub(super) struct Component {
+    /// The index of its attribute.
+    pub(super) attribute: usize,
+    pub(super) index: usize,
+}
+
+/// Returns the components that each property is. `Err`: an attribute has no properties.
+pub(super) fn find(element: &Element, attributes: &[AttributeRequest]) -> Result<Vec<Vec<Component>>, FileError> {
+    let mut found = vec![Vec::new(); element.properties.len()];
+    for (attribute, request) in attributes.iter().enumerate() {
+        let Some(properties) = properties(element, request) else {
+            return Err(FileError::MissingAttribute(request.clone(), available(element)));
+        };
+        for (index, property) in properties.into_iter().enumerate() {
+            if let Some(components) = found.get_mut(property) {
+                components.push(Component { attribute, index });
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Returns the indices of the properties of an attribute.
+fn properties(element: &Element, request: &AttributeRequest) -> Option<Vec<usize>> {
+    match request.components {
+        1 => Some(vec![property(element, &request.name, "")?]),
+        count @ 2..=MAX_COMPONENTS => ENDINGS.iter().find_map(|endings| {
+            endings.iter().take(count).map(|ending| property(element, &request.name, ending)).collect()
+        }),
+        _ => None,
+    }
+}
+
+/// Returns the index of the property `name` with an ending: the one with equal letters, or else one in another case.
+fn property(element: &Element, name: &str, ending: &str) -> Option<usize> {
+    let is_named = |found: &str, is_equal: fn(&str, &str) -> bool| {
+        let (first, last) = found.split_at_checked(name.len()).unwrap_or_default();
+        is_equal(first, name) && is_equal(last, ending)
+    };
+    let find = |is_equal: fn(&str, &str) -> bool| {
+        let mut properties = element.properties.iter();
+        properties.position(|property| property.list.is_none() && is_named(&property.name, is_equal))
+    };
+    find(|a, b| a == b).or_else(|| find(str::eq_ignore_ascii_case))
+}
+
+/// Returns the attributes that can be requested of vertices.
+fn available(element: &Element) -> Vec<AvailableAttribute> {
+    let mut found = Vec::new();
+    for property in element.properties.iter().take(MAX_LISTED).filter(|property| property.list.is_none()) {
+        if super::slot(property).is_none() {
+            found.push(AvailableAttribute::new(&property.name, 1));
+        }
+        for endings in &ENDINGS {
+            let Some(name) = endings.first().and_then(|ending| property.name.strip_suffix(ending)) else { continue };
+            let components = endings.iter().take_while(|ending| self::property(element, name, ending).is_some());
+            let components = components.count();
+            if !name.is_empty() && components > 1 {
+                found.push(AvailableAttribute::new(name, components));
+            }
+        }
+    }
+    found
+}
