@@ -53,11 +53,13 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [WarningKind; 9] = [
+    pub const ALL: [WarningKind; 11] = [
         WarningKind::MissingFile,
         WarningKind::MissingMaterial,
         WarningKind::MissingScene,
         WarningKind::InvalidNormal,
+        WarningKind::InvalidAttribute,
+        WarningKind::MissingAttribute,
         WarningKind::DegenerateFace,
         WarningKind::UnknownStatement,
         WarningKind::OutOfRange,
