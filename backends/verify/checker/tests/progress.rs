@@ -136,7 +136,7 @@ fn a_long_loop_reaches_its_limit_if_nothing_can_change() {
         // An unbounded one waits for ever.
         let endless = program.replacen("for (var i = 0u; i < 1000u; i++)", "loop", 1);
         let failure = run(&endless, 2, model).failure.unwrap();
-        assert_eq!(failure.violation, "deadlock: A waits for a value that no running fragment can change");
+        assert_eq!(failure.violation, "deadlock: A waits for a value that no other fragment can change");
     }
 }
 

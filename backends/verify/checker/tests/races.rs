@@ -7,7 +7,7 @@ use crate::litmus::{litmus, run};
 fn is_race(first: &str, second: &str, model: Model) -> bool {
     let failure = run(&litmus(first, second, "true"), 2, model).failure;
     if let Some(failure) = &failure {
-        assert!(failure.violation.starts_with("data race: "), "{}", failure.violation);
+        assert!(failure.violation.starts_with("data race on "), "{}", failure.violation);
     }
     failure.is_some()
 }

@@ -186,12 +186,6 @@ pub(crate) const OF_RACES: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/paged_list",
-        "for (var attempt = 0u; attempt < PAGE_TRIES; attempt++) {",
-        "for (var attempt = 1u; attempt < PAGE_TRIES; attempt++) {",
-        "one attempt fewer: the same",
-    ),
-    (
-        "storage/paged_list",
         "if page != NO_PAGE && slot % PAGE_ENTRIES != 0u {",
         "if page != NO_PAGE && slot % PAGE_ENTRIES != 1u {",
         "it decides about that event only",
@@ -208,7 +202,6 @@ pub(crate) const OF_RACES: &[(&str, &str, &str, &str)] = &[
         "slot = (pixel_count() + page) * PAGE_ENTRIES; links_store(page, cursor);",
         "a variable of one invocation",
     ),
-    ("storage/paged_list", "on_lost(pixel, entry, TIMED_OUT);", "", "so few fragments never reach their last attempt"),
     (
         "storage/multipass_array",
         "keys_atomic_compare_exchange(slot, pixel, key, EMPTY);",

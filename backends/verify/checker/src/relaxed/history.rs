@@ -6,7 +6,7 @@ use super::view::View;
 
 /// How many writes of one value to one word memory keeps. A loop that writes the same values again and again would otherwise have
 /// infinitely many states. Every older write of the word is forgotten, too, so a search in which that occurs is not exhaustive.
-pub(crate) const REPEATED: usize = 4;
+pub(crate) const REPEATED: usize = 6;
 
 /// The history of one word. Position 0 is the oldest write that a running fragment may still observe.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
