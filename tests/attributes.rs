@@ -152,6 +152,27 @@ fn invalid_values_of_attributes_are_errors() {
 }
 
 /// `--uniform` sets the uniforms of whichever description has them, and the others those of one.
+/// What is not a number differs from a number.
+#[test]
+fn compare_counts_what_is_not_a_number() {
+    let folder = folder("nan");
+    let description = |name: &str, value: &str| {
+        let path = folder.join(name);
+        let text = format!(
+            "buffer B from ab_array {{\n    uniform {{ z: f32 }}\n    resolve |fragments, u| {{\n        let v = {value};\n        \
+             let mut c = 0.0;\n        for f in fragments {{ c += f.color.x; }}\n        vec4(c, v, v, 1.0)\n    }}\n}}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let (one, two) = (description("one.fragbuf", "u.z / u.z"), description("two.fragbuf", "u.z"));
+    let out = folder.join("o.png");
+    let arguments = ["compare", &one, &two, "--scene", "builtin:cubes", "--device", "cpu", "--size", "16x16", "--json"];
+    let output = fragbuf(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["different_pixels"].as_u64().is_some_and(|count| count > 0), "{report}");
+}
+
 #[test]
 fn compare_has_uniforms_of_each_description() {
     let folder = folder("compare-uniforms");

@@ -161,6 +161,12 @@ fn every_code_is_explained() {
     }
     let models = include_str!("../src/guide/model_warnings.md").matches("\n## ").count();
     assert_eq!(models, fragbuf_scene::WarningKind::ALL.len(), "a section about no code");
+    let list = String::from_utf8(fragbuf(&["explain"], root).stdout).unwrap();
+    assert!(list.contains("\nnot-read ") && list.contains("\nmissing-attribute "), "{list}");
+    let copied = fragbuf(&["explain", "warning[not-read]: x.obj:3: textures are not read"], root);
+    assert!(copied.status.success());
+    let near = stderr(&fragbuf(&["explain", "not-raed"], root));
+    assert!(near.contains("not-read"), "{near}");
     let sections = include_str!("../src/guide/codes.md").matches("\n## ").count();
     assert_eq!(sections, codes::ALL.len(), "a section about no code");
     let unknown = fragbuf(&["explain", "unknwon-axis"], root);

@@ -139,6 +139,16 @@ const IMAGE: u64 = 16;
 /// The bytes per pixel of a [`Difference`].
 const DIFFERENCE: u64 = 4;
 
+/// Returns the difference of two channels. What is not a number differs from every number by 1, and equals what is not a number.
+fn distance(a: f32, b: f32) -> f32 {
+    match (a.is_nan(), b.is_nan()) {
+        (true, true) => 0.0,
+        (false, false) if a == b => 0.0,
+        (false, false) => (a - b).abs(),
+        _ => 1.0,
+    }
+}
+
 /// The difference between two images.
 struct Difference {
     /// The greatest difference over the channels, by pixel.
@@ -155,7 +165,7 @@ impl Difference {
         difference.pixels.reserve_exact(images.size_hint().0);
         let mut squares = 0.0;
         for (a, b) in images {
-            let channels: [f32; 4] = std::array::from_fn(|channel| (a[channel] - b[channel]).abs());
+            let channels: [f32; 4] = std::array::from_fn(|channel| distance(a[channel], b[channel]));
             let greatest = channels.into_iter().fold(0.0, f32::max);
             squares += channels.iter().map(|value| f64::from(*value) * f64::from(*value)).sum::<f64>();
             difference.greatest = difference.greatest.max(greatest);

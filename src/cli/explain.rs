@@ -2,6 +2,8 @@
 
 use fragbuf::guide;
 use fragbuf_model::codes;
+#[cfg(feature = "pictures")]
+use fragbuf_scene::WarningKind;
 
 use super::output::{self, Failure};
 
@@ -16,14 +18,25 @@ impl Explain {
         let Some(given) = &self.code else {
             let widest = codes::ALL.iter().map(|code| code.name.len()).max().unwrap_or(0);
             let lines = codes::ALL.iter().map(|code| format!("{:widest$}  {}\n", code.name, code.meaning));
-            return output::print(&lines.collect::<String>());
+            let models = model_codes().into_iter().filter(|name| codes::ALL.iter().all(|code| code.name != *name));
+            let models = models.map(|name| format!("{name:widest$}  a warning about a model\n"));
+            return output::print(&lines.chain(models).collect::<String>());
         };
         // `error[unknown-field]` is what the user copies.
-        let name = given.split_once('[').map_or(given.as_str(), |(_, rest)| rest.trim_end_matches(']'));
+        let inside = given.split_once('[').and_then(|(_, rest)| rest.split(']').next());
+        let name = inside.unwrap_or(given);
         let Some(section) = guide::explanation(name) else {
-            let known: Vec<&str> = codes::ALL.iter().map(|code| code.name).collect();
+            let known: Vec<&str> = codes::ALL.iter().map(|code| code.name).chain(model_codes()).collect();
             return Err(Failure::unknown("diagnostic", name, &known));
         };
         output::print(&section)
     }
+}
+
+/// Returns the codes of warnings about models.
+fn model_codes() -> Vec<&'static str> {
+    #[cfg(feature = "pictures")]
+    return WarningKind::ALL.iter().map(|kind| kind.code()).collect();
+    #[cfg(not(feature = "pictures"))]
+    Vec::new()
 }

@@ -1,7 +1,7 @@
 //! Blends colours over a background, encodes them and writes them as a PNG, pixel by pixel: there is no second image in memory.
 
 use std::fs::File;
-use std::io::{BufWriter, IsTerminal as _, Write};
+use std::io::{BufWriter, ErrorKind, IsTerminal as _, Write};
 use std::path::Path;
 
 use super::output::Failure;
@@ -70,7 +70,11 @@ pub(crate) fn write(
     for _ in 0..height {
         row.clear();
         row.extend(pixels.take(width as usize).flatten().map(|value| (255.0 * value).round() as u8));
-        stream.write_all(&row).map_err(|error| Failure::files(path, &error))?;
+        match stream.write_all(&row) {
+            // A reader that has seen enough, such as `head`, is no failure.
+            Err(error) if is_stdout(path) && error.kind() == ErrorKind::BrokenPipe => return Ok(()),
+            written => written.map_err(|error| Failure::files(path, &error))?,
+        }
     }
     stream.finish().map_err(|error| failed(&error))?;
     writer.finish().map_err(|error| failed(&error))?;

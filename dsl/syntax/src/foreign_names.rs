@@ -147,12 +147,12 @@ fn vector_size(name: &str) -> Option<char> {
 /// Functions of shading languages, and the equivalent Rust expressions.
 const EXPRESSIONS: &[(&[&str], &str)] = &[
     (&["mix", "lerp"], "a + (b - a) * t` for numbers, or `a.lerp(b, t)` for vectors: `t: f32"),
-    (&["select"], "if condition { a } else { b }"),
+    (&["select"], "if condition { b } else { a }` for WGSL's `select(a, b, condition)"),
     (&["saturate"], "x.clamp(0.0, 1.0)"),
     (&["smoothstep"], "{ let t = ((x - a) / (b - a)).clamp(0.0, 1.0); t * t * (3.0 - 2.0 * t) }"),
     (&["step"], "if x < edge { 0.0 } else { 1.0 }"),
     (&["frac", "fract"], "x - x.floor()"),
-    (&["sign"], "x.signum()"),
+    (&["sign"], "x.signum()`, which is never 0 for an `f32`; or `if x == 0.0 { 0.0 } else { x.signum() }"),
     (&["inversesqrt", "inverseSqrt", "rsqrt"], "x.sqrt().recip()"),
     (&["rcp"], "x.recip()"),
     (&["pow"], "x.powf(y)"),

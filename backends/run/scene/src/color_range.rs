@@ -16,13 +16,23 @@ pub(crate) struct ColorRange {
     greatest: (f32, f32),
     /// The first number that is not from 0 to 1, and its position.
     first: Option<(f64, FilePosition)>,
+    /// The position of the first colour.
+    position: Option<FilePosition>,
+    /// The number in the file that is 1 here.
+    one: f64,
 }
 
 impl ColorRange {
+    /// Returns the range of numbers that were divided by `one`, the greatest number of their type in the file.
+    pub(crate) fn of_numbers_to(one: f64) -> Self {
+        ColorRange { one, ..ColorRange::default() }
+    }
+
     /// Returns a colour as it is in the file, which [`ColorRange::apply`] will change.
     pub(crate) fn add(&mut self, color: [f64; 4], position: FilePosition) -> [f32; 4] {
         let outside = color.iter().copied().find(|value| !(0.0..=1.0).contains(value));
         self.first = self.first.or(outside.map(|value| (value, position)));
+        self.position = self.position.or(Some(position));
         let color = color.map(|value| value.clamp(-GREATEST, GREATEST) as f32);
         let [r, g, b, alpha] = color;
         self.greatest = (self.greatest.0.max(r).max(g).max(b), self.greatest.1.max(alpha));
@@ -31,6 +41,17 @@ impl ColorRange {
 
     /// Changes all colours that were added to numbers from 0 to 1, with a warning if this changes any.
     pub(crate) fn apply<'c>(self, colors: impl Iterator<Item = &'c mut [f32; 4]>, warnings: FileWarnings<'_>) {
+        // Integers of 16 and 32 bits are often from 0 to 255, too.
+        let greatest = f64::from(self.greatest.0) * self.one;
+        if let Some(position) = self.position.filter(|_| self.one > 255.0 && greatest > 0.0 && greatest < 255.5) {
+            let scale = (self.one / 255.0) as f32;
+            for [r, g, b, _] in colors {
+                [r, g, b].into_iter().for_each(|channel| *channel = (*channel * scale).clamp(0.0, 1.0));
+            }
+            let message = "colours of vertices are from 0 to 255, although their type has greater numbers".to_owned();
+            warnings.add(WarningKind::OutOfRange, "colours", || (position, message));
+            return;
+        }
         let Some((value, position)) = self.first else { return };
         let scale = |greatest: f32| if greatest > BYTES { 1.0 / 255.0 } else { 1.0 };
         let (color, alpha) = (scale(self.greatest.0), scale(self.greatest.1));

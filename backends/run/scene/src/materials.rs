@@ -104,13 +104,18 @@ impl Materials {
         Ok(())
     }
 
-    /// Returns the index of the material `name`. `Err`: a message.
-    pub(crate) fn find(&self, name: &str) -> Result<usize, String> {
+    /// Returns the index of the material `name`.
+    pub(crate) fn find(&self, name: &str) -> Option<usize> {
         let name = single_spaces(name);
         let short = single_spaces(without_comment(&name));
         let candidates = [(&self.by_name, &name), (&self.by_name, &short), (&self.by_short_name, &short)];
         let found = candidates.iter().find_map(|(materials, name)| materials.get(*name));
-        found.copied().ok_or_else(|| format!("unknown material {}: {}", quoted(&name), self.available()))
+        found.copied()
+    }
+
+    /// Returns a message about a material that does not exist.
+    pub(crate) fn unknown(&self, name: &str) -> String {
+        format!("unknown material {}: {}", quoted(&single_spaces(name)), self.available())
     }
 
     /// Returns a list of some materials for a message.

@@ -204,11 +204,11 @@ impl<'a> Reader<'a> {
     }
 
     fn use_material(&mut self, name: &str, line: usize) {
-        let found = self.materials.find(name);
-        self.material = found.as_ref().ok().copied();
-        if let Err(message) = found {
-            self.warnings
-                .line(WarningKind::MissingMaterial, "", line, || format!("{message}: the default colour is used"));
+        self.material = self.materials.find(name);
+        if self.material.is_none() {
+            // The message lists materials, so it is made for the first only.
+            let message = || format!("{}: the default colour is used", self.materials.unknown(name));
+            self.warnings.line(WarningKind::MissingMaterial, "", line, message);
         }
         let material = self.material.and_then(|index| self.materials.get(index));
         if material.is_some_and(Material::is_doubtful) {

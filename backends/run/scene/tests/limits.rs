@@ -151,15 +151,11 @@ fn messages_quote_the_beginning_of_a_long_name() {
     let model = gltf(r#"[{"mesh": 0}]"#, URI);
     let version = model.replace("2.0", &long);
     let extension = model.replacen('{', &format!(r#"{{"extensionsRequired": ["{long}"], "#), 1);
-    let cases: [(Files<'_>, String); 6] = [
+    let cases: [(Files<'_>, String); 5] = [
         (&[("m.ply", &ply("ascii", &elements, long.as_bytes()))], format!("{quoted} is not a number")),
         (
             &[("m.ply", &ply("ascii", &elements, &[0xff; 2000]))],
             format!("`{}…` is not a number", "\u{fffd}".repeat(60)),
-        ),
-        (
-            &[("m.ply", &ply("ascii", &elements, format!("0 0 0 {long}").as_bytes()))],
-            format!("{quoted} follows the last element"),
         ),
         (&[("m.obj", name.as_bytes())], format!("the name of a file, {quoted}, has 65536 bytes: it can have 4096")),
         (&[("m.gltf", version.as_bytes())], format!("glTF version {quoted}: version 2 is read")),
@@ -450,7 +446,7 @@ fn accessors_have_the_types_of_their_use() {
         assert!(changed("5125", component).starts_with("accessor 1: its type is "));
     }
     assert!(changed("SCALAR", "VEC3").starts_with("accessor 1: its type is "));
-    assert_eq!(changed("\"POSITION\": 0", "\"NORMAL\": 0"), "primitive 0: it has no POSITION");
+    assert!(changed("\"POSITION\": 0", "\"NORMAL\": 0").contains("a primitive without POSITION is not drawn"));
     assert!(changed("\"POSITION\": 0", "\"POSITION\": 0, \"COLOR_0\": 1").starts_with("accessor 1: its type is "));
 }
 
@@ -486,8 +482,6 @@ fn sparse_elements_replace_others() {
     assert_eq!(failed(&floats), "accessor 0: it replaces element 1065353216 of 3");
     let zeros = sparse(2, 0, 0).replace("\"bufferView\": 1", "\"bufferView\": 0");
     assert_eq!(failed(&zeros), "accessor 0: the numbers of its sparse elements do not increase at 1");
-    let absent = gltf(r#"[{"mesh": 0}]"#, URI).replacen(r#""bufferView": 0, "componentType""#, r#""componentType""#, 1);
-    assert_eq!(gltf_message(&absent), "accessor 0: it has neither a buffer view nor sparse elements");
 }
 
 #[test]

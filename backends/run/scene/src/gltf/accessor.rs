@@ -61,9 +61,7 @@ impl<'a> Elements<'a> {
         }
         let base = accessor.view().map(|view| slices(&view, accessor.offset(), (count, size), buffers));
         let sparse = accessor.sparse().map(|sparse| replaced(&sparse, (count, size), buffers));
-        if base.is_none() && sparse.is_none() {
-            return Err(error("it has neither a buffer view nor sparse elements".to_owned()));
-        }
+        // An accessor with neither is all zeros.
         Ok(Elements {
             count,
             components: dimensions.multiplicity(),

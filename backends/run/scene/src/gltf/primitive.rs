@@ -33,6 +33,9 @@ const COLORS: Types = Types {
 const INDICES: Types =
     Types { dimensions: &[Dimensions::Scalar], components: &[DataType::U8, DataType::U16, DataType::U32] };
 
+/// The bytes that a primitive counts for, so that the time for primitives is limited.
+const PRIMITIVE: u64 = 512;
+
 /// The bytes of the offset of a vertex in a morph target.
 const MORPH_OFFSET: u64 = 12;
 
@@ -58,6 +61,13 @@ impl Reader<'_> {
         object: &mut ModelObject,
     ) -> Result<(), FileError> {
         let error = |message: String| FileError::whole(format!("primitive {}: {message}", primitive.index()));
+        // Nodes may share a mesh, so that a small file has very many primitives.
+        self.budget.take(1, PRIMITIVE, "the primitives")?;
+        if primitive.get(&Semantic::Positions).is_none() {
+            let message = || "a primitive without POSITION is not drawn".to_owned();
+            self.warnings.add(WarningKind::NotRead, "POSITION", || (self.text.position("meshes", mesh), message()));
+            return Ok(());
+        }
         let corners_of = match primitive.mode() {
             Mode::Triangles => |turn: usize| [3 * turn, 3 * turn + 1, 3 * turn + 2],
             // Every second triangle of a strip is turned, so that all have the same front.

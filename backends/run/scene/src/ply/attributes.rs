@@ -65,8 +65,10 @@ fn property(element: &Element, name: &str, ending: &str) -> Option<usize> {
 /// Returns the attributes that can be requested of vertices.
 fn available(element: &Element) -> Vec<AvailableAttribute> {
     let mut found = Vec::new();
-    for property in element.properties.iter().take(MAX_LISTED).filter(|property| property.list.is_none()) {
-        if super::slot(property).is_none() {
+    let slots = super::slots(element);
+    let properties = element.properties.iter().zip(slots).take(MAX_LISTED);
+    for (property, slot) in properties.filter(|(property, _)| property.list.is_none()) {
+        if slot.is_none() {
             found.push(AvailableAttribute::new(&property.name, 1));
         }
         for endings in &ENDINGS {

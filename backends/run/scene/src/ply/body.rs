@@ -6,6 +6,7 @@
 use super::header::{Encoding, Header, Kind};
 use crate::error::{FileError, FilePosition};
 use crate::text::quoted_bytes;
+use crate::warnings::{FileWarnings, WarningKind};
 
 /// A reader of the body.
 #[derive(Clone)]
@@ -38,14 +39,14 @@ impl<'a> Body<'a> {
         FileError::Malformed(self.position(), message.into())
     }
 
-    /// Checks that the file has no more records. Bytes after a binary body are ignored.
-    pub(super) fn end(&mut self) -> Result<(), FileError> {
+    /// Warns of words after the last record. Bytes after a binary body are ignored.
+    pub(super) fn end(&mut self, warnings: FileWarnings<'_>) {
         if self.encoding != Encoding::Ascii {
-            return Ok(());
+            return;
         }
-        match self.word() {
-            Some(word) => Err(self.error(format!("{} follows the last element", quoted_bytes(word)))),
-            None => Ok(()),
+        if let Some(word) = self.word() {
+            let message = format!("{} follows the last element: it is skipped", quoted_bytes(word));
+            warnings.add(WarningKind::UnknownStatement, "", || (self.position(), message));
         }
     }
 

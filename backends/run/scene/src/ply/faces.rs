@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use super::body::Body;
 use super::header::{Element, Kind, Property};
-use super::{RED, channel, is_color, skip_property, slot};
+use super::{RED, channel, color_range, is_color, skip_property, slots};
 use crate::attribute::AttributeRequest;
-use crate::color_range::ColorRange;
 use crate::error::FileError;
 use crate::limits::{Budget, Held};
 use crate::model::ModelObject;
@@ -59,10 +58,14 @@ impl<'a> Faces<'a> {
         let Some(list) = element.properties.iter().position(|property| is_list(&property)) else {
             return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
         };
-        let slots = element.properties.iter().map(|property| slot(property).filter(|slot| *slot >= RED));
-        let slots: Vec<Option<usize>> = slots.map(|slot| slot.filter(|_| !self.has_vertex_colors)).collect();
+        let is_used = |slot: &usize| *slot >= RED && !self.has_vertex_colors;
+        let slots: Vec<Option<usize>> = slots(element).into_iter().map(|slot| slot.filter(is_used)).collect();
         let has_colors = slots.iter().flatten().any(|slot| is_color(*slot));
-        let (first, mut range) = (self.object.colors.len(), ColorRange::default());
+        let (first, mut range) = (self.object.colors.len(), color_range(element, &slots));
+        if has_colors && element.name == "tristrips" {
+            let message = || "the colours of triangle strips are not read".to_owned();
+            self.warnings.line(WarningKind::NotRead, "tristrips", element.line, message);
+        }
         for _ in 0..element.count {
             let mut color = [1.0; 4];
             // The memory of the corners is held until the end of the record.

@@ -46,7 +46,7 @@ pub(crate) fn parse(
             _ => skip(element, &mut body)?,
         }
     }
-    body.end()?;
+    body.end(warnings);
     let mut faces = Faces::new((&mut object, attributes), budget, warnings, has_colors(&header));
     for (element, mut body) in face_elements {
         faces.read(element, &mut body)?;
@@ -60,26 +60,37 @@ const PROPERTIES: [&str; 10] = ["x", "y", "z", "nx", "ny", "nz", "red", "green",
 /// The index of red in [`PROPERTIES`].
 const RED: usize = 6;
 
-/// Returns the index of a property in [`PROPERTIES`]. Colours have several names.
-fn slot(property: &Property) -> Option<usize> {
-    let name = property.name.as_str();
-    let plain = name.strip_prefix("diffuse_").unwrap_or(name);
-    let slot = PROPERTIES.iter().position(|known| *known == name || (*known == plain)).or_else(|| {
-        let short = ["r", "g", "b", "a"].iter().position(|known| *known == name)?;
-        Some(RED + short)
-    });
-    slot.filter(|_| property.list.is_none())
+/// Returns the index in [`PROPERTIES`] of each property of an element. Colours have several names.
+fn slots(element: &Element) -> Vec<Option<usize>> {
+    const SHORT: [&str; 4] = ["r", "g", "b", "a"];
+    let has = |name: &&str| element.properties.iter().any(|other| other.name == *name && other.list.is_none());
+    // One of these names alone is another quantity, such as a radius.
+    let has_short = SHORT.iter().take(3).all(has);
+    let slot = |property: &Property| {
+        let name = property.name.as_str();
+        let plain = name.strip_prefix("diffuse_").unwrap_or(name);
+        let short = || SHORT.iter().position(|known| has_short && *known == name).map(|short| RED + short);
+        let slot = PROPERTIES.iter().position(|known| *known == name || *known == plain).or_else(short);
+        slot.filter(|_| property.list.is_none())
+    };
+    element.properties.iter().map(slot).collect()
 }
 
 /// Whether the vertices of a file have colours.
 fn has_colors(header: &Header) -> bool {
     let vertices = header.elements.iter().filter(|element| element.name == "vertex");
-    vertices.flat_map(|element| &element.properties).any(|property| slot(property).is_some_and(is_color))
+    vertices.flat_map(slots).flatten().any(is_color)
 }
 
 /// Whether a property is red, green or blue.
 fn is_color(slot: usize) -> bool {
     (RED..RED + 3).contains(&slot)
+}
+
+/// Returns the range of the colours of an element.
+fn color_range(element: &Element, slots: &[Option<usize>]) -> ColorRange {
+    let colors = element.properties.iter().zip(slots).filter(|(_, slot)| slot.is_some_and(is_color));
+    ColorRange::of_numbers_to(colors.map(|(property, _)| property.kind.greatest()).fold(1.0, f64::max))
 }
 
 /// Returns a channel of a colour from its value.
@@ -103,7 +114,7 @@ struct Vertices<'a> {
 
 impl<'a> Vertices<'a> {
     fn of(element: &'a Element, (color, attributes): ([f32; 4], &'a [AttributeRequest])) -> Result<Self, FileError> {
-        let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
+        let slots = slots(element);
         if let Some(name) = PROPERTIES.iter().take(3).zip(0..).find(|(_, axis)| !slots.contains(&Some(*axis))) {
             return Err(FileError::line(element.line, format!("vertices have no `{}`", name.0)));
         }
@@ -120,7 +131,7 @@ impl<'a> Vertices<'a> {
         (object, budget): (&mut ModelObject, &Budget),
         warnings: FileWarnings<'_>,
     ) -> Result<(), FileError> {
-        let (first, mut range) = (object.colors.len(), ColorRange::default());
+        let (first, mut range) = (object.colors.len(), color_range(self.element, &self.slots));
         let mut values = vec![[0.0; MAX_COMPONENTS]; self.attributes.len()];
         for _ in 0..self.element.count {
             let (mut position, mut direction, mut color) = ([0.0; 3], [0.0; 3], self.color.map(f64::from));
