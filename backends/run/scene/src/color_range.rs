@@ -44,9 +44,10 @@ impl ColorRange {
         // Integers of 16 and 32 bits are often from 0 to 255, too.
         let greatest = f64::from(self.greatest.0) * self.one;
         if let Some(position) = self.position.filter(|_| self.one > 255.0 && greatest > 0.0 && greatest < 255.5) {
-            let scale = (self.one / 255.0) as f32;
+            // The number in the file, which rounding may have changed.
+            let number = |channel: f32| (f64::from(channel) * self.one).round();
             for [r, g, b, _] in colors {
-                [r, g, b].into_iter().for_each(|channel| *channel = (*channel * scale).clamp(0.0, 1.0));
+                [r, g, b].into_iter().for_each(|channel| *channel = (number(*channel) / 255.0).clamp(0.0, 1.0) as f32);
             }
             let message = "colours of vertices are from 0 to 255, although their type has greater numbers".to_owned();
             warnings.add(WarningKind::OutOfRange, "colours", || (position, message));

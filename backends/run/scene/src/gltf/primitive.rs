@@ -34,7 +34,7 @@ const INDICES: Types =
     Types { dimensions: &[Dimensions::Scalar], components: &[DataType::U8, DataType::U16, DataType::U32] };
 
 /// The bytes that a primitive counts for, so that the time for primitives is limited.
-const PRIMITIVE: u64 = 512;
+const PRIMITIVE: u64 = 64;
 
 /// The bytes of the offset of a vertex in a morph target.
 const MORPH_OFFSET: u64 = 12;
