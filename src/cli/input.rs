@@ -63,7 +63,7 @@ impl Input {
     /// Prints the warnings that are not printed yet.
     fn warn(&mut self, variant: &Variant) {
         let is_printed = |warning: &&Diagnostic| {
-            !self.warned.contains(warning) && !(self.is_module && warning.code == codes::UNUSED_ATTRIBUTE)
+            !(self.warned.contains(warning) || self.is_module && warning.code == codes::UNUSED_ATTRIBUTE)
         };
         let new: Vec<Diagnostic> = variant.warnings.iter().filter(is_printed).cloned().collect();
         output::warnings(&new.iter().cloned().collect(), &self.sources);

@@ -209,8 +209,8 @@ fn attempt(number: u64, models: &[Model], folder: &Path) -> Result<Scene, Error>
     let path = folder.join(name);
     std::fs::write(&path, &bytes).unwrap();
     // Half of the models are loaded with attributes, which an OBJ does not have.
-    let own = [AttributeRequest { name: "own".to_owned(), components: 1, is_integer: number % 3 == 0 }];
-    let requests = if number % 2 == 0 || name == "m.obj" { &[][..] } else { &own };
+    let own = [AttributeRequest { name: "own".to_owned(), components: 1, is_integer: number.is_multiple_of(3) }];
+    let requests = if number.is_multiple_of(2) || name == "m.obj" { &[][..] } else { &own };
     load_with(&path, [0.5; 4], requests, &LIMITS)
 }
 

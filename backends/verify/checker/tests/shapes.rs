@@ -260,7 +260,7 @@ fn extreme_sources_are_rejected() {
         format!("fn f0() -> u32 {{ return atomicLoad(&n); }}\n{calls}{}", main("atomicAdd(&n, f40());")),
         format!("var<private> p: array<u32, 400000000>;\n{}", main("p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
         format!("var<workgroup> p: array<u32, 400000000>;\n{}", main("p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
-        format!("{}", main("var p: array<u32, 400000000>; p[x] = 1u; atomicAdd(&n, p[x + 1u]);")),
+        main("var p: array<u32, 400000000>; p[x] = 1u; atomicAdd(&n, p[x + 1u]);"),
         format!(
             "struct S {{ a: atomic<u32>, b: u32 }}\n@group(1) @binding(0) var<storage, read_write> s: array<S, 100000000>;\n{}",
             main("atomicAdd(&s[x].a, 1u);")

@@ -127,9 +127,10 @@ impl Compiler<'_> {
             TypeInner::Array { base, size: ArraySize::Constant(length), stride } => {
                 let inside = self.atomics(self.layouts.inner(*base))?;
                 let count = if inside.is_empty() { 0 } else { length.get() };
-                let is_dense = inside.as_slice() == [0..stride / 4];
-                if is_dense {
-                    return Ok(vec![0..count.saturating_mul(stride / 4)]);
+                if let [range] = inside.as_slice()
+                    && *range == (0..stride / 4)
+                {
+                    return Ok(std::iter::once(0..count.saturating_mul(stride / 4)).collect());
                 }
                 if count as usize * inside.len() > MOST_RANGES {
                     return Err("an array of so many structures with atomic members".to_owned());
