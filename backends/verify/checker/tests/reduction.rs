@@ -15,9 +15,11 @@ fn violation(report: &Report) -> Option<&str> {
 fn techniques_have_the_same_verdict_without_the_reduction() {
     let registry = Registry::builtin();
     let (mut reduced_states, mut all_states) = (0, 0);
-    for (key, set, target, model, _) in VERDICTS {
+    for (number, (key, set, target, model, _)) in VERDICTS.into_iter().enumerate() {
+        // Every technique with one entry, and one in four with two.
+        let entries = if number.is_multiple_of(4) { vec![1, 2] } else { vec![1] };
         let checked = |reduce: bool| {
-            let limits = Limits { reduce, entries: vec![1, 2], ..limits(2, model) };
+            let limits = Limits { reduce, entries: entries.clone(), ..limits(2, model) };
             report(key, set, target, &limits, &registry).unwrap()
         };
         let (reduced, all) = (checked(true), checked(false));
