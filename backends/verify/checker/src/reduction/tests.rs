@@ -26,7 +26,7 @@ impl Property for Never {
     }
 
     fn watched(&self) -> Vec<Range<usize>> {
-        vec![0..2]
+        std::iter::once(0..2).collect()
     }
 
     fn final_state(&mut self, _: &[u32]) -> StateVerdict {
