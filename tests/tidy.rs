@@ -386,7 +386,10 @@ fn retired_words_stay_out() {
             continue;
         }
         for (line, text) in (1..).zip(read(&path).lines()).filter(|(_, text)| !text.contains("former_key: Some(")) {
-            let words = RETIRED.iter().filter(|word| text.contains(**word));
+            let begins = |word: &str| word.bytes().all(|letter| letter.is_ascii_lowercase() || letter == b' ');
+            let capital = |word: &str| format!(" {}{} ", word[..1].to_uppercase(), &word[1..]);
+            let words = RETIRED.iter();
+            let words = words.filter(|word| text.contains(**word) || begins(word) && text.contains(&capital(word)));
             found.extend(words.map(|word| format!("{}:{line}: {word}", path.display())));
         }
     }

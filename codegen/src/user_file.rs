@@ -9,12 +9,18 @@ use fragbuf_model::{Diagnostic, Diagnostics, RowSpans, SourceSpan, UserRow, mang
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Host, Kind, Pass, Row, State, Step};
 
-use crate::link::{FunctionSignature, Item, grammar_errors, items, signatures, types};
+use crate::link::{FunctionSignature, GrammarError, Item, grammar_errors, items, signatures, types};
 use crate::{CONTRACTS, Contract};
 
-/// Returns the byte offset of an operator or a branch that is one too many for naga, which recurses once for each, with a message.
-pub fn too_long(source: &str) -> Option<(usize, String)> {
-    crate::link::too_long(source)
+/// Returns an error about the first expression or `if` of a source that is too long for naga, which recurses over both.
+pub fn too_long(source: &str, file: &str) -> Option<Diagnostic> {
+    let error = grammar_errors(source).into_iter().find(|error| error.is_length)?;
+    Some(diagnostic(error, &File { source, name: &file.into() }))
+}
+
+fn diagnostic(error: GrammarError, file: &File<'_>) -> Diagnostic {
+    let span = file.name_at(error.at, error.operator);
+    Diagnostic::new(INVALID_WGSL, &span, error.message, error.help)
 }
 
 /// Checks the row of a user file and completes it for the registry. Reports all errors.
@@ -28,8 +34,7 @@ pub fn validate_user_row(user_row: UserRow, registry: &Registry) -> Result<Row, 
     if let Some(template) = &row.template {
         let file = File { source: &template.source, name: &spans.row.file };
         for error in grammar_errors(&template.source) {
-            let span = file.name_at(error.at, error.operator);
-            diagnostics.push(Diagnostic::new(INVALID_WGSL, &span, error.message, error.help));
+            diagnostics.push(diagnostic(error, &file));
         }
         match items(&template.source) {
             Ok(items) => {

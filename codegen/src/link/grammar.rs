@@ -22,12 +22,6 @@ pub(crate) struct GrammarError {
 const MOST_OPERATORS: usize = 500;
 const MOST_BRANCHES: usize = 150;
 
-/// Returns the byte offset of an operator or a branch that is too many for naga, with a message.
-pub(crate) fn too_long(source: &str) -> Option<(usize, String)> {
-    let errors = grammar_errors(source);
-    errors.into_iter().find(|error| error.is_length).map(|error| (error.at, error.message))
-}
-
 /// A binary operator in the source.
 #[derive(Clone, Copy)]
 struct Operator {

@@ -16,7 +16,7 @@ mod source;
 mod token;
 mod writer;
 
-pub(crate) use grammar::{grammar_errors, too_long};
+pub(crate) use grammar::{GrammarError, grammar_errors};
 pub(crate) use item::{FunctionSignature, Item, names, parse as items, signatures, types};
 pub(crate) use rename::Renames;
 pub(crate) use source::{LinkError, Source};

@@ -3,7 +3,7 @@
 use fragbuf_model::{Code, Diagnostic, Diagnostics, SourceSpan};
 use proc_macro2::Span;
 
-/// The greatest number of errors that are kept. Nobody reads more.
+/// The greatest number of errors that are kept. A reader needs no more.
 const MAX_ERRORS: usize = 200;
 
 /// The label of the first of two duplicates.

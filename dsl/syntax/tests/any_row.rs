@@ -10,7 +10,7 @@ use fragbuf_templates::vocabulary::{
 
 const GOOD: &str = "// What it is.\n\
     //: storage -- all of it\n\
-    //: paper Nobody 2026, sec. 3\n\
+    //: paper Author 2026, sec. 3\n\
     //: buffer heads[pixel < pixels]: word, clear 7 -- the first\n\
     //: buffer rest[slot < k * 2][pixel < ceil_div(width, 8) * height]: value, persistent -- the rest\n\
     //: pass reset: heads plain\n\

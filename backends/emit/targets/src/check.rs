@@ -46,7 +46,7 @@ impl Checked {
 }
 
 /// Returns the naga capabilities that sources of this profile may use.
-pub fn capabilities(profile: Profile) -> Capabilities {
+pub(crate) fn capabilities(profile: Profile) -> Capabilities {
     // pack2x16float and its kin belong to WGSL without extensions; naga has a capability for them.
     let portable = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     match profile {
@@ -65,18 +65,32 @@ pub fn capabilities(profile: Profile) -> Capabilities {
 
 /// Checks one pass. Errors that are at no line of the user's are reported at `description`.
 pub fn check(pass: PassSource, profile: Profile, description: &SourceSpan) -> Result<Checked, Diagnostics> {
+    match validate(&pass.text, profile) {
+        Ok((module, info)) => Ok(Checked { pass, module, info }),
+        Err(Rejection { location, message }) => Err(error_at(&pass, location, &message, description)),
+    }
+}
+
+/// Why naga rejects a source.
+#[derive(Clone, Debug)]
+pub struct Rejection {
+    /// The place in the source, if naga gives one.
+    pub location: Option<SourceLocation>,
+    /// The error and its causes.
+    pub message: String,
+}
+
+/// Parses and validates a source with naga.
+pub fn validate(text: &str, profile: Profile) -> Result<(naga::Module, ModuleInfo), Rejection> {
     let capabilities = capabilities(profile);
-    let mut frontend = naga::front::wgsl::Frontend::new_with_options(naga::front::wgsl::Options {
-        parse_doc_comments: true,
-        capabilities,
-    });
-    let module = frontend
-        .parse(&pass.text)
-        .map_err(|error| error_at(&pass, error.location(&pass.text), error.message(), description))?;
+    let options = naga::front::wgsl::Options { parse_doc_comments: true, capabilities };
+    let module = naga::front::wgsl::Frontend::new_with_options(options)
+        .parse(text)
+        .map_err(|error| Rejection { location: error.location(text), message: error.message().to_owned() })?;
     let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
-        .map_err(|error| error_at(&pass, error.location(&pass.text), &chain(error.as_inner()), description))?;
-    Ok(Checked { pass, module, info })
+        .map_err(|error| Rejection { location: error.location(text), message: causes(error.as_inner()) })?;
+    Ok((module, info))
 }
 
 fn error_at(
@@ -123,13 +137,7 @@ fn narrowed(pass: &PassSource, location: SourceLocation, line: &SourceSpan) -> O
 }
 
 /// Returns an error and its causes on one line.
-fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text.push_str(": ");
-        text.push_str(&error.to_string());
-        cause = error.source();
-    }
-    text
+pub fn causes(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }

@@ -21,7 +21,7 @@ mod spirv;
 mod target;
 mod wgsl;
 
-pub use check::{Checked, capabilities, check};
+pub use check::{Checked, Rejection, causes, check, validate};
 pub use emission::{Emission, File, Guards};
 pub use generate::{Generation, PlanForTargets, Request, generate, select};
 pub use limits::{Limit, Needed, Sharing, WebGpuLimit, Workgroup, limits};

@@ -70,6 +70,26 @@ struct Layout {
     ordered: usize,
 }
 
+/// The groups of the words of a state, in their order.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum WordGroup {
+    Ordered,
+    Workgroup,
+    Commuting,
+}
+
+impl WordGroup {
+    /// Returns the group of a buffer's words. `None`: the program does not write it.
+    fn of(buffer: &Buffer) -> Option<Self> {
+        match (buffer.space, buffer.is_written, buffer.commutes) {
+            (Space::Workgroup, ..) => Some(WordGroup::Workgroup),
+            (_, false, _) => None,
+            (_, true, false) => Some(WordGroup::Ordered),
+            (_, true, true) => Some(WordGroup::Commuting),
+        }
+    }
+}
+
 impl<'p> SearchContext<'p> {
     /// Returns the context of a program over this memory, and the words of the first state. Fences are events under the
     /// relaxed model, and every option that a caller may set is off.
@@ -114,34 +134,42 @@ impl<'p> SearchContext<'p> {
     }
 
     fn lay_out(program: &Bytecode, memory: &[Vec<u32>], workgroups: u32) -> Layout {
-        let mut locations = vec![BufferLocation::ReadOnly(0); program.buffers.len()];
-        let mut words: Vec<u32> = Vec::new();
-        let buffers = || program.buffers.iter().enumerate();
-        let mut storage = |commutes: bool, words: &mut Vec<u32>| {
-            for (number, buffer) in buffers().filter(|(_, buffer)| buffer.space != Space::Workgroup) {
-                let index = memory_index(buffer.binding);
-                if !buffer.is_written {
-                    locations[number] = BufferLocation::ReadOnly(index);
-                } else if buffer.commutes == commutes {
-                    let content = &memory[index];
-                    locations[number] = BufferLocation::State { first: words.len(), words: content.len(), commutes };
-                    words.extend_from_slice(content);
-                }
-            }
+        let mut layout = Layout {
+            locations: program
+                .buffers
+                .iter()
+                .map(|buffer| BufferLocation::ReadOnly(memory_index(buffer.binding)))
+                .collect(),
+            words: Vec::new(),
+            first_of_workgroups: 0,
+            ordered: 0,
         };
-        storage(false, &mut words);
-        let first_of_workgroups = words.len();
-        let mut workgroup_variables = Vec::new();
-        for (number, buffer) in buffers().filter(|(_, buffer)| buffer.space == Space::Workgroup) {
-            let length = buffer.words as usize;
-            workgroup_variables
-                .push((number, BufferLocation::State { first: words.len(), words: length, commutes: false }));
-            words.resize(words.len() + length * workgroups as usize, 0);
+        for group in [WordGroup::Ordered, WordGroup::Workgroup, WordGroup::Commuting] {
+            let Layout { locations, words, .. } = &mut layout;
+            for (buffer, location) in program.buffers.iter().zip(locations) {
+                if WordGroup::of(buffer) != Some(group) {
+                    continue;
+                }
+                let (first, commutes) = (words.len(), group == WordGroup::Commuting);
+                let length = match group {
+                    WordGroup::Workgroup => {
+                        words.resize(first + buffer.words as usize * workgroups as usize, 0);
+                        buffer.words as usize
+                    }
+                    WordGroup::Ordered | WordGroup::Commuting => {
+                        words.extend_from_slice(&memory[memory_index(buffer.binding)]);
+                        words.len() - first
+                    }
+                };
+                *location = BufferLocation::State { first, words: length, commutes };
+            }
+            match group {
+                WordGroup::Ordered => layout.first_of_workgroups = layout.words.len(),
+                WordGroup::Workgroup => layout.ordered = layout.words.len(),
+                WordGroup::Commuting => {}
+            }
         }
-        let ordered = words.len();
-        storage(true, &mut words);
-        workgroup_variables.into_iter().for_each(|(number, location)| locations[number] = location);
-        Layout { locations, words, first_of_workgroups, ordered }
+        layout
     }
 
     /// Returns a property of each ordered word, which depends on its buffer and its number there.

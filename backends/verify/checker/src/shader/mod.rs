@@ -139,18 +139,24 @@ impl ShaderCheck<'_> {
                     "{members} of the {size} invocations of a workgroup run: what depends on the others is not checked"
                 ));
             }
+            if self.report.failure.is_some() {
+                self.complete_schedule(invocations, clamps);
+            }
             if found.out_of_bounds.is_empty() || self.report.failure.is_some() {
                 break;
             }
         }
-        // The order of some accesses cannot be observed, so they are no steps. A schedule shows them.
-        let commutes = self.source.program.buffers.iter().any(|buffer| buffer.commutes);
-        if self.report.failure.is_some() && commutes {
-            let mut program = self.source.program.clone();
-            program.buffers.iter_mut().for_each(|buffer| buffer.commutes = false);
-            if let Some(schedule) = self.search(&program, invocations, false).failure {
-                self.report.failure = Some(schedule);
-            }
+    }
+
+    /// Adds the accesses whose order cannot be observed to the schedule of a failure. The search does not take them as steps.
+    fn complete_schedule(&mut self, invocations: &Invocations, clamps: bool) {
+        let mut program = self.source.program.clone();
+        if !program.buffers.iter().any(|buffer| buffer.commutes) {
+            return;
+        }
+        program.buffers.iter_mut().for_each(|buffer| buffer.commutes = false);
+        if let Some(schedule) = self.search(&program, invocations, clamps).failure {
+            self.report.failure = Some(schedule);
         }
     }
 

@@ -6,9 +6,9 @@
 use fragbuf_codegen::{Profile, SourceMap, too_long};
 use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT, Options, Space, Unsupported};
 use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
-use fragbuf_targets::capabilities;
+use fragbuf_targets::{causes, validate};
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides};
-use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+use naga::valid::ModuleInfo;
 use naga::{Module, ResourceBinding, ShaderStage, SourceLocation, TypeInner};
 
 use crate::programs::{CheckedSource, MARKERS};
@@ -121,29 +121,14 @@ fn renumber(module: &mut Module) {
 
 /// Parses and validates source.
 fn validated(shader: &Shader<'_>, text: &str) -> Result<(Module, ModuleInfo), Error> {
-    if let Some((at, message)) = too_long(text) {
-        let before = text.get(..at).unwrap_or_default();
-        let line = before.matches('\n').count() as u32 + 1;
-        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) as u32 + 1;
-        let span = SourceSpan::new(shader.file, line, column);
-        return Err(Error::Description(Diagnostic::new(codes::INVALID_WGSL, &span, message, "divide it").into()));
+    if let Some(error) = too_long(text, shader.file) {
+        return Err(Error::Description(error.into()));
     }
-    let capabilities = capabilities(Profile::Native);
-    let options = naga::front::wgsl::Options { parse_doc_comments: false, capabilities };
-    let mut module = naga::front::wgsl::Frontend::new_with_options(options)
-        .parse(text)
-        .map_err(|error| invalid(shader, error.location(text), error.message().to_owned()))?;
+    let (mut module, info) =
+        validate(text, Profile::Native).map_err(|rejection| invalid(shader, rejection.location, rejection.message))?;
+    // What is known about a module does not depend on the numbers of bindings.
     renumber(&mut module);
-    let info = Validator::new(ValidationFlags::all(), capabilities)
-        .validate(&module)
-        .map_err(|error| invalid(shader, error.location(text), causes(error.as_inner())))?;
     Ok((module, info))
-}
-
-/// Returns an error and its causes on one line.
-fn causes(error: &dyn std::error::Error) -> String {
-    let causes = std::iter::successors(error.source(), |cause| cause.source());
-    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }
 
 fn invalid(shader: &Shader<'_>, location: Option<SourceLocation>, message: String) -> Error {

@@ -1,5 +1,5 @@
 // entry: main; fragments: 2; sc: holds; relaxed: race
-// why: Whoever observes the flag at the first load reads the table without a fence.
+// why: An invocation that observes the flag at the first load reads the table without a fence.
 // after: double-checked locking, the classic bug
 @group(0) @binding(0) var<storage, read_write> lock: atomic<u32>;
 @group(0) @binding(1) var<storage, read_write> ready: atomic<u32>;

@@ -1,5 +1,5 @@
 // entry: main; fragments: 2; sc: holds; relaxed: undecided
-// why: Whoever cannot take the second lock releases the first. An endless contest needs an unfair schedule for ever, and from each state some schedule ends. Under relaxed memory the loop has infinitely many histories.
+// why: An invocation that cannot take the second lock releases the first. An endless contest needs an unfair schedule for ever, and from each state some schedule ends. Under relaxed memory the loop has infinitely many histories.
 // after: try-lock with back-off for two locks
 @group(0) @binding(0) var<storage, read_write> lock: array<atomic<u32>, 2>;
 @coherent @group(0) @binding(1) var<storage, read_write> sum: u32;
