@@ -9,7 +9,7 @@ use fragbuf_interpreter::Machine;
 use crate::context::SearchContext;
 use crate::progress::RunOn;
 use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, StateVerdict, Step};
-use crate::state::State;
+use crate::state::{State, StepError};
 
 /// The most steps of a schedule.
 const LONGEST: usize = 100_000;
@@ -28,6 +28,8 @@ pub(crate) fn walk(
         let end = walk.run(&mut machine, first.clone(), property);
         result.states += walk.steps.len();
         result.failure = match end {
+            // It decides nothing, and other schedules may fail.
+            Err(FailureKind::Step(_, StepError::TooLong)) => None,
             Err(kind) => Some(Failure { steps: walk.steps, kind }),
             Ok(None) => None,
             Ok(Some((verdict, words))) => result.record(verdict, &words, || walk.steps),
