@@ -35,7 +35,7 @@ fn a_row_has_the_values_of_its_lines() {
     let user_row = row(GOOD, "mine.wgsl", "wgsl:mine.wgsl", "there/mine.wgsl").expect("it is a row");
     let row = user_row.row;
     assert_eq!((row.axis.as_str(), row.key.as_str(), &*row.summary), ("storage", "wgsl:mine.wgsl", "all of it"));
-    assert_eq!(row.paper, "Nobody 2026, sec. 3");
+    assert_eq!(row.paper, "Author 2026, sec. 3");
     let [heads, rest] = row.resources.as_slice() else { unreachable!("two buffers: {:?}", row.resources) };
     assert_eq!((heads.element, heads.init, &*heads.summary), (Element::Word, Init::Clear(7), "the first"));
     let extents: Vec<_> = rest.extents.iter().map(|extent| (extent.name.as_str(), extent.length.to_string())).collect();
