@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use fragbuf::Registry;
+use fragbuf::{Registry, TIERS};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -137,26 +137,16 @@ fn files_are_short_and_have_headers() {
     }
 }
 
-/// The README's table of axes is computed from the registry. `INSTA_UPDATE=always` updates it.
+/// The README names every axis in the order of the registry; the guide describes their values.
 #[test]
-fn the_readme_names_every_value() {
-    const HEAD: &str = "| axis | what is chosen | values, the default first |\n";
-    let (path, registry) = (root().join("README.md"), Registry::builtin());
-    let mut table = format!("{HEAD}|---|---|---|\n");
-    for axis in registry.axes().iter().filter(|axis| axis.chosen) {
-        let mut keys: Vec<&str> = registry.rows_of(axis.key).map(|row| row.key.as_str()).collect();
-        keys.retain(|key| *key != Registry::CLOSURE);
-        keys.sort_by_key(|key| axis.default != Some(*key));
-        table += &format!("| {} | {} | `{}` |\n", axis.key, axis.summary, keys.join("`, `"));
-    }
-    let _lock = README.lock().unwrap_or_else(PoisonError::into_inner);
-    let readme = read(&path);
-    let start = readme.find(HEAD).expect("README.md has the table of axes");
-    let end = start + readme[start..].find("\n\n").expect("an empty line after the table") + 1;
-    if updating() {
-        std::fs::write(&path, [&readme[..start], &table, &readme[end..]].concat()).unwrap();
-    }
-    assert!(read(&path).contains(&table), "README.md is out of date");
+fn the_readme_names_every_axis() {
+    let registry = Registry::builtin();
+    let names: Vec<String> =
+        registry.axes().iter().filter(|axis| axis.chosen).map(|axis| format!("`{}`", axis.key)).collect();
+    let (last, others) = names.split_last().unwrap();
+    let sentence = format!("The axes are {} and {last};", others.join(", "));
+    let readme: Vec<String> = read(&root().join("README.md")).split_whitespace().map(str::to_owned).collect();
+    assert!(readme.join(" ").contains(&sentence), "README.md should contain: {sentence}");
 }
 
 /// The guide's table of values is the output of `list --axes`. `INSTA_UPDATE=always` updates it.
@@ -170,6 +160,31 @@ fn the_guide_has_every_value_with_what_it_does() {
     assert_eq!(read(&path), table, "{} is out of date", path.display());
 }
 
+/// Every crate has what its page in a registry shows. Crates above it are dependencies of its tests by path alone, because a version
+/// would have to be published first.
+#[test]
+fn every_crate_can_be_published() {
+    let manifests =
+        ["templates", "dsl", "codegen", "backends", "examples"].iter().flat_map(|folder| files(folder, "toml"));
+    let crates: Vec<PathBuf> = manifests.filter(|path| path.ends_with("Cargo.toml")).collect();
+    assert_eq!(crates.len(), 17);
+    for path in crates.into_iter().chain([root().join("Cargo.toml")]) {
+        let text = read(&path);
+        let name = text.split("[package]\nname = \"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+        for field in
+            ["description = \"", "license.workspace", "rust-version.workspace", "keywords = [", "categories = ["]
+        {
+            assert!(text.contains(&format!("\n{field}")), "{name}: {field}");
+        }
+        assert!(text.contains(&format!("\ndocumentation = \"https://docs.rs/{name}\"\n")), "{name}");
+        let tests =
+            text.split("\n[dev-dependencies]\n").nth(1).map_or("", |rest| rest.split("\n[").next().unwrap_or(rest));
+        let versioned: Vec<&str> =
+            tests.lines().filter(|line| line.starts_with("fragbuf") && !line.contains("path")).collect();
+        assert!(versioned.is_empty(), "{name}: {versioned:?}");
+    }
+}
+
 #[test]
 fn no_file_has_a_meaningless_name() {
     const WORDS: [&str; 5] = ["utils", "util", "helpers_misc", "manager", "types_misc"];
@@ -181,10 +196,49 @@ fn no_file_has_a_meaningless_name() {
     }
 }
 
-/// The README's table of techniques is the output of `list --wide`. `INSTA_UPDATE=always` updates it.
+/// The README's table of techniques is computed from `list --json`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_has_the_computed_table() {
-    shows("text", 1, |_| fragbuf_table());
+    const HEAD: &str = "| technique | what a pixel keeps | words per pixel | draws | exact | tiers |\n";
+    let path = root().join("README.md");
+    let _lock = README.lock().unwrap_or_else(PoisonError::into_inner);
+    let readme = read(&path);
+    let start = readme.find(HEAD).expect("README.md has the table of techniques");
+    let end = start + readme[start..].find("\n\n").expect("an empty line after the table") + 1;
+    let table = format!("{HEAD}|---|---|---|---|---|---|\n{}", technique_rows());
+    if updating() {
+        std::fs::write(&path, [&readme[..start], &table, &readme[end..]].concat()).unwrap();
+    }
+    assert!(updating() || readme[start..end] == table, "README.md should show:\n{table}");
+}
+
+/// Returns the README's lines of all techniques.
+fn technique_rows() -> String {
+    let techniques: serde_json::Value = serde_json::from_str(&fragbuf(&["list", "--json"], root())).unwrap();
+    let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
+    let row = |technique: &serde_json::Value| {
+        let [key, summary, words, draws] =
+            ["key", "summary", "words_per_pixel", "draws"].map(|field| text(&technique[field]));
+        let exact = ["deterministic", "order_independent"].iter().all(|field| technique[field] == "yes");
+        let targets = technique["targets"].as_object().unwrap().values().map(text);
+        let mut tiers: Vec<String> = targets.filter(|tier| TIERS.contains(&tier.as_str())).collect();
+        tiers.sort();
+        tiers.dedup();
+        let (exact, tiers) = (if exact { "yes" } else { "no" }, tiers.join(" "));
+        format!("| [`{key}`](examples/techniques/{key}.md) | {summary} | {words} | {draws} | {exact} | {tiers} |\n")
+    };
+    techniques.as_array().unwrap().iter().map(row).collect()
+}
+
+/// The table of every column is the output of `list --markdown`. `INSTA_UPDATE=always` updates it.
+#[test]
+fn the_page_of_all_techniques_is_computed() {
+    let path = root().join("examples/techniques/README.md");
+    let page = fragbuf(&["list", "--markdown"], root());
+    if updating() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    assert_eq!(read(&path), page, "{} is out of date", path.display());
 }
 
 /// Every technique has a page and an image. Pages are computed from the rows: `INSTA_UPDATE=always` updates them.
@@ -204,7 +258,7 @@ fn every_technique_has_its_page() {
             technique.key
         );
     }
-    assert_eq!(files("examples/techniques", "md").len(), techniques.len() + 1, "a page of no technique");
+    assert_eq!(files("examples/techniques", "md").len(), techniques.len() + 2, "a page of no technique");
 }
 
 /// The comparison with Table 1 of the k⁺-buffer paper is computed.
@@ -268,11 +322,11 @@ fn updating() -> bool {
 /// Every code block in the README is computed. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_shows_what_is_generated() {
-    shows("rust", 0, |_| read(&root().join("examples/most_visible.fragbuf")));
+    shows("rust", 0, |_| read(&root().join("examples/glass.fragbuf")));
     for target in ["wgsl", "glsl"] {
         // The block is one function of the generated sources.
         shows(target, 0, |block| {
-            let sources = fragbuf(&["show", "examples/most_visible.fragbuf", "--dump", target], root());
+            let sources = fragbuf(&["show", "examples/glass.fragbuf", "--dump", target], root());
             let name = block.split_inclusive('(').next().unwrap();
             let start = sources.find(name).unwrap_or_else(|| panic!("no function `{name}`"));
             let end = start + sources[start..].find("\n}\n").unwrap() + 3;
@@ -317,10 +371,6 @@ fn fragbuf(arguments: &[&str], folder: &Path) -> String {
     let output =
         std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf")).args(arguments).current_dir(folder).output().unwrap();
     String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
-}
-
-fn fragbuf_table() -> String {
-    fragbuf(&["list", "--wide"], root())
 }
 
 /// Names and phrases that the project no longer uses. The changelog has their replacements.

@@ -15,11 +15,14 @@ pub(crate) struct List {
     /// Print every column, one line per technique: tiers per target, features and papers, too
     #[arg(long, conflicts_with = "json")]
     wide: bool,
-    /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
+    /// Print every column as Markdown
     #[arg(long, conflicts_with_all = ["json", "wide"])]
+    markdown: bool,
+    /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
+    #[arg(long, conflicts_with_all = ["json", "wide", "markdown"])]
     table_1: bool,
     /// Print the axes and their values as Markdown, the default value of each axis first
-    #[arg(long, conflicts_with_all = ["json", "wide", "table_1"])]
+    #[arg(long, conflicts_with_all = ["json", "wide", "markdown", "table_1"])]
     axes: bool,
 }
 
@@ -34,10 +37,12 @@ impl List {
         }
         let rows: Vec<Value> =
             registry.techniques().iter().map(|technique| row(technique, &registry)).collect::<Result<_, _>>()?;
-        output::print(&match (self.json, self.wide) {
-            (true, _) => output::json(&Value::from(rows)),
-            (false, true) => table(HEADINGS, &rows.iter().map(cells).collect::<Vec<_>>()),
-            (false, false) => narrow(&rows),
+        let cells = || rows.iter().map(cells).collect::<Vec<_>>();
+        output::print(&match self {
+            List { json: true, .. } => output::json(&Value::from(rows)),
+            List { wide: true, .. } => table(HEADINGS, &cells()),
+            List { markdown: true, .. } => markdown(&cells()),
+            _ => narrow(&rows),
         })
     }
 }
@@ -169,6 +174,36 @@ fn table<const COLUMNS: usize>(headings: [&str; COLUMNS], rows: &[[String; COLUM
     };
     lines.iter().map(line).collect()
 }
+
+/// Returns the table as Markdown. The key of a technique is a link to its page in the same folder.
+fn markdown(rows: &[[String; HEADINGS.len()]]) -> String {
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = String::from(PAGE_HEADER);
+    text.push_str(&line(HEADINGS.map(str::to_owned).to_vec()));
+    text.push_str(&line(vec!["---".to_owned(); HEADINGS.len()]).replace(' ', ""));
+    for row in rows {
+        let link = row.iter().take(1).map(|key| format!("[`{key}`]({key}.md)"));
+        text.push_str(&line(link.chain(row.iter().skip(1).cloned()).collect()));
+    }
+    text
+}
+
+/// The text before the table of [`markdown`].
+const PAGE_HEADER: &str = "\
+# Techniques
+
+Computed from the registry rows by `fragbuf list --markdown`. [table_1.md](table_1.md) compares them with Table 1 of the k⁺-buffer paper.
+
+* *words/pixel*, *bytes/pixel*: memory for the papers' payload; f is the number of fragments of a pixel, n the greatest f, k the number kept.
+* *geometry*: how often the scene is drawn. *draws* and *passes* of a frame include full-screen triangles and compute passes.
+* *deterministic*: races do not change the image. *order-independent*: the image does not depend on the order in which fragments
+  arrive. Both hold only if the counters report that no fragment overflowed or timed out.
+* *tiers*: the mechanism that makes the technique sound under concurrency, for each target: **T1** single-object atomics, sound in portable
+  WGSL; **T2** interlock; **T3** a lock with fences; **T4** a lock in plain WGSL, which works on many GPUs and is guaranteed by none;
+  **T5** racy by design.
+* *features*: what the target, and then the device, must provide.
+
+";
 
 /// The width of a terminal that shows the table without `--wide`.
 const WIDTH: usize = 80;
