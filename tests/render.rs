@@ -173,7 +173,7 @@ fn a_user_storage_loses_the_fragments_beyond_its_capacity() {
     let output = fragbuf(&[&arguments, &common[..], &["--out", out.to_str().unwrap()]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(statistics["lost"]["by_counter"]["displaced"], 2 * SIZE * SIZE, "{statistics}");
+    assert_eq!(statistics["fragments"]["displaced"], 2 * SIZE * SIZE, "{statistics}");
     let expected = oracle(&quads[..3], None, 0, 0, [0.0; 3]);
     for (seen, expected) in read(&out).2[0].iter().zip(expected) {
         assert!((f64::from(*seen) - 255.0 * expected).abs() <= 1.0, "{seen}, not {}", 255.0 * expected);
@@ -316,13 +316,13 @@ fn statistics_are_json_on_stdout_and_add_up() {
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let fragments = ["generated", "stored", "culled"].map(|name| statistics["fragments"][name].as_u64().unwrap());
-    let [generated, stored, culled] = fragments;
+    let fragments = ["generated", "stored", "culled", "displaced"];
+    let [generated, stored, culled, displaced] = fragments.map(|name| statistics["fragments"][name].as_u64().unwrap());
     let lost = &statistics["lost"];
     let losses = lost["by_counter"].as_object().unwrap().values();
     assert_eq!(lost["total"], losses.map(|count| count.as_u64().unwrap()).sum::<u64>(), "{statistics}");
     assert_eq!(generated, covered as u64);
-    assert_eq!(generated, stored + culled + lost["total"].as_u64().unwrap());
+    assert_eq!(generated, stored + culled + displaced + lost["total"].as_u64().unwrap());
     let layers =
         |x: usize, y: usize| quads.iter().filter(|q| (q.x0..q.x1).contains(&x) && (q.y0..q.y1).contains(&y)).count();
     let kept: usize = (0..SIZE * SIZE).map(|pixel| layers(pixel % SIZE, pixel / SIZE).min(2)).sum();

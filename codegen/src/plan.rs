@@ -23,7 +23,7 @@ use std::sync::Arc;
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, Variant, codes};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    BindingTime, Element, Feature, FormulaError, Hazard, Init, Kind, Lifetime, Resource, Soundness, Step,
+    BindingTime, Capability, Element, Feature, FormulaError, Hazard, Init, Kind, Lifetime, Resource, Soundness, Step,
 };
 
 use crate::frame::{LoweredSteps, LoweringContext, lower};
@@ -135,6 +135,7 @@ fn build(
         }
     }
     implementations::complete(&mut steps, &mut resources, selection, registry)?;
+    edit::choose_accesses(&mut steps, selection.provides().contains(&Capability::MutualExclusion));
     let declared: Vec<String> = resources.iter().map(|resource| resource.name.clone()).collect();
     let resources = textures::split(resources, &mut steps, layout);
     let steps = with_clears(resources.iter().map(|(resource, _)| resource), steps);

@@ -4,10 +4,10 @@ mod instances;
 
 use fragbuf_model::{Diagnostic, Diagnostics, SelectedRow, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Kind, Pass};
+use fragbuf_templates::vocabulary::{Access, Kind, Pass};
 
 use crate::link::{self, Source};
-use crate::{EntryPoint, Form, GENERATOR, Linking, Plan, SourceMap, emit};
+use crate::{EntryPoint, Form, GENERATOR, Linking, Plan, Profile, SourceMap, emit};
 
 /// The linked sources of a plan. The plan describes how to run them.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,9 @@ pub struct PassSource {
     /// holds for every array of a template: the CPU device and the checker fill them with 0xdeadbeef, so that tests fail
     /// otherwise. User files may rely on zeros.
     pub written_first: Vec<String>,
+    /// Names of functions whose atomic loads and stores may be plain accesses of coherent words, because only the critical section
+    /// calls them. Empty where the language cannot access a word in both ways.
+    pub guarded: Vec<String>,
     /// Generator and algorithms, for targets that lose the comments of templates.
     pub notes: Notes,
 }
@@ -99,8 +102,8 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
     let is_early = pass.state.depth.as_ref().is_some_and(|depth| depth.early);
     let export = export(&pass.skeleton, &skeleton);
     templates.push(if is_early { skeleton.with_early_depth()? } else { skeleton });
-    let atomics: Vec<String> = templates.iter().flat_map(Source::atomic_accessors).collect();
-    let mut sources = emit::sources(plan, pass, linking, &atomics);
+    let called: Vec<String> = templates.iter().flat_map(Source::further_accessors).collect();
+    let mut sources = emit::sources(plan, pass, linking, &called);
     sources.extend(templates);
     let exports: Vec<&str> = if is_library { vec![&export] } else { Vec::new() };
     let prefix = if linking.prefix.is_empty() { String::new() } else { format!("{}_", linking.prefix) };
@@ -122,8 +125,15 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
             .cloned()
             .collect(),
         written_first: linked.private_arrays,
+        guarded: guarded(pass, linking, &prefix),
         notes,
     })
+}
+
+/// Returns the accessors whose atomic loads and stores may be plain.
+fn guarded(pass: &Pass, linking: &Linking, prefix: &str) -> Vec<String> {
+    let hinted = pass.uses.iter().filter(|usage| usage.access == Access::Hinted && linking.profile == Profile::Native);
+    hinted.flat_map(|usage| ["load", "store"].map(|access| format!("{prefix}{}_{access}", usage.resource))).collect()
 }
 
 /// Returns the function that a module exports: `NAME_fragment`. A form of a skeleton (`store_reserving`) exports the function of the

@@ -27,6 +27,7 @@ pub(crate) fn statistics(description: &str, result: &RenderResult, scene: &Scene
             "generated": counts.as_ref().map(|counts| counts.generated),
             "stored": counts.as_ref().map(|counts| counts.stored),
             "culled": counts.as_ref().map(|counts| counts.culled),
+            "displaced": counts.as_ref().map(|counts| counts.displaced),
             "occluded": counts.as_ref().map(|counts| counts.occluded),
         },
         "lost": lost(result),
@@ -51,7 +52,7 @@ fn payload(result: &RenderResult) -> Value {
 /// Returns the number of lost fragments, in total and by the counter of each kind of loss.
 fn lost(result: &RenderResult) -> Value {
     let counters = result.stats.counters.as_ref();
-    let losses = counters.iter().flat_map(|counters| counters.0.iter().filter(|counter| counter.is_loss));
+    let losses = counters.iter().flat_map(|counters| counters.0.iter().filter(|counter| counter.is_loss()));
     let by_counter: Map<String, Value> =
         losses.map(|counter| (counter.name.to_owned(), counter.count.into())).collect();
     json!({ "total": counters.map(|counters| counters.lost()), "by_counter": by_counter })
@@ -70,6 +71,8 @@ fn looped(report: &LoopReport) -> Value {
 pub(crate) struct FragmentCounts {
     generated: u64,
     culled: u64,
+    /// Fragments that better ones displaced.
+    displaced: u64,
     /// Fragments behind opaque surfaces, which are not among the generated ones.
     occluded: u64,
     stored: u64,
@@ -84,9 +87,10 @@ impl FragmentCounts {
             result.counts_everything() && !result.plan.selection.provides().contains(&Capability::FixedFunction);
         let counters = result.stats.counters.as_ref().filter(|_| is_counted)?;
         let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
-        let stored = generated.saturating_sub(culled + counters.lost());
+        let displaced = u64::from(counters.get("displaced"));
+        let stored = generated.saturating_sub(culled + displaced + counters.lost());
         let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };
         let occluded = u64::from(counters.get("occluded"));
-        Some(FragmentCounts { generated, culled, occluded, stored, hit_ratio })
+        Some(FragmentCounts { generated, culled, displaced, occluded, stored, hit_ratio })
     }
 }

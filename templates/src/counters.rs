@@ -2,37 +2,51 @@
 
 use crate::vocabulary::{Access, Capability, Element, Resource, Row, Template, Use};
 
-/// The counters in the order of their words: name, whether it counts losses, meaning. `shared/counter_names.wgsl` has
-/// the same order.
-pub const COUNTERS: [(&str, bool, &str); 14] = [
+/// What an event means for the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CounterKind {
+    /// The image is as described.
+    Event,
+    /// A fragment is not kept, because the description limits how many a pixel keeps.
+    Displaced,
+    /// A fragment is missing from the image.
+    Loss,
+}
+
+/// The counters in the order of their words: name, kind, meaning. `shared/counter_names.wgsl` has the same order.
+pub const COUNTERS: [(&str, CounterKind, &str); 14] = [
     (
         "generated",
-        false,
+        CounterKind::Event,
         "fragments that a geometry pass shaded, that meet the constraints and that no opaque surface hides",
     ),
-    ("culled", false, "fragments that the cull rejected"),
-    ("displaced", true, "fragments rejected or evicted because better ones are kept"),
-    ("pool_exhausted", true, "fragments that did not fit in the storage"),
-    ("timed_out", true, "fragments that timed out waiting for the lock, a slot or a link"),
-    ("layers_exceeded", true, "kept fragments beyond the limit of the resolve pass; the farthest are dropped"),
-    ("equal_keys", true, "fragments dropped because one with an equal key is kept"),
-    ("emitted", false, "fragments that a stream composited in the store pass, not in the resolve pass"),
+    ("culled", CounterKind::Event, "fragments that the cull rejected"),
+    ("displaced", CounterKind::Displaced, "fragments rejected or evicted because better ones are kept"),
+    ("pool_exhausted", CounterKind::Loss, "fragments that did not fit in the storage"),
+    ("timed_out", CounterKind::Loss, "fragments that timed out waiting for the lock, a slot or a link"),
+    (
+        "layers_exceeded",
+        CounterKind::Loss,
+        "kept fragments beyond the limit of the resolve pass; the farthest are dropped",
+    ),
+    ("equal_keys", CounterKind::Loss, "fragments dropped because one with an equal key is kept"),
+    ("emitted", CounterKind::Event, "fragments that a stream composited in the store pass, not in the resolve pass"),
     (
         "out_of_order",
-        false,
+        CounterKind::Event,
         "emitted fragments that arrived after one behind them had been composited; counted like losses",
     ),
-    ("pages_leaked", false, "pages that a fragment took from the pool and did not use"),
+    ("pages_leaked", CounterKind::Event, "pages that a fragment took from the pool and did not use"),
     (
         "not_converged",
-        true,
+        CounterKind::Loss,
         "fragments that still changed a slot in the last iteration of a loop: entries may be lost or duplicated",
     ),
-    ("samples_exhausted", true, "fragments that arrived when every sample of their pixel was taken"),
-    ("occluded", false, "fragments that meet the constraints and that an opaque surface hides"),
+    ("samples_exhausted", CounterKind::Loss, "fragments that arrived when every sample of their pixel was taken"),
+    ("occluded", CounterKind::Event, "fragments that meet the constraints and that an opaque surface hides"),
     (
         "partial_coverage",
-        false,
+        CounterKind::Event,
         "fragments of stencil routing with partial coverage: their pixels may lose fragments or store them twice; \
          counted like losses",
     ),
@@ -40,7 +54,11 @@ pub const COUNTERS: [(&str, bool, &str); 14] = [
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        counting("losses", "losses only: no memory access unless a fragment is lost", template!("counters/losses")),
+        counting(
+            "losses",
+            "losses only: no memory access unless a fragment is missing from the image",
+            template!("counters/losses"),
+        ),
         Row {
             provides: vec![Capability::CountsEvents],
             ..counting("all", "every event, for statistics: every fragment updates counters", template!("counters/all"))

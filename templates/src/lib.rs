@@ -39,7 +39,7 @@ mod table_1;
 mod technique;
 mod ties;
 
-pub use counters::COUNTERS;
+pub use counters::{COUNTERS, CounterKind};
 pub use registry::Registry;
 pub use shorthand::Shorthand;
 pub use table_1::{PaperRow, TABLE_1};

@@ -85,7 +85,11 @@ fn sorted_array() -> Row {
         resources: array_resources("keys in ascending order; EMPTY past the last"),
         steps: vec![
             reset(&["keys"]),
-            Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Atomic)),
+            Step::Pass(
+                Pass::geometry("store", "store")
+                    .uses_exclusively("keys", Access::Atomic, Access::Hinted)
+                    .uses_exclusively("entries", Access::Atomic, Access::Coherent),
+            ),
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],

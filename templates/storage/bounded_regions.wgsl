@@ -36,7 +36,7 @@ fn storage_bound(pixel: u32) -> u32 {
     if !bounded_regions_is_over_capacity(pixel) || offsets_load(pixel + 1u) > frame.kept {
         return EMPTY;
     }
-    return keys_load(0u, pixel);
+    return keys_hint(0u, pixel);
 }
 
 fn storage_reserve(pixel: u32, entry: Packed) -> bool {
@@ -113,6 +113,14 @@ fn keys_load(slot: u32, pixel: u32) -> u32 {
 
 fn keys_store(slot: u32, pixel: u32, key: u32) {
     region_keys_store(offsets_load(pixel) + slot, key);
+}
+
+fn keys_hint(slot: u32, pixel: u32) -> u32 {
+    return region_keys_hint(offsets_load(pixel) + slot);
+}
+
+fn keys_publish(slot: u32, pixel: u32, key: u32) {
+    region_keys_publish(offsets_load(pixel) + slot, key);
 }
 
 fn entries_load(slot: u32, pixel: u32, key: u32) -> Packed {

@@ -13,7 +13,7 @@ fn storage_reset(pixel: u32) {
 }
 
 fn storage_bound(pixel: u32) -> u32 {
-    return keys_load(0u, pixel);
+    return keys_hint(0u, pixel);
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
@@ -43,7 +43,7 @@ fn storage_worst(pixel: u32) -> u32 {
 }
 
 fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
-    max_array_write(pixel, cursor, entry);
+    max_array_publish(pixel, cursor, entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {
@@ -69,7 +69,7 @@ fn max_array_replace_worst(pixel: u32, entry: Packed) {
             worst_slot = slot;
         }
     }
-    max_array_write(pixel, 0u, worst);
+    max_array_publish(pixel, 0u, worst);
     if worst_slot != 0u {
         max_array_write(pixel, worst_slot, entry);
     }
@@ -79,9 +79,16 @@ fn max_array_read(pixel: u32, slot: u32) -> Packed {
     return entries_load(slot, pixel, keys_load(slot, pixel));
 }
 
+/// Writes an entry of slots 1 ... k-1, which only the critical section reads.
 fn max_array_write(pixel: u32, slot: u32, entry: Packed) {
     entries_store(slot, pixel, entry);
     keys_store(slot, pixel, entry.key);
+}
+
+/// Writes an entry of slot 0, whose key is read outside of the critical section.
+fn max_array_publish(pixel: u32, slot: u32, entry: Packed) {
+    entries_store(slot, pixel, entry);
+    keys_publish(slot, pixel, entry.key);
 }
 
 fn max_array_cursor(slot: u32) -> u32 {

@@ -14,7 +14,7 @@ fn storage_reset(pixel: u32) {
 }
 
 fn storage_bound(pixel: u32) -> u32 {
-    return keys_load(0u, pixel);
+    return keys_hint(0u, pixel);
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
@@ -90,9 +90,14 @@ fn max_heap_read(pixel: u32, slot: u32) -> Packed {
     return entries_load(slot, pixel, keys_load(slot, pixel));
 }
 
+/// Writes an entry. Only the key of slot 0 is read outside of the critical section.
 fn max_heap_write(pixel: u32, slot: u32, entry: Packed) {
     entries_store(slot, pixel, entry);
-    keys_store(slot, pixel, entry.key);
+    if slot == 0u {
+        keys_publish(slot, pixel, entry.key);
+    } else {
+        keys_store(slot, pixel, entry.key);
+    }
 }
 
 fn max_heap_cursor(slot: u32) -> u32 {

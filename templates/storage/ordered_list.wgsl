@@ -92,9 +92,9 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
 /// Returns the link after `previous`; for NO_NODE, the head of the pixel's list.
 fn ordered_list_link(pixel: u32, previous: u32) -> u32 {
     if previous == NO_NODE {
-        return heads_load(pixel);
+        return heads_hint(pixel);
     }
-    return links_load(previous - 1u);
+    return links_hint(previous - 1u);
 }
 
 fn ordered_list_exchange(pixel: u32, previous: u32, expected: u32, node: u32) -> bool {

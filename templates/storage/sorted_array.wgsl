@@ -15,7 +15,7 @@ fn storage_reset(pixel: u32) {
 }
 
 fn storage_bound(pixel: u32) -> u32 {
-    return keys_load(frame.k - 1u, pixel);
+    return keys_hint(frame.k - 1u, pixel);
 }
 
 fn storage_insert(pixel: u32, entry: Packed) {
@@ -59,9 +59,14 @@ fn sorted_array_read(pixel: u32, slot: u32) -> Packed {
     return entries_load(slot, pixel, keys_load(slot, pixel));
 }
 
+/// Writes an entry. Only the key of the last slot is the bound, which is read outside of a critical section.
 fn sorted_array_write(pixel: u32, slot: u32, entry: Packed) {
     entries_store(slot, pixel, entry);
-    keys_store(slot, pixel, entry.key);
+    if slot + 1u == frame.k {
+        keys_publish(slot, pixel, entry.key);
+    } else {
+        keys_store(slot, pixel, entry.key);
+    }
 }
 
 /// Returns the first slot from `slot` on that holds a fragment: races can leave holes.

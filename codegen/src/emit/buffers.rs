@@ -8,20 +8,20 @@ use fragbuf_templates::vocabulary::{Access, Element, Pass, Resource, Use};
 
 use crate::{Linking, Plan, PlanValue, PlannedResource, Profile, SymbolId, Term, is_boolean};
 
-pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> String {
+pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, called: &[String]) -> String {
     let mut text = uniform_blocks(plan, linking);
     for planned in &plan.resources {
         let usage = pass.uses.iter().find(|usage| usage.resource == planned.resource.name);
         if let Some(usage) = usage.filter(|usage| is_buffer(&planned.resource, usage)) {
             let access = shader_access(usage.access, linking.profile);
-            Accessors { plan, planned, access, atomics }.write(linking, &mut text);
+            Accessors { plan, planned, access, called }.write(linking, &mut text);
         }
     }
     text
 }
 
 fn is_buffer(resource: &Resource, usage: &Use) -> bool {
-    let in_shader = matches!(usage.access, Access::Read | Access::Plain | Access::Atomic | Access::Coherent);
+    let in_shader = !matches!(usage.access, Access::Attachment | Access::Sampled | Access::Indirect);
     in_shader && !matches!(resource.element, Element::Texture(_))
 }
 
@@ -48,13 +48,16 @@ enum ShaderAccess {
     Plain,
     Coherent,
     Atomic,
+    /// Atomic words of a coherent buffer. Targets may print loads and stores as plain accesses.
+    CoherentAtomic,
 }
 
 /// Returns the access in shaders. Coherent words are atomic if the profile has no coherent buffers.
 fn shader_access(access: Access, profile: Profile) -> ShaderAccess {
     match (access, profile) {
         (Access::Plain, _) => ShaderAccess::Plain,
-        (Access::Atomic, _) | (Access::Coherent, Profile::Portable) => ShaderAccess::Atomic,
+        (Access::Atomic, _) | (Access::Coherent | Access::Hinted, Profile::Portable) => ShaderAccess::Atomic,
+        (Access::Hinted, Profile::Native) => ShaderAccess::CoherentAtomic,
         (Access::Coherent, Profile::Native) => ShaderAccess::Coherent,
         _ => ShaderAccess::Read,
     }
@@ -65,8 +68,8 @@ struct Accessors<'a> {
     plan: &'a Plan,
     planned: &'a PlannedResource,
     access: ShaderAccess,
-    /// The atomic accessors that templates call.
-    atomics: &'a [String],
+    /// The accessors other than loads and stores that templates call.
+    called: &'a [String],
 }
 
 /// Atomic operations that return the old value.
@@ -89,8 +92,11 @@ impl Accessors<'_> {
         if self.access != ShaderAccess::Read {
             self.store(text);
         }
-        if self.access == ShaderAccess::Atomic && self.scalar().is_some() {
-            self.atomics(text);
+        if self.scalar().is_some() {
+            self.outside(text);
+            if self.is_atomic() {
+                self.atomics(text);
+            }
         }
     }
 
@@ -116,6 +122,10 @@ impl Accessors<'_> {
         }
     }
 
+    fn is_atomic(&self) -> bool {
+        matches!(self.access, ShaderAccess::Atomic | ShaderAccess::CoherentAtomic)
+    }
+
     fn is_single_word(&self) -> bool {
         self.planned.resource.extents.is_empty() && self.scalar().is_some()
     }
@@ -124,10 +134,10 @@ impl Accessors<'_> {
         let (mode, coherent) = match self.access {
             ShaderAccess::Read => ("read", ""),
             ShaderAccess::Plain | ShaderAccess::Atomic => ("read_write", ""),
-            ShaderAccess::Coherent => ("read_write", " @coherent"),
+            ShaderAccess::Coherent | ShaderAccess::CoherentAtomic => ("read_write", " @coherent"),
         };
         let scalar = self.scalar().unwrap_or("u32");
-        let word = if self.access == ShaderAccess::Atomic { format!("atomic<{scalar}>") } else { scalar.to_owned() };
+        let word = if self.is_atomic() { format!("atomic<{scalar}>") } else { scalar.to_owned() };
         let kind = if self.is_single_word() { word } else { format!("array<{word}>") };
         let (summary, group, binding) = (&self.planned.resource.summary, linking.group, self.planned.binding);
         let name = self.name();
@@ -170,18 +180,33 @@ impl Accessors<'_> {
         text.push_str("}\n\n");
     }
 
+    /// Writes the accessors of words that are read outside of the critical section.
+    fn outside(&self, text: &mut String) {
+        let (name, reference) = (self.name(), self.reference(None));
+        let scalar = self.scalar().unwrap_or("u32");
+        if self.is_called("hint") {
+            let (parameters, read) = (self.parameters(&[]), self.read(&reference));
+            let _ = writeln!(text, "fn {name}_hint({parameters}) -> {scalar} {{\n    return {read};\n}}\n");
+        }
+        if self.is_called("publish") && self.access != ShaderAccess::Read {
+            let parameters = self.parameters(&[&format!("value: {scalar}")]);
+            let write = self.write_statement(&reference, "value");
+            let _ = writeln!(text, "fn {name}_publish({parameters}) {{\n    {write}\n}}\n");
+        }
+    }
+
     fn atomics(&self, text: &mut String) {
         let (name, reference) = (self.name(), self.reference(None));
         let scalar = self.scalar().unwrap_or("u32");
         let parameters = self.parameters(&[&format!("value: {scalar}")]);
         for (operation, function) in OPERATIONS {
-            if !self.is_called(operation) {
+            if !self.is_called(&format!("atomic_{operation}")) {
                 continue;
             }
             let _ = writeln!(text, "fn {name}_atomic_{operation}({parameters}) -> {scalar} {{");
             let _ = writeln!(text, "    return {function}(&{reference}, value);\n}}\n");
         }
-        if !self.is_called("compare_exchange") {
+        if !self.is_called("atomic_compare_exchange") {
             return;
         }
         let parameters = self.parameters(&[&format!("expected: {scalar}"), &format!("value: {scalar}")]);
@@ -189,10 +214,10 @@ impl Accessors<'_> {
         let _ = writeln!(text, "    return atomicCompareExchangeWeak(&{reference}, expected, value).exchanged;\n}}\n");
     }
 
-    fn is_called(&self, operation: &str) -> bool {
-        self.atomics.iter().any(|name| {
-            let rest = name.strip_prefix(self.name()).and_then(|rest| rest.strip_prefix("_atomic_"));
-            rest == Some(operation)
+    fn is_called(&self, accessor: &str) -> bool {
+        self.called.iter().any(|name| {
+            let rest = name.strip_prefix(self.name()).and_then(|rest| rest.strip_prefix('_'));
+            rest == Some(accessor)
         })
     }
 
@@ -272,13 +297,13 @@ impl Accessors<'_> {
     }
 
     fn read(&self, reference: &str) -> String {
-        if self.access == ShaderAccess::Atomic { format!("atomicLoad(&{reference})") } else { reference.to_owned() }
+        if self.is_atomic() { format!("atomicLoad(&{reference})") } else { reference.to_owned() }
     }
 
     fn write_statement(&self, reference: &str, value: &str) -> String {
-        match self.access {
-            ShaderAccess::Atomic => format!("atomicStore(&{reference}, {value});"),
-            _ => format!("{reference} = {value};"),
+        match self.is_atomic() {
+            true => format!("atomicStore(&{reference}, {value});"),
+            false => format!("{reference} = {value};"),
         }
     }
 }

@@ -11,9 +11,9 @@ use fragbuf_templates::vocabulary::{Kind, Pass};
 use crate::link::Source;
 use crate::{Linking, Plan};
 
-/// Returns the generated sources of one pass. `atomics` are the atomic accessors that its templates mention. The linker removes other
+/// Returns the generated sources of one pass. `called` are the accessors other than loads and stores that its templates mention. The linker removes other
 /// unused declarations.
-pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[String]) -> Vec<Source> {
+pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, called: &[String]) -> Vec<Source> {
     let mut sources = vec![
         Source::generated("constants", constants(plan, pass)),
         Source::generated("fragment", fragment::text(plan)),
@@ -21,7 +21,7 @@ pub(crate) fn sources(plan: &Plan, pass: &Pass, linking: &Linking, atomics: &[St
     if pass.kind == Kind::Geometry {
         sources.push(Source::generated("surface", surface::text(plan, linking)));
     }
-    sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, atomics)));
+    sources.push(Source::generated("buffers", buffers::text(plan, pass, linking, called)));
     sources.push(Source::generated("textures", textures::text(plan, pass, linking)));
     for function in plan.variant.helpers.iter().chain(closures(plan)) {
         sources.push(Source::user(function));

@@ -87,11 +87,11 @@ impl Source {
         Ok(self)
     }
 
-    /// Returns the atomic accessors that its declarations mention. Buffers could have many, and few are used.
-    pub(crate) fn atomic_accessors(&self) -> Vec<String> {
+    /// Returns the accessors other than loads and stores that its declarations mention. Buffers could have many, and few are used.
+    pub(crate) fn further_accessors(&self) -> Vec<String> {
         match self.items() {
-            Ok(Items::Cached(text)) => text.atomic_accessors.iter().map(|name| (*name).to_owned()).collect(),
-            Ok(Items::Parsed(items)) => atomic_accessors(&items).into_iter().map(str::to_owned).collect(),
+            Ok(Items::Cached(text)) => text.further_accessors.iter().map(|name| (*name).to_owned()).collect(),
+            Ok(Items::Parsed(items)) => further_accessors(&items).into_iter().map(str::to_owned).collect(),
             // `link` reports sources that cannot be parsed.
             Err(_) => Vec::new(),
         }
@@ -162,7 +162,7 @@ impl Items<'_> {
 pub(super) struct CachedSource {
     items: Vec<Item<'static>>,
     implemented: Vec<&'static str>,
-    atomic_accessors: Vec<&'static str>,
+    further_accessors: Vec<&'static str>,
 }
 
 fn cached_items(text: &'static str) -> Result<Arc<CachedSource>, usize> {
@@ -175,8 +175,8 @@ fn cached_items(text: &'static str) -> Result<Arc<CachedSource>, usize> {
         return Ok(text.clone());
     }
     let items = item::parse(text)?;
-    let (implemented, atomic_accessors) = (implemented(&items), atomic_accessors(&items));
-    let parsed = Arc::new(CachedSource { items, implemented, atomic_accessors });
+    let (implemented, further_accessors) = (implemented(&items), further_accessors(&items));
+    let parsed = Arc::new(CachedSource { items, implemented, further_accessors });
     cache.insert(key, parsed.clone());
     Ok(parsed)
 }
@@ -187,6 +187,8 @@ fn implemented(items: &[Item<'_>]) -> Vec<&'static str> {
     items.iter().filter(|item| item.is_function).filter_map(named).collect()
 }
 
-fn atomic_accessors<'a>(items: &[Item<'a>]) -> Vec<&'a str> {
-    items.iter().flat_map(|item| item.mentions.iter().copied()).filter(|name| name.contains("_atomic_")).collect()
+/// Returns the accessors other than loads and stores that declarations mention.
+fn further_accessors<'a>(items: &[Item<'a>]) -> Vec<&'a str> {
+    let is_further = |name: &&str| name.contains("_atomic_") || name.ends_with("_hint") || name.ends_with("_publish");
+    items.iter().flat_map(|item| item.mentions.iter().copied()).filter(is_further).collect()
 }

@@ -135,6 +135,16 @@ fn unknown(name: &str) -> String {
     format!("an edit names the pass `{name}`, which the plan does not have")
 }
 
+/// Chooses the access of every use that depends on mutual exclusion.
+pub(super) fn choose_accesses(steps: &mut [Step], is_exclusive: bool) {
+    for_each_pass(steps, &mut |pass| {
+        for usage in &mut pass.uses {
+            let exclusive = usage.exclusive.take();
+            usage.access = exclusive.filter(|_| is_exclusive).unwrap_or(usage.access);
+        }
+    });
+}
+
 /// Visits every pass, including passes inside loops.
 pub(super) fn for_each_pass(steps: &mut [Step], visit: &mut dyn FnMut(&mut Pass)) {
     for step in steps {

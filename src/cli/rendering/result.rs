@@ -7,9 +7,6 @@ use fragbuf_scene::Scene;
 
 use crate::cli::output::warn;
 
-/// The counter of fragments that a better fragment evicted.
-const DISPLACED: &str = "displaced";
-
 /// The option of an axis that sets how many layers a resolve pass holds. Layers beyond it are counted as `layers_exceeded`.
 const LAYERS: &str = "layers";
 
@@ -83,8 +80,7 @@ impl RenderResult {
         }
         self.stats.unfinished_loops().for_each(|text| warn(&text));
         for counter in self.stats.counters.iter().flat_map(|counters| &counters.0).filter(|counter| counter.count > 0) {
-            // The description asks for the k best, so fragments evicted by better ones are expected.
-            if counter.is_loss && counter.name != DISPLACED {
+            if counter.is_loss() {
                 warn(&format!("{} fragments lost: {}", counter.count, counter.name));
             }
             if counter.name == OUT_OF_ORDER {

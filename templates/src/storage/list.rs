@@ -4,7 +4,7 @@ use super::parts::resolve;
 use crate::vocabulary::{Access, Capability, Element, Feature, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
-    let store = |pass: Pass| pass.uses("links", Access::Plain).uses("nodes", Access::Plain);
+    let store = |pass: Pass| pass.uses("heads", Access::Atomic).uses("links", Access::Plain).uses("nodes", Access::Plain);
     Row {
         template: Some(template!("storage/linked_list")),
         resources: resources([
@@ -29,7 +29,9 @@ pub(super) fn linked_list() -> Row {
 
 /// Returns the row of a list that is sorted at every instant.
 pub(super) fn ordered_list() -> Row {
-    let store = |pass: Pass| pass.uses("links", Access::Atomic).uses("nodes", Access::Coherent);
+    // A link that is read may be old: the compare-exchange then fails. The link of a node that is not in the list yet is the
+    // fragment's own, and a fence precedes the exchange that inserts it.
+    let store = |pass: Pass| pass.uses("heads", Access::Hinted).uses("links", Access::Hinted).uses("nodes", Access::Coherent);
     Row {
         template: Some(template!("storage/ordered_list")),
         resources: resources([
@@ -80,7 +82,7 @@ fn resources([heads, links, nodes]: [&'static str; 3]) -> Vec<Resource> {
 
 /// Adds what lists share to a row; `store` declares how fragments access links and nodes.
 fn list(store: impl Fn(Pass) -> Pass, row: Row) -> Row {
-    let pass = store(Pass::geometry("store", "store").uses("heads", Access::Atomic));
+    let pass = store(Pass::geometry("store", "store"));
     Row {
         steps: vec![Step::Pass(pass.uses("pool", Access::Atomic)), resolve(&["heads", "links", "nodes"])],
         calls: vec!["overflow", "counters"],

@@ -44,7 +44,7 @@ pub(super) fn bounded_regions() -> Row {
         .delegates_to("heap", "max_heap")
         .uses("counts", Access::Atomic)
         .uses("offsets", Access::Read)
-        .uses_rechecked("region_keys")
+        .uses("region_keys", Access::Hinted)
         .uses("region_entries", Access::Coherent);
     let mut steps = counted_steps("kept");
     steps.push(Step::Pass(

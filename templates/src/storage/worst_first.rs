@@ -68,7 +68,7 @@ fn worst_first(row: Row) -> Row {
             reset(&["keys", "kept_counts"]),
             Step::Pass(
                 Pass::geometry("store", "store")
-                    .uses_rechecked("keys")
+                    .uses("keys", Access::Hinted)
                     .uses("entries", Access::Coherent)
                     .uses("kept_counts", Access::Coherent),
             ),

@@ -138,6 +138,8 @@ pub struct Use {
     pub access: Access,
     /// The required strength of loads.
     pub loads: Loads,
+    /// The access if the selection provides mutual exclusion, and otherwise `access`.
+    pub exclusive: Option<Access>,
 }
 
 /// Kinds of access to a resource.
@@ -151,6 +153,9 @@ pub enum Access {
     Atomic,
     /// Reads and writes inside the critical section of a pixel: coherent if the target supports it, else atomic.
     Coherent,
+    /// Like `Coherent`, but words that `<name>_publish` stores may also be read outside of the critical section, by `<name>_hint`.
+    /// Only these two are atomic where a target can mix both: `<name>_load` and `<name>_store` are plain accesses of a coherent word.
+    Hinted,
     /// Bound as a render target.
     Attachment,
     /// Read as a texture.
@@ -203,6 +208,12 @@ impl Pass {
         self
     }
 
+    /// Adds a use of `resource` by `access`, or by `exclusive` if the selection provides mutual exclusion.
+    pub fn uses_exclusively(mut self, resource: &str, access: Access, exclusive: Access) -> Self {
+        self.uses.push(Use { exclusive: Some(exclusive), ..Use::new(resource, access) });
+        self
+    }
+
     /// Adds an atomic use of `resource` whose loads are hints, or are repeated inside the critical section.
     pub fn uses_rechecked(mut self, resource: &str) -> Self {
         self.uses.push(Use { loads: Loads::Rechecked, ..Use::new(resource, Access::Atomic) });
@@ -250,6 +261,6 @@ impl Implementation {
 impl Use {
     /// Makes a use of `resource` by `access` with exact loads.
     pub fn new(resource: &str, access: Access) -> Self {
-        Use { resource: resource.to_owned(), access, loads: Loads::Exact }
+        Use { resource: resource.to_owned(), access, loads: Loads::Exact, exclusive: None }
     }
 }

@@ -3,7 +3,7 @@
 //! Input: atomic loads, stores and read-modify-writes. Output: calls of GLSL's functions. WGSL's atomics are relaxed, at
 //! device scope, or at workgroup scope for `var<workgroup>`. The Vulkan dialect states this; OpenGL's functions are defined
 //! so. OpenGL has no atomic load: it prints as an atomic that changes nothing, unless the options allow a plain read of the
-//! variable.
+//! variable. In the functions that the options name, loads and stores are plain.
 
 use naga::{AddressSpace, AtomicFunction, Expression, GlobalVariable, Handle, ScalarKind, Statement};
 
@@ -53,10 +53,18 @@ impl FunctionPrinter<'_, '_> {
         }
     }
 
+    /// Tests whether atomic loads and stores of this function may be plain.
+    fn is_plain(&self) -> bool {
+        self.function.name.as_deref().is_some_and(|name| self.printer.options.plain_functions.contains(&name))
+    }
+
     /// Prints an atomic load.
     pub fn atomic_load(&mut self, pointer: Handle<Expression>) -> Text {
         let zero = self.atomic_zero(pointer);
         let target = self.text(pointer);
+        if self.is_plain() {
+            return target;
+        }
         if self.printer.vulkan() {
             self.printer.requirements.extensions.insert(MEMORY_SCOPE);
             return Text::primary(format!("atomicLoad({}, {})", target.text, self.scope(pointer)));
@@ -69,6 +77,9 @@ impl FunctionPrinter<'_, '_> {
     pub fn atomic_store(&mut self, pointer: Handle<Expression>, value: Handle<Expression>) -> String {
         self.atomic_zero(pointer);
         let (target, value) = (self.expression(pointer), self.expression(value));
+        if self.is_plain() {
+            return format!("{target} = {value}");
+        }
         if self.printer.vulkan() {
             self.printer.requirements.extensions.insert(MEMORY_SCOPE);
             return format!("atomicStore({target}, {value}, {})", self.scope(pointer));

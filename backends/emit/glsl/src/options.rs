@@ -52,6 +52,9 @@ pub struct Options<'a> {
     /// OpenGL only: names of globals whose `atomicLoad` may print as a plain (coherent, volatile) read, because no writer
     /// runs in the pass or the value is a hint that is checked again. Every other `atomicLoad` prints as `atomicOr(x, 0u)`.
     pub plain_loads: &'a [&'a str],
+    /// Names of functions whose `atomicLoad` and `atomicStore` may print as plain accesses of a coherent buffer, because other
+    /// invocations access the words only in order with them.
+    pub plain_functions: &'a [&'a str],
     /// Names of private variables that are written before they are read. They get no initial value; WGSL initialises
     /// them to zero.
     pub written_first: &'a [&'a str],

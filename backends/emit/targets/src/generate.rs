@@ -3,7 +3,7 @@
 use fragbuf_codegen::{Form, Linking, Plan, Profile, link, plan};
 use fragbuf_model::{Diagnostic, Diagnostics, MissingFeature, Selection, Variant, codes};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Feature, Loads};
+use fragbuf_templates::vocabulary::{Access, Feature, Loads, Use};
 
 use crate::emission::{Emission, File, Guards, InterlockOrder};
 use crate::target::Target;
@@ -155,7 +155,8 @@ fn emit(
     let mut diagnostics = Diagnostics::new();
     let mut files: Vec<File> = Vec::new();
     for (checked, pass) in passes.iter().zip(planned) {
-        let rechecked = pass.uses.iter().filter(|usage| usage.loads == Loads::Rechecked);
+        let is_rechecked = |usage: &&Use| usage.loads == Loads::Rechecked || usage.access == Access::Hinted;
+        let rechecked = pass.uses.iter().filter(is_rechecked);
         let emission = Emission {
             checked,
             target: target.name,

@@ -49,6 +49,7 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         markers.map(|(name, marker)| (format!("{}{name}", emission.prefix), marker)).collect();
     let markers: Vec<(&str, Marker)> = markers.iter().map(|(name, marker)| (name.as_str(), *marker)).collect();
     let plain_loads: Vec<&str> = emission.rechecked.iter().map(String::as_str).collect();
+    let guarded: Vec<&str> = checked.pass().guarded.iter().map(String::as_str).collect();
     let written_first: Vec<&str> = checked.pass().written_first.iter().map(String::as_str).collect();
     let notes = &checked.pass().notes;
     let header = match unit {
@@ -61,6 +62,7 @@ fn printed(emission: &Emission<'_>, dialect: Dialect, unit: Unit<'_>) -> Result<
         markers: &markers,
         bindings: &|group, binding| slot(dialect, group, binding),
         plain_loads: &plain_loads,
+        plain_functions: &guarded,
         written_first: &written_first,
         // Templates write workgroup variables before they read them.
         zero_workgroup_memory: false,

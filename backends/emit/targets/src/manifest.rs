@@ -6,8 +6,8 @@ mod frame;
 use fragbuf_codegen::{GENERATOR, Plan, PlanSymbol, PlanValue, PlannedResource, SymbolId};
 use fragbuf_glsl::Dialect;
 use fragbuf_model::{UniformBlock, mangled};
-use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::{Element, Init, Lifetime, SYMBOLS, TextureFormat};
+use fragbuf_templates::{COUNTERS, CounterKind};
 use serde_json::{Map, Value, json};
 
 use crate::generate::{Generation, PlanForTargets};
@@ -279,8 +279,9 @@ fn counters(plan: &Plan) -> Value {
     if plan.resource("counters").is_none() {
         return json!([]);
     }
-    let rows = COUNTERS.iter().enumerate().map(
-        |(index, (name, is_loss, meaning))| json!({ "name": name, "index": index, "is_loss": is_loss, "meaning": meaning }),
-    );
+    let rows = COUNTERS.iter().enumerate().map(|(index, (name, kind, meaning))| {
+        let is_loss = *kind == CounterKind::Loss;
+        json!({ "name": name, "index": index, "is_loss": is_loss, "meaning": meaning })
+    });
     rows.collect()
 }

@@ -22,8 +22,8 @@ pub(crate) fn emit(emission: &Emission<'_>) -> Result<Vec<File>, String> {
         let words = spv::write_vec(&module, emission.checked.info(), &options, Some(&pipeline))
             .map_err(|error| error.to_string())?;
         // Parsing the words costs more than writing them.
-        let words = match edits::may_apply(&module, &entry.name, emission.prefix) {
-            true => edits::apply(words, emission.prefix, emission.interlock)?,
+        let words = match edits::may_apply(&module, &entry.name, emission.prefix, &pass.guarded) {
+            true => edits::apply(words, emission.prefix, emission.interlock, &pass.guarded)?,
             false => words,
         };
         let words = initial::without(words, &pass.written_first);

@@ -1,6 +1,6 @@
 //! The event counters of a frame, by name.
 
-use fragbuf_templates::COUNTERS;
+use fragbuf_templates::{COUNTERS, CounterKind};
 
 /// The vocabulary's name for the resource that holds the counters.
 pub const COUNTERS_RESOURCE: &str = "counters";
@@ -14,7 +14,7 @@ pub const OUT_OF_ORDER: &str = "out_of_order";
 /// The counter of fragments that cover their pixel partially, where routing expects whole pixels.
 pub const PARTIAL_COVERAGE: &str = "partial_coverage";
 
-/// The counters of a frame. With `counters: losses`, the default, only losses are counted; the others stay 0.
+/// The counters of a frame. With `counters: losses`, the default, only losses are counted; the others, `displaced` too, stay 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counters(pub Vec<Counter>);
 
@@ -23,8 +23,8 @@ pub struct Counters(pub Vec<Counter>);
 pub struct Counter {
     /// Its name, one of [`fragbuf_templates::COUNTERS`].
     pub name: &'static str,
-    /// Whether each event is a lost fragment.
-    pub is_loss: bool,
+    /// What each event means for the image.
+    pub kind: CounterKind,
     /// The events of the frame.
     pub count: u32,
 }
@@ -60,7 +60,7 @@ impl Counters {
     /// Returns the counters of one slice.
     pub fn from_words(words: &[u32]) -> Self {
         let counters = COUNTERS.iter().zip(words);
-        Counters(counters.map(|(&(name, is_loss, _), &count)| Counter { name, is_loss, count }).collect())
+        Counters(counters.map(|(&(name, kind, _), &count)| Counter { name, kind, count }).collect())
     }
 
     /// Returns the events of the counter `name`; 0 for an unknown name.
@@ -68,8 +68,15 @@ impl Counters {
         self.0.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
     }
 
-    /// Returns the number of lost fragments, for any reason.
+    /// Returns the number of lost fragments, for any reason. Displaced fragments are not lost.
     pub fn lost(&self) -> u64 {
-        self.0.iter().filter(|counter| counter.is_loss).map(|counter| u64::from(counter.count)).sum()
+        self.0.iter().filter(|counter| counter.is_loss()).map(|counter| u64::from(counter.count)).sum()
+    }
+}
+
+impl Counter {
+    /// Returns whether each event is a fragment that is missing from the image.
+    pub fn is_loss(&self) -> bool {
+        self.kind == CounterKind::Loss
     }
 }

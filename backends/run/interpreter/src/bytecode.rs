@@ -31,6 +31,8 @@ pub struct Options<'a> {
     /// Private variables, by name, that the program writes before it reads. Their initial words are implausible values,
     /// so that tests detect a read of them.
     pub written_first: &'a [String],
+    /// Functions, by name, whose atomic loads and stores are plain accesses.
+    pub plain_functions: &'a [String],
 }
 
 /// A construct that the interpreter does not run.
@@ -83,6 +85,8 @@ pub struct Buffer {
     pub atomics: Vec<Range<u32>>,
     /// The words of atomic types in an element of that array.
     pub element_atomics: Vec<Range<u32>>,
+    /// Whether the program also has plain accesses of words of atomic types.
+    pub is_mixed: bool,
     /// Whether the program accesses 64 bits of it at once.
     pub is_wide: bool,
 }

@@ -134,7 +134,14 @@ fn has_ranges(variant: &Variant) -> bool {
 /// Returns a technique for every storage that a row is legal with, under a lock and without culling, with the storage's key.
 fn with_row(row: &str, k: usize, color: &str) -> Vec<(String, Variant)> {
     let k = k.to_string();
-    let set = [("k", &*k), ("overflow", row), ("sync", "spin_lock"), ("cull", "none"), ("fragment.color", color)];
+    let set = [
+        ("k", &*k),
+        ("overflow", row),
+        ("sync", "spin_lock"),
+        ("cull", "none"),
+        ("fragment.color", color),
+        ("counters", "all"),
+    ];
     let registry = Registry::builtin();
     let legal = registry.techniques().iter().filter_map(|technique| variant(&technique.key, &set));
     let mut storages = BTreeSet::new();

@@ -33,6 +33,8 @@ pub(crate) struct SearchContext<'p> {
     /// Whether a word has had more writes of the same value than memory keeps.
     pub(crate) has_forgotten: Cell<bool>,
     pub(crate) model: Model,
+    /// Per ordered word, whether the program has both atomic and plain accesses of it; empty if there is no such word.
+    mixed: Vec<bool>,
     /// Per ordered word, whether it is neither atomic nor coherent: no fence makes it visible to another fragment.
     pub(crate) private: Vec<bool>,
     /// Whether fences are events: the target supports them and the model uses them.
@@ -118,6 +120,7 @@ impl<'p> SearchContext<'p> {
             clamps: false,
             has_forgotten: Cell::new(false),
             model,
+            mixed: Vec::new(),
             private: Vec::new(),
             has_fences: model == Model::Relaxed,
             has_weak_exchange: false,
@@ -127,6 +130,9 @@ impl<'p> SearchContext<'p> {
             one_by_one: false,
             counts_samples: false,
         };
+        if program.buffers.iter().any(|buffer| buffer.is_mixed) {
+            context.mixed = context.each_ordered(|buffer, _| buffer.is_mixed);
+        }
         context.private = context.each_ordered(|buffer, word| {
             buffer.space == Space::Storage && !buffer.is_coherent && !buffer.is_atomic(word)
         });
@@ -170,6 +176,11 @@ impl<'p> SearchContext<'p> {
             }
         }
         layout
+    }
+
+    /// Returns whether the program has both atomic and plain accesses of a word.
+    pub(crate) fn is_mixed(&self, word: usize) -> bool {
+        self.mixed.get(word).is_some_and(|is_mixed| *is_mixed)
     }
 
     /// Returns a property of each ordered word, which depends on its buffer and its number there.

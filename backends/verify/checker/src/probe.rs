@@ -37,7 +37,7 @@ pub(crate) fn probe_pass(plan: &Plan, name: &str) -> PlannedPass {
     for other in passes {
         for usage in &other.uses {
             let access = match usage.access {
-                Access::Read | Access::Plain | Access::Atomic | Access::Coherent => Access::Read,
+                Access::Read | Access::Plain | Access::Atomic | Access::Coherent | Access::Hinted => Access::Read,
                 Access::Sampled => Access::Sampled,
                 _ => continue,
             };

@@ -122,9 +122,10 @@ pub(crate) fn fullscreen_program(plan: &Plan, checked: &Checked) -> Result<Fulls
     Ok(FullscreenProgram { pass: checked.pass().name.clone(), program: with_external_textures(program, plan)? })
 }
 
-/// Returns the options that compile a checked pass.
+/// Returns the options that compile a checked pass. Guarded accesses are plain, as in the weakest target of the profile.
 pub(crate) fn options(checked: &Checked) -> Options<'_> {
-    Options { markers: &MARKERS, written_first: &checked.pass().written_first }
+    let pass = checked.pass();
+    Options { markers: &MARKERS, written_first: &pass.written_first, plain_functions: &pass.guarded }
 }
 
 /// Returns the program if all textures that it reads are external.

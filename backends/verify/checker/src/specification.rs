@@ -6,8 +6,8 @@
 
 use std::ops::RangeInclusive;
 
-use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::{Equivalence, Permits, Tearing};
+use fragbuf_templates::{COUNTERS, CounterKind};
 
 use crate::kept_set::KeptSet;
 use crate::memory::STALE;
@@ -183,16 +183,20 @@ impl Specification {
     /// Describes fragments that are neither kept nor counted as lost or culled.
     fn counter_mismatch(&self, kept: u32, counts: Counts) -> Option<String> {
         let total = self.fragments.len() as u32;
-        let counts_all = counts.generated == total + self.neighbours;
         let out = total - kept.min(total);
         let counted = counts.lost + counts.culled + counts.emitted;
-        let is_wrong = if counts_all || !self.culls { counted != out } else { counts.lost > out };
+        let is_wrong = if self.counts_all(counts) { counted != out } else { counts.lost > out };
         is_wrong.then(|| {
             format!(
                 "{kept} of {total} fragments are kept, but the counters report {} lost and {} culled",
                 counts.lost, counts.culled
             )
         })
+    }
+
+    /// Returns whether every event is counted, culled and displaced fragments included.
+    fn counts_all(&self, counts: Counts) -> bool {
+        counts.generated == self.fragments.len() as u32 + self.neighbours
     }
 
     /// Returns whether the declared hazards permit everything that is wrong.
@@ -273,14 +277,14 @@ impl Specification {
             return permits.duplicate || kept + counts.lost <= total;
         }
         if permits.counted_twice {
-            return permits.lost || self.culls || kept + counted >= total;
+            return permits.lost || !self.counts_all(counts) || self.culls || kept + counted >= total;
         }
         match (permits.lost, permits.duplicate) {
             (false, false) => self.counter_mismatch(kept, counts).is_none(),
             (is_lossy, has_duplicates) => {
                 counted <= total
                     && (has_duplicates || kept + counted <= total)
-                    && (is_lossy || self.culls || kept + counted >= total)
+                    && (is_lossy || !self.counts_all(counts) || self.culls || kept + counted >= total)
             }
         }
     }
@@ -293,8 +297,8 @@ impl Specification {
 
     fn counts(&self, counters: &[u32]) -> Counts {
         let mut counts = Counts::default();
-        for ((name, is_loss, _), count) in COUNTERS.iter().zip(counters) {
-            if *is_loss {
+        for ((name, kind, _), count) in COUNTERS.iter().zip(counters) {
+            if *kind != CounterKind::Event {
                 counts.lost += count;
             }
             match *name {

@@ -289,12 +289,18 @@ impl SearchContext<'_> {
         };
         let Some(word) = self.word(access.address) else { return Ok(Reply::Done(0)) };
         let old = value(&state.words[word..], access.words);
+        let is_mixed = self.is_mixed(word);
         if self.model == Model::Sequential {
             let is_done = choice == 0;
-            let matters = !access.is_atomic || !state.order.is_trivial();
+            let matters = !access.is_atomic || is_mixed || !state.order.is_trivial();
             if matters
-                && let Some(other) =
-                    Rc::make_mut(&mut state.order).perform_at_once(fragment, word as u32, access, old, is_done)
+                && let Some(other) = Rc::make_mut(&mut state.order).perform_at_once(
+                    fragment,
+                    (word as u32, is_mixed),
+                    access,
+                    old,
+                    is_done,
+                )
             {
                 return Err(StepError::DataRace(other, word as u32));
             }
@@ -305,7 +311,7 @@ impl SearchContext<'_> {
         }
         let ways = state.order.ways(fragment, word as u32, access, old, self.has_weak_exchange);
         let way = ways[(choice as usize).min(ways.len() - 1)];
-        let observed = Rc::make_mut(&mut state.order).perform(fragment, word as u32, access, old, way);
+        let observed = Rc::make_mut(&mut state.order).perform(fragment, (word as u32, is_mixed), access, old, way);
         if let Some(last) = state.order.last(word as u32).filter(|_| access.writes()) {
             state.words[word] = last as u32;
             if access.words == 2 {

@@ -27,6 +27,7 @@ pub(crate) fn compiled(source: &str) -> Bytecode {
         exports: Vec::new(),
         resources: Vec::new(),
         written_first: Vec::new(),
+        guarded: Vec::new(),
         notes: Notes::default(),
     };
     let checked = check(source, Profile::Native, &SourceSpan::new("test", 1, 1)).unwrap();

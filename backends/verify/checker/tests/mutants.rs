@@ -1,5 +1,5 @@
 //! Mutants of WGSL source: a statement deleted, two consecutive ones swapped, an atomic operation split into a read and a
-//! write, a number incremented or decremented, `<` ↔ `<=`.
+//! write, a number incremented or decremented, `<` ↔ `<=`, and the atomic access of a published word made that of a guarded one.
 
 /// One mutant.
 pub(crate) struct Mutant {
@@ -24,7 +24,7 @@ pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
         if is_statement(line) {
             change(Vec::new(), "");
         }
-        for new in numbers(line).into_iter().chain(comparisons(line)) {
+        for new in numbers(line).into_iter().chain(comparisons(line)).chain(unpublished(line)) {
             change(vec![new], "");
         }
         if let Some((new, function)) = plain(line) {
@@ -75,6 +75,12 @@ fn comparisons(line: &str) -> Vec<String> {
     let pairs = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > ")];
     let matches = pairs.iter().flat_map(|(old, new)| line.match_indices(old).map(move |(at, _)| (at, old, new)));
     matches.map(|(at, old, new)| format!("{}{new}{}", &line[..at], &line[at + old.len()..])).collect()
+}
+
+/// Returns the line with the accessors of words that are read outside of the critical section replaced by those of other words.
+fn unpublished(line: &str) -> Option<String> {
+    let new = line.replace("_publish(", "_store(").replace("_hint(", "_load(");
+    (new != line && !line.starts_with("fn ")).then_some(new)
 }
 
 /// Returns the line with `x_atomic_op(…)` replaced by a call of a function that reads and writes separately, and the function.

@@ -1,6 +1,6 @@
 //! Mutation test of storages and syncs: the checker must kill every mutant. The operators were fixed before the first run:
 //! delete a statement, swap two consecutive ones, split an atomic operation into a read and a write, increment or decrement
-//! a number, `<` ↔ `<=`. `survivors.rs` lists the mutants that survive, with reasons.
+//! a number, `<` ↔ `<=`; later, to access a published word like a guarded one. `survivors.rs` lists the mutants that survive, with reasons.
 
 use std::sync::Mutex;
 

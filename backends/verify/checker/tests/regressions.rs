@@ -37,9 +37,10 @@ fn checked(registry: &Registry, target: &str, model: Model) -> Report {
 fn atomic(row: &mut Row, resource: &str) {
     for step in &mut row.steps {
         if let Step::Pass(pass) = step {
-            for usage in
-                pass.uses.iter_mut().filter(|usage| usage.resource == resource && usage.access == Access::Coherent)
-            {
+            let is_one = |usage: &&mut Use| {
+                usage.resource == resource && matches!(usage.access, Access::Coherent | Access::Hinted)
+            };
+            for usage in pass.uses.iter_mut().filter(is_one) {
                 usage.access = Access::Atomic;
             }
         }
@@ -104,9 +105,33 @@ fn a_bound_of_two_words_is_read_torn() {
     assert_fails_at(&report, TWO_WORDS, "rows/two_word_bound.wgsl", "halves_store(0u, pixel, entry.key >> 16u);");
 }
 
+/// A row that stores its bound like the other keys: a plain word where the language can mix plain and atomic accesses.
+#[test]
+fn a_bound_that_is_not_published_is_a_data_race() {
+    let published = Registry::builtin().row("storage", "max_array").unwrap().template.clone().unwrap().source;
+    for (old, new) in [("keys_publish(", "keys_store("), ("keys_hint(", "keys_load(")] {
+        assert!(published.contains(old), "{old}");
+        let mut row = Registry::builtin().row("storage", "max_array").unwrap().clone();
+        row.template = Some(Template::new("storage/max_array.wgsl", published.replace(old, new)));
+        let registry = Registry::builtin().with(row);
+        for model in [Model::Sequential, Model::Relaxed] {
+            for target in ["spirv", "glsl", "glsl-vulkan", "glsl-es"] {
+                let violation = checked(&registry, target, model).failure.expect(target).violation;
+                assert!(
+                    violation.starts_with("data race on keys[slot 0, pixel 0]"),
+                    "{target}, {model:?}: {violation}"
+                );
+            }
+            // WGSL declares the words atomic.
+            assert_eq!(checked(&registry, "wgsl", Model::Sequential).failure, None);
+        }
+    }
+}
+
 fn revised(sync: &'static str) -> Registry {
     let registry = with(Registry::builtin(), "storage", "max_array", "rows/revised_array.wgsl", REVISED, |row| {
         atomic(row, "kept_counts");
+        atomic(row, "keys");
     });
     with(registry, "sync", "spin_lock", "rows/revised_sync.wgsl", sync, |_| {})
 }

@@ -11,8 +11,13 @@ use super::statements::Statements;
 use crate::report::{FIRST, Stop};
 
 /// How a shader accesses a buffer.
-const ACCESSES: [(&str, Access); 4] =
-    [("read", Access::Read), ("plain", Access::Plain), ("atomic", Access::Atomic), ("coherent", Access::Coherent)];
+const ACCESSES: [(&str, Access); 5] = [
+    ("read", Access::Read),
+    ("plain", Access::Plain),
+    ("atomic", Access::Atomic),
+    ("coherent", Access::Coherent),
+    ("hinted", Access::Hinted),
+];
 
 /// The symbols that a host step may set.
 fn host_symbols() -> impl Iterator<Item = &'static str> {
@@ -108,7 +113,7 @@ impl Statements {
         let mut uses = Vec::new();
         while !line.is_done() {
             let name = self.reader.name(line, "a buffer", "`entries plain, counts atomic`")?;
-            let access = self.reader.name(line, "an access", "`read`, `plain`, `atomic` or `coherent`")?;
+            let access = self.reader.name(line, "an access", "`read`, `plain`, `atomic`, `coherent` or `hinted`")?;
             let mut usage = Use::new(&name.value, self.reader.one_of(&access, &ACCESSES, "an access")?);
             if line.keyword("rechecked") {
                 usage.loads = Loads::Rechecked;

@@ -77,6 +77,7 @@ fn header_follows_the_version() {
         markers: &[],
         bindings: &slot,
         plain_loads: &[],
+        plain_functions: &[],
         written_first: &[],
         zero_workgroup_memory: true,
     };

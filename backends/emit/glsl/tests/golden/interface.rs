@@ -3,7 +3,7 @@
 use fragbuf_glsl::{Dialect, Unit};
 
 use super::DATA;
-use super::support::{print, print_with};
+use super::support::{function, print, print_with};
 
 #[test]
 fn entry_point_is_main() {
@@ -97,9 +97,23 @@ fn plain_loads_are_allowed_by_name() {
     let atomic = print(&source, Unit::Library, Dialect::OpenGl450).unwrap();
     assert!(atomic.contains("return atomicOr(locks[i], 0u);"), "{atomic}");
     assert!(atomic.contains("coherent buffer LocksBuffer"), "{atomic}");
-    let plain = print_with(&source, Unit::Library, Dialect::OpenGl450, &["locks"]).unwrap();
+    let plain = print_with(&source, Unit::Library, Dialect::OpenGl450, (&["locks"], &[])).unwrap();
     assert!(plain.contains("return locks[i];"), "{plain}");
     assert!(plain.contains("coherent volatile buffer LocksBuffer"), "{plain}");
-    let vulkan = print_with(&source, Unit::Library, Dialect::Vulkan450, &["locks"]).unwrap();
+    let vulkan = print_with(&source, Unit::Library, Dialect::Vulkan450, (&["locks"], &[])).unwrap();
     assert!(vulkan.contains("atomicLoad(locks[i], gl_ScopeDevice"), "{vulkan}");
+}
+
+#[test]
+fn accesses_are_plain_in_named_functions() {
+    let functions = "fn guarded(i: u32) -> u32 { atomicStore(&locks[i], 7u); return atomicLoad(&locks[i]); }
+        fn hint(i: u32) -> u32 { return atomicLoad(&locks[i]); }";
+    let source = format!("{DATA}{functions}");
+    for dialect in [Dialect::OpenGl450, Dialect::Es310, Dialect::Vulkan450] {
+        let text = print_with(&source, Unit::Library, dialect, (&[], &["guarded"])).unwrap();
+        let guarded = function(&text, "guarded");
+        assert!(guarded.contains("locks[i] = 7u;") && !guarded.contains("atomic"), "{text}");
+        assert!(function(&text, "hint").contains("atomic"), "{text}");
+        assert!(text.contains("coherent buffer LocksBuffer"), "{text}");
+    }
 }

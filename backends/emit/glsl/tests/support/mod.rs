@@ -32,15 +32,15 @@ pub fn parse(source: &str) -> (naga::Module, ModuleInfo) {
 
 /// Prints a unit without plain loads.
 pub fn print(source: &str, unit: Unit, dialect: Dialect) -> Result<String, Vec<Unprintable>> {
-    print_with(source, unit, dialect, &[])
+    print_with(source, unit, dialect, (&[], &[]))
 }
 
-/// Prints a unit.
+/// Prints a unit with globals whose loads may be plain, and functions whose accesses may be.
 pub fn print_with(
     source: &str,
     unit: Unit,
     dialect: Dialect,
-    plain_loads: &[&str],
+    (plain_loads, plain_functions): (&[&str], &[&str]),
 ) -> Result<String, Vec<Unprintable>> {
     let (module, info) = parse(source);
     let bindings = |group: u32, binding: u32| Slot { set: group, binding: group * 16 + binding };
@@ -50,6 +50,7 @@ pub fn print_with(
         markers: MARKERS,
         bindings: &bindings,
         plain_loads,
+        plain_functions,
         written_first: &[],
         zero_workgroup_memory: true,
     };

@@ -146,7 +146,8 @@ fn access(access: Access) -> &'static str {
     match access {
         Access::Read => "read",
         Access::Plain => "plain",
-        Access::Atomic => "atomic",
+        // Followers bind both in the same way.
+        Access::Atomic | Access::Hinted => "atomic",
         Access::Coherent => "coherent",
         Access::Attachment => "attachment",
         Access::Sampled => "sampled",

@@ -1,29 +1,35 @@
 //! Edits naga's SPIR-V to add what naga cannot write: the built-in for helper invocations, the begin and end of an interlock,
-//! and the sample mask as an array.
+//! the sample mask as an array, and plain accesses of words that other functions access atomically.
 //!
 //! The input is a module with one entry point in which markers are named functions. The output has each call of a marker
 //! replaced, and the required declarations. A module without such calls is returned unchanged.
 
 use rspirv::binary::Assemble;
-use rspirv::dr::{Instruction, Module, Operand, load_words};
+use rspirv::dr::{Function, Instruction, Module, Operand, load_words};
 use rspirv::spirv::{BuiltIn, Capability, Decoration, ExecutionMode, Op, StorageClass, Word};
 
 use super::sample_mask;
 use crate::emission::InterlockOrder;
 use crate::markers::{CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE};
 
-/// Tests whether the words of an entry point may need an edit: its module has a marker, or it uses the sample mask.
-pub(super) fn may_apply(module: &naga::Module, entry: &str, prefix: &str) -> bool {
+/// Tests whether the words of an entry point may need an edit: its module has a marker or a guarded accessor, or it uses the sample
+/// mask.
+pub(super) fn may_apply(module: &naga::Module, entry: &str, prefix: &str, guarded: &[String]) -> bool {
     let markers = [CRITICAL_BEGIN, CRITICAL_END, HELPER_LANE].map(|marker| format!("{prefix}{marker}"));
-    let is_marker = |name: &String| markers.contains(name);
+    let is_marker = |name: &String| markers.contains(name) || guarded.contains(name);
     let Some(point) = module.entry_points.iter().find(|point| point.name == entry) else { return true };
     point.stage == naga::ShaderStage::Fragment
         && (module.functions.iter().any(|(_, function)| function.name.as_ref().is_some_and(is_marker))
             || sample_mask::is_in(module, &point.function))
 }
 
-/// Applies the edits; `prefix` precedes the markers' names.
-pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Result<Vec<u32>, String> {
+/// Applies the edits. `prefix` precedes the markers' names; accesses of the functions `guarded` become plain.
+pub(super) fn apply(
+    words: Vec<u32>,
+    prefix: &str,
+    order: InterlockOrder,
+    guarded: &[String],
+) -> Result<Vec<u32>, String> {
     let mut module = load_words(&words).map_err(|error| format!("rspirv cannot parse naga's SPIR-V: {error}"))?;
     let begin = replace(&mut module, &format!("{prefix}{CRITICAL_BEGIN}"), |_| {
         Some(Instruction::new(Op::BeginInvocationInterlockEXT, None, None, vec![]))
@@ -36,7 +42,8 @@ pub(super) fn apply(words: Vec<u32>, prefix: &str, order: InterlockOrder) -> Res
     }
     let helper = read_helper_invocation(&mut module, &format!("{prefix}{HELPER_LANE}"))?;
     let mask = sample_mask::correct(&mut module)?;
-    Ok(if begin || end || helper || mask { module.assemble() } else { words })
+    let plain = make_plain(&mut module, guarded);
+    Ok(if begin || end || helper || mask || plain { module.assemble() } else { words })
 }
 
 /// Replaces every call of the function `name`. Returns whether there was one.
@@ -46,6 +53,30 @@ fn replace(module: &mut Module, name: &str, with: impl Fn(&Instruction) -> Optio
     for instruction in module.all_inst_iter_mut().filter(|instruction| calls(instruction, function)) {
         if let Some(other) = with(instruction) {
             *instruction = other;
+            found = true;
+        }
+    }
+    found
+}
+
+/// Turns the atomic loads and stores of functions into plain ones. Returns whether there was one.
+fn make_plain(module: &mut Module, functions: &[String]) -> bool {
+    let ids: Vec<Word> = functions.iter().filter_map(|name| named(module, name)).collect();
+    let is_one = |function: &&mut Function| {
+        function.def.as_ref().and_then(|definition| definition.result_id).is_some_and(|id| ids.contains(&id))
+    };
+    let mut found = false;
+    for function in module.functions.iter_mut().filter(is_one) {
+        for instruction in function.blocks.iter_mut().flat_map(|block| &mut block.instructions) {
+            // The operands of both are the pointer, the scope and the semantics; then, of a store, the value.
+            let plain = match instruction.class.opcode {
+                Op::AtomicLoad => Op::Load,
+                Op::AtomicStore => Op::Store,
+                _ => continue,
+            };
+            let operands = instruction.operands.iter().enumerate().filter(|(index, _)| *index != 1 && *index != 2);
+            let operands = operands.map(|(_, operand)| operand.clone()).collect();
+            *instruction = Instruction::new(plain, instruction.result_type, instruction.result_id, operands);
             found = true;
         }
     }

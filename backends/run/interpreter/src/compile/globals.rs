@@ -68,6 +68,7 @@ impl Compiler<'_> {
             is_written: false,
             commutes: false,
             is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
+            is_mixed: false,
             is_wide: false,
             atomics: self.atomics(inner)?,
             element_atomics: element.map_or(Ok(Vec::new()), |(element, _)| self.atomics(element))?,

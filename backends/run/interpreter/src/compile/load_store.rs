@@ -84,7 +84,7 @@ impl Compiler<'_> {
                 }
             },
             PointerBase::Buffer { buffer } => {
-                let is_atomic = matches!(inner, TypeInner::Atomic(_));
+                let is_atomic = self.is_atomic_access(buffer, inner);
                 let (address, constant) = self.split(pointer);
                 let mut at = to;
                 for (offset, words) in self.scalars(inner)? {
@@ -114,7 +114,7 @@ impl Compiler<'_> {
                 }
             },
             PointerBase::Buffer { buffer } => {
-                let is_atomic = matches!(inner, TypeInner::Atomic(_));
+                let is_atomic = self.is_atomic_access(buffer, inner);
                 let (address, constant) = self.split(pointer);
                 let mut at = from;
                 for (offset, words) in self.scalars(inner)? {
@@ -127,6 +127,17 @@ impl Compiler<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Tests whether a load or store of a value is atomic: its type is, and the present function is not one whose accesses are plain.
+    fn is_atomic_access(&mut self, buffer: u16, inner: &TypeInner) -> bool {
+        if !matches!(inner, TypeInner::Atomic(_)) {
+            return false;
+        }
+        let name = self.callee.function.name.as_ref();
+        let is_plain = name.is_some_and(|name| self.options.plain_functions.contains(name));
+        self.buffers[usize::from(buffer)].is_mixed |= is_plain;
+        !is_plain
     }
 
     /// Returns the buffer and the address of an atomic operation.

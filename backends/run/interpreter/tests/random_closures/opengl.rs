@@ -19,6 +19,7 @@ pub fn run(shader: &Shader) -> Result<Vec<u32>, String> {
         markers: &[],
         bindings: &|_, binding| Slot { set: 0, binding },
         plain_loads: &[],
+        plain_functions: &[],
         written_first: &[],
         zero_workgroup_memory: false,
     };

@@ -1,4 +1,4 @@
-//! The history of one word: its writes in modification order, and the reads that a later plain write must not race with.
+//! The history of one word: its writes in modification order, and the accesses that a later one must not race with.
 
 use std::collections::HashMap;
 
@@ -12,8 +12,8 @@ pub(crate) const REPEATED: usize = 6;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct History {
     pub(crate) writes: Vec<Write>,
-    /// The plain reads since the last plain write.
-    pub(crate) reads: Vec<PlainRead>,
+    /// The accesses since the last plain write that a later one may race with.
+    pub(crate) accesses: Vec<Recorded>,
 }
 
 /// One write.
@@ -35,23 +35,36 @@ pub(crate) struct Accessor {
     pub(crate) in_section: bool,
 }
 
-/// A plain read.
+/// The kind of a recorded access. Plain writes are in the history itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) enum AccessKind {
+    PlainRead,
+    /// Only of words that also have plain accesses, as `AtomicWrite`.
+    AtomicRead,
+    AtomicWrite,
+}
+
+/// A recorded access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct PlainRead {
+pub(crate) struct Recorded {
+    pub(crate) kind: AccessKind,
     pub(crate) accessor: Accessor,
-    /// The epoch of the reader: how many of its fences came before, as far as that matters.
+    /// The epoch of the accessor: how many of its fences came before, as far as that matters.
     pub(crate) epoch: u32,
 }
 
 impl History {
     /// Returns a history of one write, which every fragment has observed.
     pub(crate) fn new(value: u64) -> Self {
-        History { writes: vec![Write { value, follows: false, view: View::default(), plain: None }], reads: Vec::new() }
+        History {
+            writes: vec![Write { value, follows: false, view: View::default(), plain: None }],
+            accesses: Vec::new(),
+        }
     }
 
     /// Returns whether it holds nothing but a value.
     pub(crate) fn is_trivial(&self) -> bool {
-        matches!(&self.writes[..], [write] if write.view.is_empty()) && self.reads.is_empty()
+        matches!(&self.writes[..], [write] if write.view.is_empty()) && self.accesses.is_empty()
     }
 
     pub(crate) fn last(&self) -> u32 {

@@ -11,6 +11,8 @@
 //!   writes. A read-modify-write also passes on the view of the write that it observes (release sequences).
 //! * A plain access must have every write of its word in its view, and a plain write must come after every plain read.
 //!   Otherwise it is a data race. No fence adds words that are not coherent to a view.
+//! * A word with both kinds of accesses records the atomic ones, too: a plain access and an atomic one of which one writes are a
+//!   data race unless they are ordered.
 //! * A workgroup barrier adds the views of all members of the workgroup to each, for the memory that it orders.
 //! * The interlock adds what fragments have accessed inside of their critical sections, until the section ends.
 
@@ -21,7 +23,7 @@ mod view;
 use fragbuf_interpreter::{Access, Atomic, Operation};
 
 pub(crate) use history::REPEATED;
-use history::{Accessor, History, PlainRead, Write};
+use history::{AccessKind, Accessor, History, Recorded, Write};
 use view::{MemoryKind, View, clock};
 
 /// The memory of all words whose order matters.
@@ -47,7 +49,7 @@ struct Views {
     released: View,
     /// Inside of a critical section, the view without what the interlock has added.
     outside: Option<View>,
-    /// The number of the fragment's fences, as far as it distinguishes plain reads.
+    /// The number of the fragment's fences, as far as it distinguishes recorded accesses.
     epoch: u32,
 }
 
@@ -128,12 +130,20 @@ impl RelaxedMemory {
         }
     }
 
-    /// Performs an access in one of its ways.
-    pub(crate) fn perform(&mut self, fragment: usize, word: u32, access: &Access, value: u64, way: Way) -> Observed {
+    /// Performs an access in one of its ways. `is_mixed`: the word has both plain and atomic accesses.
+    pub(crate) fn perform(
+        &mut self,
+        fragment: usize,
+        (word, is_mixed): (u32, bool),
+        access: &Access,
+        value: u64,
+        way: Way,
+    ) -> Observed {
         let at = self.materialise(word, value);
-        if let Some(other) = self.racing(fragment, word, at, access) {
+        if let Some(other) = self.racing(fragment, (word, is_mixed), at, access) {
             return Observed::Race(other);
         }
+        self.record(fragment, at, access, is_mixed);
         match way {
             Way::Load(position) | Way::Fail(position) => {
                 let write = &self.histories[at].1.writes[position as usize];
@@ -141,8 +151,6 @@ impl RelaxedMemory {
                 if access.is_atomic {
                     let view = write.view.clone();
                     self.fragments[fragment].observed.join(&view);
-                } else {
-                    self.record_read(fragment, at);
                 }
                 self.advance(fragment, word, position);
                 let is_spurious = matches!(way, Way::Fail(_)) && value == truncated(access.expected, access);
@@ -160,7 +168,7 @@ impl RelaxedMemory {
                     );
                 }
                 if plain.is_some() {
-                    self.histories[at].1.reads.clear();
+                    self.histories[at].1.accesses.clear();
                 }
                 Observed::Value(0)
             }
@@ -190,19 +198,23 @@ impl RelaxedMemory {
     pub(crate) fn perform_at_once(
         &mut self,
         fragment: usize,
-        word: u32,
+        (word, is_mixed): (u32, bool),
         access: &Access,
         value: u64,
         is_done: bool,
     ) -> Option<usize> {
         if !access.is_atomic {
             let way = self.ways(fragment, word, access, value, false)[0];
-            return match self.perform(fragment, word, access, value, way) {
+            return match self.perform(fragment, (word, is_mixed), access, value, way) {
                 Observed::Race(other) => Some(other),
                 _ => None,
             };
         }
         let at = self.materialise(word, value);
+        if let Some(other) = self.racing(fragment, (word, is_mixed), at, access) {
+            return Some(other);
+        }
+        self.record(fragment, at, access, is_mixed);
         if access.operation != Operation::Store {
             self.acquire(fragment, at);
         }
@@ -242,32 +254,44 @@ impl RelaxedMemory {
     }
 
     /// Returns a fragment with an earlier access that this one is a data race with.
-    fn racing(&self, fragment: usize, word: u32, at: usize, access: &Access) -> Option<usize> {
-        if access.is_atomic {
+    fn racing(&self, fragment: usize, (word, is_mixed): (u32, bool), at: usize, access: &Access) -> Option<usize> {
+        if access.is_atomic && !is_mixed {
             return None;
         }
         let history = &self.histories[at].1;
         let views = &self.fragments[fragment];
         let unseen = history.writes.iter().skip(views.current.get(word) as usize + 1);
         let writer = unseen.filter_map(|write| write.plain).next();
-        let is_ordered = |read: &&PlainRead| {
-            let other = usize::from(read.accessor.fragment);
+        let is_ordered = |one: &Recorded| {
+            let other = usize::from(one.accessor.fragment);
             other == fragment
-                || views.current.get(clock(other, self.kind(word))) >= read.epoch
-                || (read.accessor.in_section && views.outside.is_some())
+                || views.current.get(clock(other, self.kind(word))) >= one.epoch
+                || (one.accessor.in_section && views.outside.is_some())
         };
-        let reader = history.reads.iter().find(|read| !is_ordered(read)).filter(|_| access.writes());
-        writer.or(reader.map(|read| read.accessor)).map(|accessor| usize::from(accessor.fragment))
+        let conflicts = |one: &Recorded| match one.kind {
+            AccessKind::PlainRead => access.writes(),
+            AccessKind::AtomicRead => access.writes() && !access.is_atomic,
+            AccessKind::AtomicWrite => !access.is_atomic,
+        };
+        let other = history.accesses.iter().find(|one| conflicts(one) && !is_ordered(one));
+        writer.or(other.map(|one| one.accessor)).map(|accessor| usize::from(accessor.fragment))
     }
 
-    fn record_read(&mut self, fragment: usize, at: usize) {
+    /// Records an access that a later one may race with.
+    fn record(&mut self, fragment: usize, at: usize, access: &Access, is_mixed: bool) {
+        let kind = match (access.is_atomic, access.writes()) {
+            (false, false) => AccessKind::PlainRead,
+            (true, false) if is_mixed => AccessKind::AtomicRead,
+            (true, true) if is_mixed => AccessKind::AtomicWrite,
+            _ => return,
+        };
         let (accessor, epoch) = (self.accessor(fragment), self.fragments[fragment].epoch);
-        let reads = &mut self.histories[at].1.reads;
-        match reads.iter_mut().find(|read| read.accessor == accessor) {
-            Some(read) => read.epoch = epoch,
+        let accesses = &mut self.histories[at].1.accesses;
+        match accesses.iter_mut().find(|one| one.accessor == accessor && one.kind == kind) {
+            Some(one) => one.epoch = epoch,
             None => {
-                reads.push(PlainRead { accessor, epoch });
-                reads.sort_unstable_by_key(|read| (read.accessor.fragment, read.accessor.in_section));
+                accesses.push(Recorded { kind, accessor, epoch });
+                accesses.sort_unstable_by_key(|one| (one.accessor.fragment, one.accessor.in_section, one.kind));
             }
         }
     }

@@ -85,7 +85,7 @@ impl RelaxedMemory {
     /// removed a write that one can observe, because the word has been given the same value too often since.
     pub(crate) fn forget(&mut self, is_running: impl Fn(usize) -> bool) -> bool {
         if self.histories.is_empty() {
-            // No word has more than one write, so views hold nothing but clocks, and there is no read that a clock could order.
+            // No word has more than one write, so views hold nothing but clocks, and there is no access that a clock could order.
             for views in &mut self.fragments {
                 let outside = views.outside.take().map(|_| View::default());
                 *views = Views { epoch: 1, outside, ..Views::default() };
@@ -97,7 +97,7 @@ impl RelaxedMemory {
                 *views = Views { epoch: 1, ..Views::default() };
             }
         }
-        self.forget_reads(&is_running);
+        self.forget_accesses(&is_running);
         let forgets = self.forget_writes(&is_running);
         for views in &mut self.fragments {
             let Views { observed, outside, current, .. } = views;
@@ -125,39 +125,39 @@ impl RelaxedMemory {
         forgets
     }
 
-    /// Removes plain reads that every other running fragment is ordered after, and numbers the epochs of the others densely.
-    fn forget_reads(&mut self, is_running: impl Fn(usize) -> bool) {
-        let has_reads = self.histories.iter().any(|(_, history)| !history.reads.is_empty());
-        if !has_reads && self.fragments.iter().all(|views| views.epoch == 1) {
+    /// Removes recorded accesses that every other running fragment is ordered after, and numbers the epochs of the others densely.
+    fn forget_accesses(&mut self, is_running: impl Fn(usize) -> bool) {
+        let has_accesses = self.histories.iter().any(|(_, history)| !history.accesses.is_empty());
+        if !has_accesses && self.fragments.iter().all(|views| views.epoch == 1) {
             return;
         }
-        for reader in 0..self.fragments.len() {
+        for accessor in 0..self.fragments.len() {
             let known = MemoryKind::ALL.map(|kind| {
                 let others = self.fragments.iter().enumerate();
-                let others = others.filter(|(other, _)| *other != reader && is_running(*other));
-                others.map(|(_, views)| views.lasting().get(clock(reader, kind))).min()
+                let others = others.filter(|(other, _)| *other != accessor && is_running(*other));
+                others.map(|(_, views)| views.lasting().get(clock(accessor, kind))).min()
             });
             let mut epochs: Vec<u32> = Vec::new();
             let first_of_workgroups = self.first_of_workgroups;
             for (word, history) in &mut self.histories {
                 let known = known[usize::from(*word >= first_of_workgroups)];
-                history.reads.retain(|read| {
-                    usize::from(read.accessor.fragment) != reader || known.is_some_and(|known| read.epoch > known)
+                history.accesses.retain(|one| {
+                    usize::from(one.accessor.fragment) != accessor || known.is_some_and(|known| one.epoch > known)
                 });
-                let own = history.reads.iter().filter(|read| usize::from(read.accessor.fragment) == reader);
-                epochs.extend(own.map(|read| read.epoch));
+                let own = history.accesses.iter().filter(|one| usize::from(one.accessor.fragment) == accessor);
+                epochs.extend(own.map(|one| one.epoch));
             }
             epochs.sort_unstable();
             epochs.dedup();
             let dense = |epoch: u32| epochs.partition_point(|other| *other <= epoch) as u32;
             for kind in MemoryKind::ALL {
-                self.each_view(|view| view.map(clock(reader, kind), dense));
+                self.each_view(|view| view.map(clock(accessor, kind), dense));
             }
-            let before = epochs.partition_point(|other| *other < self.fragments[reader].epoch) as u32;
-            self.fragments[reader].epoch = before + 1;
+            let before = epochs.partition_point(|other| *other < self.fragments[accessor].epoch) as u32;
+            self.fragments[accessor].epoch = before + 1;
             for (_, history) in &mut self.histories {
-                let own = history.reads.iter_mut().filter(|read| usize::from(read.accessor.fragment) == reader);
-                own.for_each(|read| read.epoch = dense(read.epoch));
+                let own = history.accesses.iter_mut().filter(|one| usize::from(one.accessor.fragment) == accessor);
+                own.for_each(|one| one.epoch = dense(one.epoch));
             }
         }
     }
