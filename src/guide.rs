@@ -5,7 +5,7 @@
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
 //! 5. [`run`]: images and statistics from the command line.
-//! 6. [`embed`]: frames in your own engine.
+//! 6. [`embed`]: frames in your own engine, and [`material`]: a shader of your own that stores fragments.
 //! 7. [`extend`]: your own storage, snapshots.
 //! 8. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
 //! 9. [`verdict`]: what a verdict of the checker means, and what it does not.
@@ -23,9 +23,12 @@ pub mod generate {}
 pub mod manifest {}
 #[doc = include_str!("guide/run.md")]
 pub mod run {}
-#[cfg(feature = "pictures")]
+#[cfg(feature = "gpu")]
 #[doc = include_str!("guide/embed.md")]
 pub mod embed {}
+#[cfg(feature = "gpu")]
+#[doc = include_str!("guide/material.md")]
+pub mod material {}
 #[doc = include_str!("guide/extend.md")]
 pub mod extend {}
 #[doc = include_str!("guide/check.md")]

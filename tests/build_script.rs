@@ -24,7 +24,8 @@ fragbuf = { path = \"ROOT\", default-features = false }
 [workspace]
 ";
 
-const SCRIPT: &str = "
+/// The script of the guide.
+pub const SCRIPT: &str = "
 fn main() -> Result<(), fragbuf::build::Error> {
     fragbuf::build::Build::new()
         .file(\"shaders/glass.fragbuf\")

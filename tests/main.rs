@@ -10,6 +10,7 @@
 
 mod attributes;
 mod bindings;
+mod blocks;
 mod build_script;
 mod cases;
 mod catalogue;
@@ -22,6 +23,7 @@ mod examples;
 mod fuzz;
 mod instances;
 mod limits;
+mod material;
 mod memory;
 mod messages;
 mod multisample;

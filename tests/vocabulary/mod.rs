@@ -6,7 +6,8 @@ use fragbuf_codegen::{Plan, plan};
 use fragbuf_model::{Draft, SourceSpan, check};
 use fragbuf_templates::Registry;
 
-fn planned(key: &str) -> Plan {
+/// Plans a technique of the registry with the rows of this module.
+pub fn planned(key: &str) -> Plan {
     let registry = rows::registry();
     let draft = Draft::from_technique(key, &SourceSpan::new(key, 1, 1));
     let variant = check(&draft, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));

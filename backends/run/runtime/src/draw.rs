@@ -21,6 +21,8 @@ pub struct Output<'a> {
     pub load: wgpu::LoadOp<wgpu::Color>,
 }
 
-/// The caller's draw function. It is called for each geometry pass of each slice. The pipeline, the bind group and the scissor
-/// rectangle of the slice are set.
+/// The caller's draw function. It is called for each geometry pass of each slice. The bind group and the scissor rectangle of the
+/// slice are set, and in program form the pipeline.
+///
+/// A closure needs the types of its parameters: `|pass: &mut wgpu::RenderPass<'_>, call: &Call<'_>| { … }`.
 pub type Draw<'a> = dyn FnMut(&mut wgpu::RenderPass<'_>, &Call<'_>) + 'a;

@@ -7,7 +7,8 @@
 //!                                               └──resume── SuspendedFrame ◄─┘
 //! ```
 //!
-//! `examples/embed.rs` is a host that owns its device and the order of its passes. [`Renderer::render`] renders whole frames
+//! `examples/embed.rs` is a host that owns its device and the order of its passes. In module form the caller's own pipelines
+//! draw the scene ([`Renderer::geometry_passes`]). [`Renderer::render`] renders whole frames
 //! where blocking is possible. Frames beyond a device limit or the memory budget
 //! ([`Settings::memory`]) are drawn in slices ([`Settings::slice`]). A k beyond the capacity
 //! of the pipelines needs other pipelines ([`Buckets`]).
@@ -27,6 +28,7 @@ mod fixed_function;
 mod frame;
 mod frame_blocks;
 mod frame_resources;
+mod geometry_pass;
 pub mod headless;
 mod layout;
 mod limits;
@@ -61,6 +63,7 @@ pub use fragbuf_frame::{
     Counter, Counters, DEFAULT_MEMORY, LoopEnd, LoopReport, MemoryNeed, PassTime, PoolSize, Sizing, Value,
 };
 pub use frame::{Frame, Recorded, SuspendedFrame};
+pub use geometry_pass::{GeometryPass, ModuleFunction};
 pub use objects::ObjectBox;
 pub use pipelines::Pipelines;
 pub use readback::Pending;

@@ -11,7 +11,7 @@ use crate::error_scope::in_error_scope;
 use crate::layout::{Binding, bind_group_layout, bindings, check};
 use crate::pattern::patterns;
 use crate::pipeline::{Pipeline, PipelineBuilder};
-use crate::{Error, Settings, Shaders, VertexInputs, unsupported};
+use crate::{Error, GeometryPass, Settings, Shaders, VertexInputs, unsupported};
 
 /// The pipelines of one plan on one device. Cloning is cheap.
 #[derive(Clone)]
@@ -55,6 +55,8 @@ pub(crate) struct PreparedPass {
     pub(crate) bindings: Vec<Binding>,
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) pipeline: Pipeline,
+    /// What the caller's pipeline needs, in module form.
+    pub(crate) callers: Option<GeometryPass>,
 }
 
 impl Pipelines {
@@ -86,7 +88,8 @@ impl Pipelines {
                 return Err(unsupported_plan(format!("pass `{}`: boxes of objects in module form", pass.name)).into());
             }
             let query = if plan.frame.waits_for_samples(PassId(number)) { queries.next() } else { None };
-            passes.push(PreparedPass { pass: pass.clone(), exchanges, query, bindings, layout, pipeline });
+            let callers = GeometryPass::of(shaders, pass, settings.target)?;
+            passes.push(PreparedPass { pass: pass.clone(), exchanges, query, bindings, layout, pipeline, callers });
         }
         let patterns = in_error_scope(device, "the buffers with clear words", 0, || patterns(device, &plan)).await?;
         let (group, max_pass_runs) = (shaders.group, max_pass_runs(&plan)?);

@@ -18,9 +18,7 @@ use crate::frame_resources::{DeviceObjects, FrameResources, Timestamps};
 use crate::memory_limits::memory_limits;
 use crate::objects::Objects;
 use crate::pipelines::PipelineSet;
-use crate::placeholder::placeholder_target;
 use crate::queries::Queries;
-use crate::samples::multisample;
 use crate::segment::FrameInputs;
 use crate::uniform_buffers::{IDENTITY, UniformBuffers};
 use crate::words::to_bytes;
@@ -249,22 +247,9 @@ impl Renderer {
         &self.pipeline_set().inputs
     }
 
-    /// Returns the bind group layout of the pass `name`, for a pipeline that the caller builds around its shader functions.
+    /// Returns the bind group layout of the pass `name`, for a pipeline of the caller ([`Renderer::geometry_passes`]).
     pub fn bind_group_layout(&self, name: &str) -> Option<&wgpu::BindGroupLayout> {
         self.pipeline_set().passes.iter().find(|prepared| prepared.pass.name == name).map(|prepared| &prepared.layout)
-    }
-
-    /// Returns the multisample state that a pipeline of the caller needs in the pass `name`: one sample if the plan gives none, or
-    /// has no such pass.
-    pub fn multisample(&self, name: &str) -> wgpu::MultisampleState {
-        let pass = self.pipeline_set().passes.iter().find(|prepared| prepared.pass.name == name);
-        let samples = pass.and_then(|prepared| multisample(self.plan(), &prepared.pass, 0).ok());
-        samples.unwrap_or_default()
-    }
-
-    /// Returns the colour target that a pipeline of the caller needs in a geometry pass. Nothing is written to it.
-    pub fn geometry_target() -> wgpu::ColorTargetState {
-        placeholder_target()
     }
 
     /// Returns the exchanges that the last frame left flipped.

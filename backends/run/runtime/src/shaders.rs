@@ -3,14 +3,14 @@
 //! Input: a linked program, or the files of one target. Output: modules by pass and stage, and the features that they need. This
 //! module compiles nothing.
 
-use fragbuf_codegen::{EntryPoint, Plan, Profile, Program, Stage};
+use fragbuf_codegen::{EntryPoint, Linking, Plan, Profile, Program, Stage};
 use fragbuf_targets::{Generation, target};
 use fragbuf_templates::vocabulary::{Access, Feature};
 
 use crate::samples::sample_count;
 use crate::unsupported::check;
 use crate::words::from_bytes;
-use crate::{Error, Interlock};
+use crate::{Error, Interlock, ModuleFunction};
 
 /// The code of one plan.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub struct Shaders {
     pub profile: Profile,
     /// At least one per pass. In a geometry pass without a module, the caller's draw function sets the pipeline.
     pub modules: Vec<Module>,
+    /// The functions of geometry passes in module form, in WGSL.
+    pub functions: Vec<ModuleFunction>,
 }
 
 /// One shader module.
@@ -48,33 +50,36 @@ pub enum Code {
 impl Shaders {
     /// Returns the linked WGSL of `plan`.
     pub fn from_program(plan: &Plan, program: &Program) -> Self {
-        let modules = program.passes.iter().map(|pass| Module {
-            pass: pass.name.clone(),
-            entry_points: pass.entry_points.clone(),
-            code: Code::Wgsl(pass.text.clone()),
-        });
-        Shaders {
-            plan: plan.clone(),
-            group: program.linking.group,
-            profile: program.linking.profile,
-            modules: modules.collect(),
+        let (mut modules, mut functions) = (Vec::new(), Vec::new());
+        for pass in &program.passes {
+            functions.extend(pass.exports.iter().map(|name| function(&pass.name, name, &pass.text)));
+            if !pass.entry_points.is_empty() {
+                let code = Code::Wgsl(pass.text.clone());
+                modules.push(Module { pass: pass.name.clone(), entry_points: pass.entry_points.clone(), code });
+            }
         }
+        let Linking { group, profile, .. } = program.linking;
+        Shaders { plan: plan.clone(), group, profile, modules, functions }
     }
 
     /// Returns the files of one target, generated with bind group `group`. The target's language must be WGSL or SPIR-V.
     pub fn from_generation(generation: &Generation, target_name: &str, group: u32) -> Result<Self, Error> {
-        let not_generated = || Error::Unsupported {
-            what: format!("target `{target_name}` of this generation"),
-            help: format!(
-                "it was not requested, or it is unsupported (see `Generation::unsupported`); {}",
-                runnable(generation)
-            ),
+        let not_generated = || {
+            let missing = generation.unsupported.iter().find(|(target, _)| target.name == target_name);
+            let reason = missing.map_or("it was not requested".to_owned(), |(_, missing)| missing.to_string());
+            Error::Unsupported {
+                what: format!("target `{target_name}` of this generation"),
+                help: format!("{reason}; {}", runnable(generation)),
+            }
         };
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target_name));
         let plan = planned.ok_or_else(not_generated)?.plan.clone();
         let profile = target(target_name).ok_or_else(not_generated)?.profile;
-        let mut modules = Vec::new();
+        let (mut modules, mut functions) = (Vec::new(), Vec::new());
         for file in generation.files.iter().filter(|file| file.target == target_name) {
+            let exports = file.entry_points.iter().filter(|(stage, _)| *stage == "module");
+            let source = String::from_utf8_lossy(&file.bytes);
+            functions.extend(exports.map(|(_, name)| function(&file.pass, name, &source)));
             let entry_points = file
                 .entry_points
                 .iter()
@@ -85,11 +90,11 @@ impl Shaders {
                 modules.push(Module { pass: file.pass.clone(), entry_points, code });
             }
         }
-        Ok(Shaders { plan, group, profile, modules })
+        Ok(Shaders { plan, group, profile, modules, functions })
     }
 
-    /// Returns the features that the device needs for these shaders. The adapter also needs
-    /// `DownlevelFlags::FRAGMENT_WRITABLE_STORAGE`, which is no feature.
+    /// Returns the features that the device needs for these shaders, for `required_features` of its descriptor. The adapter also
+    /// needs `DownlevelFlags::FRAGMENT_WRITABLE_STORAGE`, which is no feature.
     pub fn features(&self) -> wgpu::Features {
         let mut features = wgpu::Features::empty();
         let passed_through = self.modules.iter().any(|module| matches!(module.code, Code::SpirV(_)));
@@ -141,6 +146,10 @@ impl Shaders {
         let closures = variant.criterion.is_some() || variant.resolve.is_some() || !variant.constraints.is_empty();
         closures || !variant.helpers.is_empty() || self.plan.selection.user_files().next().is_some()
     }
+}
+
+fn function(pass: &str, name: &str, source: &str) -> ModuleFunction {
+    ModuleFunction { pass: pass.to_owned(), name: name.to_owned(), source: source.to_owned() }
 }
 
 fn stage_of(name: &str) -> Option<Stage> {

@@ -1,8 +1,8 @@
 //! The module form: the caller's material shader in the caller's pipeline ends with a call of `store_fragment`.
 
-use fragbuf_codegen::Form;
+use fragbuf_codegen::{Form, Linking, Profile, link};
 use fragbuf_runtime::headless::Offscreen;
-use fragbuf_runtime::{Output, Renderer, Shaders};
+use fragbuf_runtime::{GeometryPass, Output, Renderer, Shaders};
 use fragbuf_targets::{Request, generate, target};
 use fragbuf_templates::Registry;
 
@@ -34,14 +34,14 @@ fn sheets() -> Vec<Quad> {
 fn pipeline(
     device: &wgpu::Device,
     renderer: &Renderer,
-    module_source: &str,
+    pass: &GeometryPass,
     material_layout: &wgpu::BindGroupLayout,
 ) -> wgpu::RenderPipeline {
-    let source = wgpu::ShaderSource::Wgsl(format!("{module_source}\n{MATERIAL}").into());
+    let source = wgpu::ShaderSource::Wgsl(format!("{}\n{MATERIAL}", pass.source).into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("material"), source });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(material_layout), renderer.bind_group_layout("store")],
+        bind_group_layouts: &[Some(material_layout), renderer.bind_group_layout(&pass.name)],
         immediate_size: 0,
     });
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -60,7 +60,7 @@ fn pipeline(
             module: &module,
             entry_point: Some("material_fragment"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(Renderer::geometry_target())],
+            targets: &pass.targets,
         }),
         multiview_mask: None,
         cache: None,
@@ -77,7 +77,6 @@ fn a_material_of_the_caller_stores_fragments() {
         generate(&variant, &request, &Registry::builtin()).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     let shaders = Shaders::from_generation(&generation, "wgsl", GROUP).unwrap();
     let mut renderer = renderer(&stage, &shaders, &settings()).unwrap();
-    let file = generation.files.iter().find(|file| file.pass == "store").unwrap();
 
     let words =
         sheets().iter().flat_map(|quad| [quad.rgba(), [quad.depth, 0.0, 0.0, 0.0]]).flatten().collect::<Vec<f32>>();
@@ -104,7 +103,10 @@ fn a_material_of_the_caller_stores_fragments() {
         layout: &layout,
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
     });
-    let material = pipeline(device, &renderer, std::str::from_utf8(&file.bytes).unwrap(), &layout);
+    let passes: Vec<GeometryPass> = renderer.geometry_passes().cloned().collect();
+    let names: Vec<_> = passes.iter().map(|pass| (pass.name.as_str(), pass.function.as_str())).collect();
+    assert_eq!(names, [("store", "store_fragment")]);
+    let material = pipeline(device, &renderer, &passes[0], &layout);
 
     let offscreen = Offscreen::new(device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
@@ -116,4 +118,29 @@ fn a_material_of_the_caller_stores_fragments() {
     renderer.render(&output, draw).unwrap();
     let kept = kept::kept(&renderer, &read_buffers(&stage, &renderer), &sheets());
     assert_eq!(kept, kept_words(&PLAIN, &sheets(), Some(3)));
+}
+
+/// Both constructors of shaders give the same passes, in the order of a frame, with the samples that the description chooses.
+#[test]
+fn geometry_passes_have_their_functions_and_samples() {
+    let stage = device();
+    let registry = Registry::builtin();
+    let variant = technique("ab_sb", &[("samples", "coverage")]);
+    let request = Request { targets: &[target("wgsl").unwrap()], form: Form::Module, prefix: "glass", group: GROUP };
+    let generation = generate(&variant, &request, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let plan = &generation.plans[0].plan;
+    let linking = Linking { profile: Profile::Portable, form: Form::Module, prefix: "glass".to_owned(), group: GROUP };
+    let program = link(plan, &linking, &registry).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+    let shaders =
+        [Shaders::from_generation(&generation, "wgsl", GROUP).unwrap(), Shaders::from_program(plan, &program)];
+    let [generated, linked] = shaders.map(|shaders| {
+        let renderer = renderer(&stage, &shaders, &settings()).unwrap();
+        renderer.geometry_passes().cloned().collect::<Vec<_>>()
+    });
+    assert_eq!(generated, linked);
+    let found: Vec<_> = linked.iter().map(|pass| (&*pass.name, &*pass.function, pass.multisample.count)).collect();
+    assert_eq!(found, [("count", "glass_count_fragment", 4), ("store", "glass_store_fragment", 4)]);
+    let plain =
+        Shaders::from_program(plan, &link(plan, &Linking { form: Form::Program, ..linking }, &registry).unwrap());
+    assert_eq!(renderer(&stage, &plain, &settings()).unwrap().geometry_passes().count(), 0);
 }

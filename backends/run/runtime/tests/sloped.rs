@@ -2,7 +2,7 @@
 //! keep the best of exactly these fragments.
 
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Output, Renderer};
+use fragbuf_runtime::Output;
 
 use crate::capture::compare;
 use crate::kept;
@@ -66,7 +66,7 @@ fn captured(stage: &Headless, vertices: &wgpu::Buffer, count: u32) -> Vec<Quad> 
             module: &module,
             entry_point: Some("append"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(Renderer::geometry_target())],
+            targets: &[Some(wgpu::TextureFormat::R8Unorm.into())],
         }),
         multiview_mask: None,
         cache: None,
@@ -86,7 +86,7 @@ fn captured(stage: &Headless, vertices: &wgpu::Buffer, count: u32) -> Vec<Quad> 
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: list.as_entire_binding() }],
     });
-    let target = Offscreen::new(device, Renderer::geometry_target().format, SIZE, SIZE).unwrap();
+    let target = Offscreen::new(device, wgpu::TextureFormat::R8Unorm, SIZE, SIZE).unwrap();
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };

@@ -30,7 +30,7 @@ pub fn glsl_shaders(variant: &Variant) -> Shaders {
         Module { pass: file.pass.clone(), entry_points: vec![EntryPoint { name, stage }], code }
     });
     let plan = generation.plans[0].plan.clone();
-    Shaders { modules: modules.collect(), plan, group: 0, profile: targets[0].profile }
+    Shaders { modules: modules.collect(), functions: Vec::new(), plan, group: 0, profile: targets[0].profile }
 }
 
 /// Links a program without generating files.

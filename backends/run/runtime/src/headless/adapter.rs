@@ -47,8 +47,8 @@ pub fn adapters() -> Vec<wgpu::AdapterInfo> {
     suitable_adapters().iter().map(wgpu::Adapter::get_info).collect()
 }
 
-/// Returns the chosen adapter.
-pub(super) fn choose(choice: &Choice) -> Result<wgpu::Adapter, Error> {
+/// Returns the chosen adapter, for [`open_device`](super::open_device) or a device of the caller.
+pub fn adapter(choice: &Choice) -> Result<wgpu::Adapter, Error> {
     let adapters = suitable_adapters();
     let available = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let chosen = adapters.into_iter().find(|adapter| {

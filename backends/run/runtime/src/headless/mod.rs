@@ -4,7 +4,7 @@ mod adapter;
 mod interlock;
 mod offscreen;
 
-pub use adapter::{Choice, adapters};
+pub use adapter::{Choice, adapter, adapters};
 pub use interlock::open_device;
 pub use offscreen::{BLENDED, Offscreen};
 
@@ -39,7 +39,7 @@ impl Headless {
     /// Opens the chosen adapter with all its limits and the features of `required`, and with timestamps, coherent buffers, 64-bit
     /// atomics, early depth tests, passthrough shaders and interlock if available. Blocks.
     pub fn open(choice: &Choice, required: wgpu::Features) -> Result<Self, Error> {
-        let adapter = adapter::choose(choice)?;
+        let adapter = adapter(choice)?;
         let missing = required - adapter.features();
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
