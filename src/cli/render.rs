@@ -8,7 +8,7 @@ use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
-use super::rendering::{RenderRequest, render};
+use super::rendering::{RenderRequest, render, select};
 use super::statistics::statistics;
 use super::view::{View, scenes};
 
@@ -45,13 +45,14 @@ impl Render {
             opaque: opaque.as_ref(),
             held: 0,
         };
-        let result = render(&request, &mut input, view, &scene, &progress)?;
+        let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
+        let result = render(&request, &mut input, (view, &mut selection), &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
         drop(progress);
         if view.json {
-            output::print(&output::json(&statistics(&self.description, &result, &scene)))?;
+            output::print(&output::json(&statistics(&self.description, &result, &selection, &scene)))?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Sce
 
 use super::assignment::attribute;
 use super::attributes::{self, ModelAttribute};
-use super::device::{self, DeviceRequest, SelectedDevice};
+use super::device::{self, DeviceRequest};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
 use super::picture;
@@ -46,14 +46,14 @@ pub(crate) struct View {
     /// Write linear values to the PNG instead of sRGB
     #[arg(long)]
     pub(crate) linear: bool,
-    /// `auto`: a GPU if there is one, else the CPU device. `cpu`: the CPU device, which needs no driver. NAME: an adapter whose
-    /// name contains NAME
+    /// `auto`: a GPU if there is one, else the CPU device, or a software driver for frames of many fragments. `cpu`: the CPU device,
+    /// which needs no driver. NAME: an adapter whose name contains NAME
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
-    device: DeviceRequest,
+    pub(crate) device: DeviceRequest,
     /// Order of same-pixel fragments on the CPU device: as submitted, or with their shaders interleaved by a seed. Fixed-function
     /// tests and blending keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
-    order: Option<FragmentOrder>,
+    pub(crate) order: Option<FragmentOrder>,
     /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
     /// slices of rows
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
@@ -156,11 +156,6 @@ impl View {
             }
         };
         SceneView { scene, camera, is_unlit }
-    }
-
-    /// Selects the device.
-    pub(crate) fn select_device(&self) -> Result<SelectedDevice, Failure> {
-        self.device.select(self.order)
     }
 
     /// Checks the names of generated scenes and the output, before any scene is loaded.
