@@ -231,6 +231,15 @@ fn auto_selects_the_device_by_the_work() {
         assert!(gpu.is_some() || reason.starts_with("estimated to be faster than "), "{size}: {reason}");
         assert_eq!(cubes("kplus_array", size), (device, reason), "the selection does not depend on time");
     }
+    // The camera decides how many fragments there are.
+    let (device, _) = automatic(
+        &out,
+        &["kplus_array", "--scene", "builtin:cubes", "--size", "1024x1024", "--camera", "eye:0,0,60,fov:60"],
+    );
+    assert_eq!(Some(device.as_str()), gpu.or(many), "a frame of few fragments has many pixels");
+    let (device, _) =
+        automatic(&out, &["ab_sb", "--scene", "builtin:cubes", "--size", "320x240", "--camera", "eye:0,0,60,fov:60"]);
+    assert_eq!(Some(device.as_str()), gpu.or(few));
 }
 
 /// What a software driver cannot draw is drawn on the CPU device: an order of fragments, and more layers than Mesa's loops can sort.

@@ -11,6 +11,7 @@
 mod attributes;
 mod bindings;
 mod build_script;
+mod camera;
 mod cases;
 mod catalogue;
 mod check;

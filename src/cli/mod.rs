@@ -5,6 +5,8 @@
 mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;
+#[cfg(feature = "pictures")]
+mod camera;
 mod check;
 #[cfg(feature = "pictures")]
 mod compare;

@@ -8,6 +8,7 @@ use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Sce
 
 use super::assignment::attribute;
 use super::attributes::{self, ModelAttribute};
+use super::camera::CameraRequest;
 use super::device::{self, DeviceRequest};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
@@ -28,9 +29,11 @@ pub(crate) struct View {
     /// PNG file to write, or `-` for stdout
     #[arg(long, value_name = "PNG|-", value_parser = picture_path)]
     pub(crate) out: PathBuf,
-    /// Three-quarter view of the whole scene, or positions used as clip-space positions
-    #[arg(long, value_enum, default_value_t = CameraArgument::Auto)]
-    camera: CameraArgument,
+    /// `auto`: a three-quarter view of the whole scene. `orbit`: the whole scene from a direction in degrees: 0,0 is in front, 90,0 on
+    /// the right, 0,90 above. `eye`: from a point of the model to its centre, or to `,target:X,Y,Z`. Both take the vertical field of
+    /// view as `,fov:DEGREES`, 40 by default. `clip`: positions are clip-space positions
+    #[arg(long, default_value = "auto", value_name = "auto|clip|orbit:AZIMUTH,ELEVATION|eye:X,Y,Z")]
+    camera: CameraRequest,
     /// Light the scene from the camera position, or use its colours unlit
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
@@ -67,12 +70,6 @@ pub(crate) struct View {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum CameraArgument {
-    Auto,
-    Clip,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
 enum Shading {
     Lit,
     #[value(alias = "flat")]
@@ -92,7 +89,7 @@ impl View {
     pub(crate) fn scene_views(&self, attributes: &[ModelAttribute]) -> Result<(SceneView, Option<SceneView>), Failure> {
         let mut scene = self.open(&self.scene, attributes, self.memory)?;
         let Some(opaque) = &self.opaque else {
-            let camera = self.camera(&[&scene]);
+            let camera = self.camera(&[&scene])?;
             return Ok((self.scene_view(scene, camera), None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
@@ -100,7 +97,7 @@ impl View {
         scene.share_placement(&mut opaque);
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
-        let camera = self.camera(&[&scene, &opaque]);
+        let camera = self.camera(&[&scene, &opaque])?;
         Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
     }
 
@@ -123,7 +120,7 @@ impl View {
         for warning in &scene.warnings {
             output::warn_code(warning.kind.code(), &warning.to_string());
         }
-        if matches!(self.camera, CameraArgument::Clip) {
+        if self.camera == CameraRequest::Clip {
             scene.use_model_coordinates();
         }
         Ok(scene)
@@ -140,11 +137,9 @@ impl View {
         (u64::from(self.size.0) * u64::from(self.size.1)).saturating_mul(bytes)
     }
 
-    fn camera(&self, scenes: &[&Scene]) -> Camera {
-        match self.camera {
-            CameraArgument::Auto => Camera::framing(scenes, self.size.0 as f32 / self.size.1 as f32),
-            CameraArgument::Clip => Camera::clip(),
-        }
+    fn camera(&self, scenes: &[&Scene]) -> Result<Camera, Failure> {
+        let camera = self.camera.place(scenes, self.size.0 as f32 / self.size.1 as f32);
+        camera.map_err(|error| Failure::Usage(format!("`--camera`: {error}")))
     }
 
     fn scene_view(&self, mut scene: Scene, camera: Camera) -> SceneView {
