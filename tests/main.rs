@@ -27,6 +27,7 @@ mod memory;
 mod messages;
 mod multisample;
 mod names;
+mod new_crate;
 mod no_op_rows;
 mod opaque;
 mod oracle;
