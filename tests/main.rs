@@ -40,3 +40,4 @@ mod tint;
 mod user_files;
 mod validators;
 mod vocabulary;
+mod watch;

@@ -45,6 +45,7 @@ mod targets;
 mod uniforms;
 #[cfg(feature = "pictures")]
 mod view;
+mod watch;
 
 use std::process::ExitCode;
 

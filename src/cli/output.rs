@@ -195,7 +195,6 @@ pub(crate) fn warn(text: &str) {
 }
 
 /// Prints a note on stderr.
-#[cfg(feature = "pictures")]
 pub(crate) fn note(text: &str) {
     // Ignore the error: there is no other stream to report it on.
     let _ = std::io::stderr().write_all(message_text("note", None, text).as_bytes());

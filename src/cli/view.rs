@@ -126,6 +126,12 @@ impl View {
         Ok(scene)
     }
 
+    /// Returns the paths of the models among the scenes.
+    pub(crate) fn models(&self) -> impl Iterator<Item = PathBuf> {
+        let scenes = std::iter::once(&self.scene).chain(&self.opaque);
+        scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from)
+    }
+
     /// Returns the memory that is left beside scenes.
     pub(crate) fn memory_beside(&self, scenes: &[&SceneView]) -> Result<Budget, Failure> {
         let bytes = scenes.iter().fold(0, |sum: u64, view| sum.saturating_add(view.scene.bytes()));
