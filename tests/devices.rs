@@ -176,14 +176,106 @@ fn the_cpu_device_renders_without_a_driver() {
     assert_eq!(listed.status.code(), Some(0), "{}", stderr(&listed));
     let listed: Value = serde_json::from_slice(&listed.stdout).unwrap();
     assert_eq!(listed.as_array().unwrap().len(), 1, "{listed}");
+    assert_eq!(listed[0]["auto"], "always");
     let common = ["--scene", "builtin:cubes", "--size", "32x24", "--json", "--out", out.to_str().unwrap()];
     let output = run(&[&["render", "kplus_array"], &common[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let statistics: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&statistics["device"], &statistics["backend"]), (&"cpu".into(), &"interpreter".into()), "{statistics}");
+    assert_eq!(statistics["device_reason"], "no adapter found");
     assert!(
         statistics["fragments"]["generated"].as_u64().unwrap() > 100 && statistics["ms"]["store"].is_number(),
         "{statistics}"
     );
     assert_eq!(read(&out).0, 32);
+}
+
+/// Returns the devices of `fragbuf devices --json`: the name, and when `auto` selects it.
+fn listed() -> Vec<(String, String)> {
+    let output = fragbuf(&["devices", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    rows.iter().map(|row| (text(&row["name"]), text(&row["auto"]))).collect()
+}
+
+/// Renders with `--device auto` and returns the device and the reason: those of the JSON, which a note on stderr has without `--json`.
+fn automatic(out: &Path, arguments: &[&str]) -> (String, String) {
+    let run = |more: &[&str]| {
+        let output = fragbuf(&[&["render"], arguments, &["--out", out.to_str().unwrap()], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+        output
+    };
+    let with_json = run(&["--json"]);
+    let statistics: Value = serde_json::from_slice(&with_json.stdout).unwrap();
+    assert_eq!(stderr(&with_json), "", "{arguments:?}");
+    let text = |name: &str| statistics[name].as_str().unwrap().to_owned();
+    let (device, reason) = (text("device"), text("device_reason"));
+    assert_eq!(stderr(&run(&[])), format!("note: rendering on {device}: {reason}\n"), "{arguments:?}");
+    (device, reason)
+}
+
+/// Without a GPU `auto` selects the CPU device for little work and a driver for much; a GPU for both.
+#[test]
+fn auto_selects_the_device_by_the_work() {
+    let folder = folder("auto");
+    let out = folder.join("o.png");
+    let devices = listed();
+    let auto = |when: &str| devices.iter().find(|(_, auto)| auto == when).map(|(name, _)| name.as_str());
+    let (gpu, few, many) = (auto("always"), auto("frames of few fragments"), auto("frames of many fragments"));
+    assert!(gpu.is_some() != (few.is_some() && many.is_some()), "{devices:?}");
+    let cubes = |key: &str, size: &str| automatic(&out, &[key, "--scene", "builtin:cubes", "--size", size]);
+    for (size, expected) in [("48x32", few), ("1024x1024", many)] {
+        let (device, reason) = cubes("kplus_array", size);
+        assert_eq!(Some(device.as_str()), gpu.or(expected), "{size}: {reason}");
+        assert!(gpu.is_some() || reason.starts_with("estimated to be faster than "), "{size}: {reason}");
+        assert_eq!(cubes("kplus_array", size), (device, reason), "the selection does not depend on time");
+    }
+    // The camera decides how many fragments there are.
+    let (device, _) = automatic(
+        &out,
+        &["kplus_array", "--scene", "builtin:cubes", "--size", "1024x1024", "--camera", "eye:0,0,60,fov:60"],
+    );
+    assert_eq!(Some(device.as_str()), gpu.or(many), "a frame of few fragments has many pixels");
+    let (device, _) =
+        automatic(&out, &["ab_sb", "--scene", "builtin:cubes", "--size", "320x240", "--camera", "eye:0,0,60,fov:60"]);
+    assert_eq!(Some(device.as_str()), gpu.or(few));
+}
+
+/// What a software driver cannot draw is drawn on the CPU device: an order of fragments, and more layers than Mesa's loops can sort.
+#[test]
+fn auto_selects_the_cpu_device_where_a_driver_is_unsuitable() {
+    let folder = folder("auto-cpu");
+    let out = folder.join("o.png");
+    let view = ["--scene", "builtin:cubes", "--size", "800x800"];
+    let ordered = automatic(&out, &[&["kb", "--order", "shuffle:1"], &view[..]].concat());
+    assert_eq!(ordered, ("cpu".to_owned(), "the only device with `--order`".to_owned()));
+    if listed().iter().any(|(_, auto)| auto == "frames of many fragments") {
+        let (device, reason) = automatic(&out, &[&["ab_ll", "--set", "sort.layers=512"], &view[..]].concat());
+        assert!(device == "cpu" && reason.contains("may not sort more than 256 layers"), "{device}: {reason}");
+    }
+    // A device that is named is used, or it is an error that names another one.
+    let named =
+        fragbuf(&[&["render", "kb_mdt64", "--device", "llvmpipe", "--out", out.to_str().unwrap()], &view[..]].concat());
+    assert_eq!(named.status.code(), Some(0), "{}", stderr(&named));
+    assert!(stderr(&named).starts_with("note: rendering on llvmpipe"), "{}", stderr(&named));
+}
+
+/// Drivers and their layers print nothing where the environment has no `XDG_RUNTIME_DIR`, as in containers.
+#[test]
+fn no_driver_prints_on_stderr() {
+    let folder = folder("runtime-dir");
+    let out = folder.join("o.png");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fragbuf"));
+        command.args(arguments).env_remove("XDG_RUNTIME_DIR").env_remove("WAYLAND_DISPLAY");
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+        stderr(&output)
+    };
+    assert_eq!(run(&["devices"]), "");
+    let view = ["--scene", "builtin:cubes", "--size", "16x16", "--out", out.to_str().unwrap()];
+    let printed = run(&[&["render", "ab_sb", "--device", "llvmpipe"], &view[..]].concat());
+    assert!(printed.starts_with("note: rendering on llvmpipe") && printed.lines().count() == 1, "{printed}");
+    assert_eq!(run(&[&["render", "ab_sb", "--json"], &view[..]].concat()), "");
 }

@@ -176,7 +176,7 @@ fn draw_frame(host: &Host, renderer: &mut Renderer, output: &Output<'_>) -> Resu
         let counters = renderer.counters(&mut encoder).ok_or("the technique counts no losses")?;
         queue.submit([encoder.finish()]);
         let counters = counters.wait(device)?;
-        let lost = counters.lost() - u64::from(counters.get("displaced"));
+        let lost = counters.lost();
         match counters.get("pool_exhausted") {
             0 if lost == 0 => return Ok(()),
             0 => return Err(format!("{lost} fragments are lost").into()),

@@ -31,6 +31,16 @@ pub fn bindings(name: &str, source: &str, generation: &Generation, group: u32, f
     text
 }
 
+/// Returns the name of the module that [`bindings`] writes for a description, a target, a pass or a buffer, if no other has the same name.
+pub fn module_name(name: &str) -> String {
+    rust::snake_case(name)
+}
+
+/// Returns the parameters of the function that [`bindings`] writes for a formula of a plan, in order.
+pub fn size_parameters(formula: &Quantity, plan: &Plan) -> Vec<SymbolId> {
+    rust::formula(formula, &plan.symbols).parameters
+}
+
 fn plan_name(index: usize) -> String {
     if index == 0 { "plan".to_owned() } else { format!("plan_{index}") }
 }

@@ -18,7 +18,7 @@ mod bindings;
 mod error;
 mod rust;
 
-pub use bindings::bindings;
+pub use bindings::{bindings, module_name, size_parameters};
 pub use error::Error;
 
 use std::fs;

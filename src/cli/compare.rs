@@ -12,10 +12,10 @@ use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
-use super::rendering::{RenderRequest, render};
+use super::rendering::{RenderRequest, render, select};
 use super::statistics::{FragmentCounts, statistics};
 use super::uniforms;
-use super::view::{View, scenes};
+use super::view::{SceneView, View, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -59,14 +59,21 @@ impl Compare {
         let attributes = model_attributes(&[&first.variant, &second.variant], &view.attributes)?;
         let (scene, opaque) = view.scene_views(&attributes)?;
         let opaque = opaque.as_ref();
-        let one = |side: &mut Side<'_>, held: u64| {
-            let Side { description, input, set, uniforms, .. } = side;
-            // The hit ratio needs every event.
-            let request = RenderRequest { description, set, uniforms, count_all: true, opaque, held };
-            render(&request, input, view, &scene, &progress)
+        let mut selection = {
+            let ((first, first_input), (second, second_input)) = (first.request(opaque, 0), second.request(opaque, 0));
+            select(view, &scene, &mut [(&first, first_input), (&second, second_input)])?
         };
-        let first = one(&mut first, view.image_bytes(DIFFERENCE))?;
-        let second = one(&mut second, view.image_bytes(DIFFERENCE + IMAGE))?;
+        let mut one = |side: &mut Side<'_>, held: u64| {
+            let (request, input) = side.request(opaque, held);
+            render(&request, input, (view, &mut selection), &scene, &progress)
+        };
+        let mut left = one(&mut first, view.image_bytes(DIFFERENCE))?;
+        let right = one(&mut second, view.image_bytes(DIFFERENCE + IMAGE))?;
+        if left.device != right.device {
+            // The second rendering has left a device that could not draw it.
+            left = one(&mut first, view.image_bytes(DIFFERENCE + IMAGE))?;
+        }
+        let (first, second) = (left, right);
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         let pixels = first.stats.pixels.iter().map(shown).zip(second.stats.pixels.iter().map(shown));
         let difference = Difference::of(pixels);
@@ -80,8 +87,8 @@ impl Compare {
                 "different_pixels": difference.count,
                 "heat_map": COLORS.into_iter().zip(difference.scale()).collect::<BTreeMap<_, _>>(),
                 "hit_ratio": hits,
-                "first": statistics(&self.first, &first, &scene),
-                "second": statistics(&self.second, &second, &scene),
+                "first": statistics(&self.first, &first, &selection, &scene),
+                "second": statistics(&self.second, &second, &selection, &scene),
             })));
         }
         let psnr = difference.psnr().map_or("infinite".to_owned(), |psnr| format!("{psnr:.2} dB"));
@@ -128,6 +135,15 @@ struct Side<'a> {
     variant: Variant,
     set: Vec<(String, String)>,
     uniforms: Vec<(String, String)>,
+}
+
+impl Side<'_> {
+    /// Returns the request to render it while `held` bytes of other images are in memory.
+    fn request<'a>(&'a mut self, opaque: Option<&'a SceneView>, held: u64) -> (RenderRequest<'a>, &'a mut Input) {
+        let Side { description, input, set, uniforms, .. } = self;
+        // The hit ratio needs every event.
+        (RenderRequest { description, set, uniforms, count_all: true, opaque, held }, input)
+    }
 }
 
 /// The colours of the heat map at equal distances.

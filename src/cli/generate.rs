@@ -8,6 +8,7 @@ use fragbuf::{Form, Generation, Registry, Request, generate, manifest};
 use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
+use super::watch::watch;
 use super::{limits, stale, targets};
 
 #[derive(clap::Args)]
@@ -42,6 +43,9 @@ pub(crate) struct Generate {
     /// Remove files of an earlier run from the output folder: those that its manifest lists and this run does not write
     #[arg(long)]
     clean: bool,
+    /// Generate again whenever the description, or a user file that it names, changes. Ctrl-C ends
+    #[arg(long)]
+    watch: bool,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -52,6 +56,17 @@ enum FormArgument {
 
 impl Generate {
     pub(crate) fn run(&self) -> Result<(), Failure> {
+        if !self.watch {
+            return self.generate(&mut Vec::new());
+        }
+        let registry = Registry::builtin();
+        let description = self.description.iter().filter(|description| Input::is_file(description, &registry));
+        let files = description.map(PathBuf::from).chain(self.with.iter().cloned()).collect();
+        watch(files, "give a .fragbuf file", |files| self.generate(files))
+    }
+
+    /// Writes everything once, and adds the files that it reads to `files`.
+    fn generate(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
         let registry = Registry::builtin();
         let targets = targets::several(&self.target)?;
         let form = match self.form {
@@ -66,7 +81,9 @@ impl Generate {
             if form == Form::Module {
                 input = input.for_module();
             }
-            let variant = input.variant(&self.set, &registry)?;
+            let variant = input.variant(&self.set, &registry);
+            files.extend_from_slice(input.files());
+            let variant = variant?;
             let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() && !self.all {
                 return Err(targets::unsupported(&argument, &variant, &request, &generation));

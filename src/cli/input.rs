@@ -1,6 +1,6 @@
 //! Reads the first argument of most commands: the key of a technique, or the file of a description.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fragbuf::load::{Description, load};
 use fragbuf::{Diagnostic, Registry, Variant, source_file};
@@ -12,6 +12,8 @@ use super::output::{self, Failure};
 pub(crate) struct Input {
     description: Description,
     sources: Vec<(String, String)>,
+    /// The files of the description and of its rows, as far as they were read.
+    files: Vec<PathBuf>,
     /// The warnings that are printed already: `render` loads a description once per redraw.
     warned: Vec<Diagnostic>,
     /// Whether the caller's own shader may read attributes that the description does not.
@@ -21,24 +23,35 @@ pub(crate) struct Input {
 impl Input {
     /// Reads the technique of this key, or the file of this name.
     pub(crate) fn read(argument: &str, registry: &Registry) -> Result<Self, Failure> {
-        let path = Path::new(argument);
-        let is_file =
-            path.extension().is_some_and(|extension| extension == "fragbuf") || (path.exists() && !path.is_dir());
-        if registry.technique(argument).is_some() || !is_file {
+        if !Input::is_file(argument, registry) {
             return Ok(Input::of(Description::Technique(argument.to_owned())));
         }
+        let path = Path::new(argument);
         let text = source_file::read(path).map_err(|error| Failure::source(path, &error))?;
         let description = Description::Text { file: argument.to_owned(), text };
         Ok(Input::of(description))
     }
 
+    /// Returns whether the argument names a file, and not a technique.
+    pub(crate) fn is_file(argument: &str, registry: &Registry) -> bool {
+        let path = Path::new(argument);
+        let is_file =
+            path.extension().is_some_and(|extension| extension == "fragbuf") || (path.exists() && !path.is_dir());
+        is_file && registry.technique(argument).is_none()
+    }
+
     fn of(description: Description) -> Self {
-        Input { description, sources: Vec::new(), warned: Vec::new(), is_module: false }
+        Input { description, sources: Vec::new(), files: Vec::new(), warned: Vec::new(), is_module: false }
     }
 
     /// Prints no warning of attributes, which the caller's own shader may read.
     pub(crate) fn for_module(self) -> Self {
         Input { is_module: true, ..self }
+    }
+
+    /// Returns the files that the last variant was read from; none if it is a technique.
+    pub(crate) fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// Returns the variant, after `--set`.
@@ -55,6 +68,9 @@ impl Input {
     ) -> Result<Variant, Failure> {
         let loaded = load(&self.description, set, defaults, registry);
         self.sources = loaded.all_sources();
+        if let Description::Text { .. } = &self.description {
+            self.files = loaded.sources.iter().map(|(file, _)| PathBuf::from(file)).collect();
+        }
         let variant = loaded.variant.map_err(|diagnostics| self.failure(diagnostics))?;
         self.warn(&variant);
         Ok(variant)

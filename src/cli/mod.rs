@@ -5,6 +5,8 @@
 mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;
+#[cfg(feature = "pictures")]
+mod camera;
 mod check;
 #[cfg(feature = "pictures")]
 mod compare;
@@ -22,6 +24,7 @@ mod list;
 mod manual;
 #[cfg(feature = "pictures")]
 mod memory;
+mod new;
 mod output;
 mod page;
 #[cfg(feature = "pictures")]
@@ -42,6 +45,7 @@ mod targets;
 mod uniforms;
 #[cfg(feature = "pictures")]
 mod view;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -66,6 +70,8 @@ struct Arguments {
 enum Command {
     /// List the techniques with their axes, memory, passes and soundness tier per target
     List(list::List),
+    /// Create a crate with a description, a build script that generates its passes, and a program that lists them
+    New(new::New),
     /// Show the plan of a description, its manifest, or its shaders for one target
     Show(show::Show),
     /// Print the reference of the closure language
@@ -96,6 +102,7 @@ pub(crate) fn run() -> ExitCode {
     output::set_messages(arguments.message_format, arguments.message_color);
     let result = match arguments.command {
         Command::List(list) => list.run(),
+        Command::New(new) => new.run(),
         Command::Show(show) => show.run(),
         Command::Language(language) => language.run(),
         Command::Explain(explain) => explain.run(),

@@ -66,7 +66,11 @@ fn message_text(severity: &str, code: Option<&str>, text: &str) -> String {
         (MessageFormat::Json, _) => format!("{}\n", json!({ "severity": severity, "code": code, "message": text })),
         (MessageFormat::Text, false) => format!("{label}: {text}\n"),
         (MessageFormat::Text, true) => {
-            let color = if severity == "error" { 31 } else { 33 };
+            let color = match severity {
+                "error" => 31,
+                "warning" => 33,
+                _ => 36,
+            };
             format!("\x1b[1;{color}m{label}\x1b[0m: {text}\n")
         }
     }
@@ -177,7 +181,9 @@ impl From<fragbuf_runtime::Error> for Failure {
         match error {
             fragbuf_runtime::Error::Unsupported { .. } => Failure::Input(text),
             fragbuf_runtime::Error::BadValue { .. } => Failure::Usage(text),
-            _ => Failure::Device(text),
+            // The CPU device has the same budget.
+            fragbuf_runtime::Error::OverBudget(_) => Failure::Device(text),
+            _ => Failure::Device(format!("{text}; `--device cpu` renders without a driver")),
         }
     }
 }
@@ -186,6 +192,12 @@ impl From<fragbuf_runtime::Error> for Failure {
 pub(crate) fn warn(text: &str) {
     // Ignore the error: there is no other stream to report it on.
     let _ = std::io::stderr().write_all(message_text("warning", None, text).as_bytes());
+}
+
+/// Prints a note on stderr.
+pub(crate) fn note(text: &str) {
+    // Ignore the error: there is no other stream to report it on.
+    let _ = std::io::stderr().write_all(message_text("note", None, text).as_bytes());
 }
 
 /// Prints a warning with its code on stderr.
@@ -206,4 +218,15 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 /// Formats pretty JSON with a final newline.
 pub(crate) fn json(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
+}
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::Failure;
+
+    #[test]
+    fn a_failing_driver_is_an_error_that_names_the_cpu_device() {
+        let lost = Failure::from(fragbuf_runtime::Error::DeviceLost);
+        assert!(matches!(lost, Failure::Device(text) if text.ends_with("; `--device cpu` renders without a driver")));
+    }
 }

@@ -1,5 +1,7 @@
 //! `fragbuf render`: renders a scene through one description and prints the statistics of its frame.
 
+use std::path::PathBuf;
+
 use fragbuf::Registry;
 
 use super::assignment::{assignment, uniform};
@@ -8,9 +10,10 @@ use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
-use super::rendering::{RenderRequest, render};
+use super::rendering::{RenderRequest, render, select};
 use super::statistics::statistics;
 use super::view::{View, scenes};
+use super::watch::watch;
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -25,18 +28,38 @@ pub(crate) struct Render {
     uniforms: Vec<(String, String)>,
     #[command(flatten)]
     view: View,
+    /// Render again whenever the description, a user file that it names, a model or a file that a model names changes. Ctrl-C ends
+    #[arg(long)]
+    watch: bool,
 }
 
 impl Render {
     pub(crate) fn run(&self) -> Result<(), Failure> {
+        self.view.check()?;
+        if !self.watch {
+            return self.render(&mut Vec::new());
+        }
+        if picture::is_stdout(&self.view.out) {
+            return Err(Failure::Usage("`--watch` writes many images: give a file to `--out`".to_owned()));
+        }
+        let is_file = Input::is_file(&self.description, &Registry::builtin());
+        let description = is_file.then(|| PathBuf::from(&self.description));
+        let files = description.into_iter().chain(self.view.models()).collect();
+        watch(files, "give a .fragbuf file, or a model to `--scene`", |files| self.render(files))
+    }
+
+    /// Renders once, and adds the files that it reads to `files`.
+    fn render(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
         let view = &self.view;
-        view.check()?;
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
         let mut input = Input::read(&self.description, &registry)?;
-        let variant = input.variant(&self.set, &registry)?;
+        let variant = input.variant(&self.set, &registry);
+        files.extend_from_slice(input.files());
+        let variant = variant?;
         let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
+        files.extend([Some(&scene), opaque.as_ref()].into_iter().flatten().flat_map(|view| view.scene.files.clone()));
         let request = RenderRequest {
             description: &self.description,
             set: &self.set,
@@ -45,13 +68,14 @@ impl Render {
             opaque: opaque.as_ref(),
             held: 0,
         };
-        let result = render(&request, &mut input, view, &scene, &progress)?;
+        let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
+        let result = render(&request, &mut input, (view, &mut selection), &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
         drop(progress);
         if view.json {
-            output::print(&output::json(&statistics(&self.description, &result, &scene)))?;
+            output::print(&output::json(&statistics(&self.description, &result, &selection, &scene)))?;
         }
         Ok(())
     }

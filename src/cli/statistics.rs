@@ -4,11 +4,16 @@ use fragbuf::vocabulary::Capability;
 use fragbuf_frame::{LoopEnd, LoopReport, PassTime};
 use serde_json::{Map, Value, json};
 
-use super::rendering::RenderResult;
+use super::rendering::{DeviceSelection, RenderResult};
 use super::view::SceneView;
 
 /// Returns the statistics of one frame. Counts are null if the description does not count.
-pub(crate) fn statistics(description: &str, result: &RenderResult, scene: &SceneView) -> Value {
+pub(crate) fn statistics(
+    description: &str,
+    result: &RenderResult,
+    selection: &DeviceSelection,
+    scene: &SceneView,
+) -> Value {
     let stats = &result.stats;
     let times = stats.times.iter().flatten();
     let ms: Map<String, Value> = times.map(|time| (time.pass.clone(), milliseconds(time))).collect();
@@ -16,6 +21,7 @@ pub(crate) fn statistics(description: &str, result: &RenderResult, scene: &Scene
     json!({
         "description": description,
         "device": result.device,
+        "device_reason": selection.reason,
         "backend": result.backend,
         "target": result.target,
         "triangles": scene.scene.triangles(),

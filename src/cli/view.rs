@@ -8,7 +8,8 @@ use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Sce
 
 use super::assignment::attribute;
 use super::attributes::{self, ModelAttribute};
-use super::device::{self, DeviceRequest, SelectedDevice};
+use super::camera::CameraRequest;
+use super::device::{self, DeviceRequest};
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
 use super::picture;
@@ -28,9 +29,11 @@ pub(crate) struct View {
     /// PNG file to write, or `-` for stdout
     #[arg(long, value_name = "PNG|-", value_parser = picture_path)]
     pub(crate) out: PathBuf,
-    /// Three-quarter view of the whole scene, or positions used as clip-space positions
-    #[arg(long, value_enum, default_value_t = CameraArgument::Auto)]
-    camera: CameraArgument,
+    /// `auto`: a three-quarter view of the whole scene. `orbit`: the whole scene from a direction in degrees: 0,0 is in front, 90,0 on
+    /// the right, 0,90 above. `eye`: from a point of the model to its centre, or to `,target:X,Y,Z`. Both take the vertical field of
+    /// view as `,fov:DEGREES`, 40 by default. `clip`: positions are clip-space positions
+    #[arg(long, default_value = "auto", value_name = "auto|clip|orbit:AZIMUTH,ELEVATION|eye:X,Y,Z")]
+    camera: CameraRequest,
     /// Light the scene from the camera position, or use its colours unlit
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
@@ -46,14 +49,14 @@ pub(crate) struct View {
     /// Write linear values to the PNG instead of sRGB
     #[arg(long)]
     pub(crate) linear: bool,
-    /// `auto`: a GPU if there is one, else the CPU device. `cpu`: the CPU device, which needs no driver. NAME: an adapter whose
-    /// name contains NAME
+    /// `auto`: a GPU if there is one, else the CPU device, or a software driver for frames of many fragments. `cpu`: the CPU device,
+    /// which needs no driver. NAME: an adapter whose name contains NAME
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
-    device: DeviceRequest,
+    pub(crate) device: DeviceRequest,
     /// Order of same-pixel fragments on the CPU device: as submitted, or with their shaders interleaved by a seed. Fixed-function
     /// tests and blending keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
-    order: Option<FragmentOrder>,
+    pub(crate) order: Option<FragmentOrder>,
     /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
     /// slices of rows
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
@@ -64,12 +67,6 @@ pub(crate) struct View {
     /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CameraArgument {
-    Auto,
-    Clip,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -92,7 +89,7 @@ impl View {
     pub(crate) fn scene_views(&self, attributes: &[ModelAttribute]) -> Result<(SceneView, Option<SceneView>), Failure> {
         let mut scene = self.open(&self.scene, attributes, self.memory)?;
         let Some(opaque) = &self.opaque else {
-            let camera = self.camera(&[&scene]);
+            let camera = self.camera(&[&scene])?;
             return Ok((self.scene_view(scene, camera), None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
@@ -100,7 +97,7 @@ impl View {
         scene.share_placement(&mut opaque);
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
-        let camera = self.camera(&[&scene, &opaque]);
+        let camera = self.camera(&[&scene, &opaque])?;
         Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
     }
 
@@ -123,10 +120,16 @@ impl View {
         for warning in &scene.warnings {
             output::warn_code(warning.kind.code(), &warning.to_string());
         }
-        if matches!(self.camera, CameraArgument::Clip) {
+        if self.camera == CameraRequest::Clip {
             scene.use_model_coordinates();
         }
         Ok(scene)
+    }
+
+    /// Returns the paths of the models among the scenes.
+    pub(crate) fn models(&self) -> impl Iterator<Item = PathBuf> {
+        let scenes = std::iter::once(&self.scene).chain(&self.opaque);
+        scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from)
     }
 
     /// Returns the memory that is left beside scenes.
@@ -140,11 +143,9 @@ impl View {
         (u64::from(self.size.0) * u64::from(self.size.1)).saturating_mul(bytes)
     }
 
-    fn camera(&self, scenes: &[&Scene]) -> Camera {
-        match self.camera {
-            CameraArgument::Auto => Camera::framing(scenes, self.size.0 as f32 / self.size.1 as f32),
-            CameraArgument::Clip => Camera::clip(),
-        }
+    fn camera(&self, scenes: &[&Scene]) -> Result<Camera, Failure> {
+        let camera = self.camera.place(scenes, self.size.0 as f32 / self.size.1 as f32);
+        camera.map_err(|error| Failure::Usage(format!("`--camera`: {error}")))
     }
 
     fn scene_view(&self, mut scene: Scene, camera: Camera) -> SceneView {
@@ -156,11 +157,6 @@ impl View {
             }
         };
         SceneView { scene, camera, is_unlit }
-    }
-
-    /// Selects the device.
-    pub(crate) fn select_device(&self) -> Result<SelectedDevice, Failure> {
-        self.device.select(self.order)
     }
 
     /// Checks the names of generated scenes and the output, before any scene is loaded.

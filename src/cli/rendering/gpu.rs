@@ -1,11 +1,11 @@
 //! Renders a task on an adapter of wgpu's: a GPU or a software driver.
 //!
-//! Input: a task and the chosen adapter. Output: the result, redrawn with a larger pool until no fragment is lost to
+//! Input: a task and the selected adapter. Output: the result, redrawn with a larger pool until no fragment is lost to
 //! overflow, in slices as high as the device's limits and the memory budget allow.
 
-use fragbuf::{Form, Registry, Request, TARGETS, Target, generate, tier};
+use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, Variant, generate, tier};
 use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
-use fragbuf_runtime::headless::{BLENDED, Choice, Headless, Offscreen};
+use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen, supported_interlock};
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, block_on};
 
@@ -21,13 +21,62 @@ use crate::cli::view::SceneView;
 /// Renders the task.
 pub(super) fn render(
     task: &RenderTask<'_>,
-    choice: &Choice,
+    adapter: &wgpu::Adapter,
     (input, registry): (&Input, &Registry),
     redraw: &mut RedrawState,
 ) -> Result<RenderResult, Failure> {
-    let renderer = GpuRenderer::new(task, choice, input, registry)?;
+    let renderer = GpuRenderer::new(task, adapter, input, registry)?;
     let opaque = task.opaque.map(|opaque| renderer.render_opaque(task, opaque, registry)).transpose()?;
     renderer.render(task, opaque, redraw)
+}
+
+/// Returns why the adapter cannot run the variant, as far as its features show it. An invalid variant is an error of the rendering.
+pub(super) fn missing(adapter: &wgpu::Adapter, variant: &Variant, registry: &Registry) -> Option<String> {
+    let candidates = candidates(variant, registry).ok()?;
+    runnable(candidates, adapter).err().map(|error| match error {
+        Error::MissingFeatures(features) => format!("it lacks {features:?}"),
+        other => other.to_string(),
+    })
+}
+
+/// Returns the shaders of every target that the runtime can run, the best soundness tier first.
+fn candidates(variant: &Variant, registry: &Registry) -> Result<Vec<(&'static Target, Shaders)>, Diagnostics> {
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    let generation = generate(variant, &request, registry)?;
+    let mut candidates: Vec<(&str, &'static Target, Shaders)> = Vec::new();
+    for planned in &generation.plans {
+        for target in &planned.targets {
+            if let Ok(shaders) = Shaders::from_generation(&generation, target.name, 0) {
+                candidates.push((tier(planned.plan.soundness, target), target, shaders));
+            }
+        }
+    }
+    candidates.sort_by_key(|(tier, _, _)| *tier);
+    Ok(candidates.into_iter().map(|(_, target, shaders)| (target, shaders)).collect())
+}
+
+/// Returns the first shaders that the adapter can run.
+fn runnable(
+    candidates: Vec<(&'static Target, Shaders)>,
+    adapter: &wgpu::Adapter,
+) -> Result<(&'static Target, Shaders), Error> {
+    let mut failure = Error::Unsupported {
+        what: "any target of the description".to_owned(),
+        help: "choose other values on its axes".to_owned(),
+    };
+    for (target, shaders) in candidates {
+        let missing = shaders.features() - adapter.features();
+        let checked = match missing.is_empty() {
+            true => shaders.check().and_then(|()| shaders.check_interlock(supported_interlock(adapter))),
+            false => Err(Error::MissingFeatures(missing)),
+        };
+        match checked {
+            Ok(()) => return Ok((target, shaders)),
+            Err(error) => failure = error,
+        }
+    }
+    Err(failure)
 }
 
 /// A device, and the shaders for it.
@@ -39,35 +88,16 @@ struct GpuRenderer {
 
 impl GpuRenderer {
     /// Opens a device with the shaders of the target that has the best soundness tier among those that run on it.
-    fn new(task: &RenderTask<'_>, choice: &Choice, input: &Input, registry: &Registry) -> Result<Self, Failure> {
-        let targets: Vec<&'static Target> = TARGETS.iter().collect();
-        let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
-        let generation = generate(task.variant, &request, registry).map_err(|errors| input.failure(errors))?;
-        let mut candidates: Vec<(&str, &'static Target, Shaders)> = Vec::new();
-        for planned in &generation.plans {
-            for target in &planned.targets {
-                if let Ok(shaders) = Shaders::from_generation(&generation, target.name, 0) {
-                    candidates.push((tier(planned.plan.soundness, target), target, shaders));
-                }
-            }
-        }
-        candidates.sort_by_key(|(tier, _, _)| *tier);
-        let mut failure = Failure::Input("no target that runs on a device supports the description".to_owned());
-        for (_, target, shaders) in candidates {
-            if let Err(error) = shaders.check() {
-                failure = error.into();
-                continue;
-            }
-            match Headless::open(choice, shaders.features()) {
-                Ok(headless) => match shaders.check_interlock(headless.interlock) {
-                    Ok(()) => return Ok(GpuRenderer { headless, shaders, target }),
-                    Err(error) => failure = error.into(),
-                },
-                Err(error @ Error::MissingFeatures(_)) => failure = error.into(),
-                Err(error) => return Err(error.into()),
-            }
-        }
-        Err(failure)
+    fn new(
+        task: &RenderTask<'_>,
+        adapter: &wgpu::Adapter,
+        input: &Input,
+        registry: &Registry,
+    ) -> Result<Self, Failure> {
+        let candidates = candidates(task.variant, registry).map_err(|errors| input.failure(errors))?;
+        let (target, shaders) = runnable(candidates, adapter)?;
+        let headless = Headless::open_adapter(adapter, shaders.features())?;
+        Ok(GpuRenderer { headless, shaders, target })
     }
 
     /// Draws frames until no fragment is lost to overflow, in slices as high as the device's memory allows.
@@ -253,7 +283,7 @@ impl Mesh {
             let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
             if size > limit {
                 return Err(Failure::Device(format!(
-                    "the scene's {label} need {size} bytes, and the device allows {limit}"
+                    "the scene's {label} need {size} bytes, and the device allows {limit}: use a smaller scene, or `--device cpu`"
                 )));
             }
             let usage = usage | wgpu::BufferUsages::COPY_DST;

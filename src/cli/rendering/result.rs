@@ -99,10 +99,11 @@ impl RenderResult {
     }
 }
 
-/// Returns whether the description, or `--set`, chooses how many layers a resolve pass holds.
-pub(super) fn sets_layers(variant: &fragbuf::Variant) -> bool {
-    let mut selected = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
-    selected.any(|selected| selected.options.iter().any(|(name, _)| name == LAYERS))
+/// Returns how many layers a resolve pass holds, if the description or `--set` chooses it.
+pub(super) fn fixed_layers(variant: &fragbuf::Variant) -> Option<u32> {
+    let selected = variant.choices.iter().flat_map(|chosen| &chosen.alternatives);
+    let mut options = selected.flat_map(|selected| &selected.options);
+    options.find(|(name, _)| name == LAYERS).map(|(_, layers)| *layers)
 }
 
 #[cfg(test)]

@@ -183,6 +183,7 @@ fn a_lost_device_is_an_error() {
 #[test]
 fn the_error_for_an_unknown_adapter_names_the_available_ones() {
     let error = message(Headless::open(&"no such adapter".parse::<Choice>().unwrap(), wgpu::Features::empty()));
-    let names: Vec<String> = fragbuf_runtime::headless::adapters().into_iter().map(|info| info.name).collect();
+    let names: Vec<String> =
+        fragbuf_runtime::headless::adapters().iter().map(|adapter| adapter.get_info().name).collect();
     assert!(error.contains("no such adapter") && error.contains(&names[0]), "{error}");
 }

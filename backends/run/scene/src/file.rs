@@ -24,6 +24,7 @@ pub(crate) fn read(path: &Path, budget: &Budget) -> Result<Vec<u8>, Error> {
     if let Some(kind) = irregular(&metadata) {
         return Err(unreadable(format!("{kind} is not a model: give a regular file")));
     }
+    budget.open(path);
     let opened = File::open(path).map_err(failed)?;
     let length = opened.metadata().map_err(failed)?.len();
     let mut reader = BufReader::new(opened);

@@ -28,7 +28,7 @@ mod warnings;
 
 pub use attribute::{AttributeRequest, AvailableAttribute};
 pub use builtin::{BUILTIN_SCENES, BuiltinScene, Parameter};
-pub use camera::{Camera, Eye};
+pub use camera::{Camera, CameraError, Eye, FIELD_OF_VIEW};
 pub use error::{Error, FilePosition};
 pub use limits::Limits;
 pub use load::{load, load_with, open, open_with};

@@ -3,7 +3,8 @@
 //! Every reader takes memory from one [`Budget`] before it allocates: the bytes of each file after decompression, the vertices
 //! and triangles of the scene, and its own lists. A number that a file declares is never allocated before it is taken.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::path::{Path, PathBuf};
 
 use crate::attribute::AttributeRequest;
 use crate::error::FileError;
@@ -43,6 +44,8 @@ pub(crate) struct Budget {
     left: Cell<u64>,
     /// The bytes of a vertex of a model: [`MODEL_VERTEX`], and its attributes.
     vertex: u64,
+    /// The files that were opened.
+    files: RefCell<Vec<PathBuf>>,
 }
 
 /// Memory that returns to its budget when this value is dropped.
@@ -54,13 +57,23 @@ pub(crate) struct Held<'a> {
 
 impl Budget {
     pub(crate) fn new(limits: &Limits) -> Self {
-        Budget { limit: limits.memory, left: Cell::new(limits.memory), vertex: MODEL_VERTEX }
+        Budget { limit: limits.memory, left: Cell::new(limits.memory), vertex: MODEL_VERTEX, files: RefCell::default() }
     }
 
     /// Returns a budget for models with these attributes.
     pub(crate) fn with_attributes(limits: &Limits, attributes: &[AttributeRequest]) -> Self {
         let vertex = MODEL_VERTEX + attributes.iter().map(AttributeRequest::bytes).sum::<u64>();
         Budget { vertex, ..Budget::new(limits) }
+    }
+
+    /// Records that a file is opened.
+    pub(crate) fn open(&self, file: &Path) {
+        self.files.borrow_mut().push(file.to_owned());
+    }
+
+    /// Returns the files that were opened.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.files.borrow().clone()
     }
 
     /// Returns the bytes that are left.

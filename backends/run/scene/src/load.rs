@@ -71,6 +71,7 @@ pub fn load_with(
     let mut scene = placement::place(objects);
     scene.attributes = attributes.to_vec();
     scene.warnings = warnings.into_list();
+    scene.files = budget.files();
     if scene.triangles() == 0 {
         return Err(without_triangles(&file, &scene.warnings));
     }

@@ -50,12 +50,14 @@ impl Placement {
         Placement { origin, unit: if is_scaled { reach.log2().floor().exp2() } else { 1.0 } }
     }
 
-    /// Returns a position in these coordinates.
+    /// Returns a position of the model in these coordinates.
+    pub(crate) fn in_scene(self, position: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| (position[axis] - self.origin[axis]) / self.unit)
+    }
+
+    /// Returns a vertex of the model in these coordinates.
     fn to_scene(self, position: [f64; 3]) -> [f32; 3] {
-        std::array::from_fn(|axis| {
-            let value = (position[axis] - self.origin[axis]) / self.unit;
-            value.clamp(-GREATEST, GREATEST) as f32
-        })
+        self.in_scene(position).map(|value| value.clamp(-GREATEST, GREATEST) as f32)
     }
 
     /// Returns a position in the coordinates of the model.

@@ -1,5 +1,7 @@
 //! A scene: indexed triangles per object.
 
+use std::path::PathBuf;
+
 use crate::{AttributeRequest, Placement, Warning};
 
 /// The triangles of a scene, object after object.
@@ -13,6 +15,8 @@ pub struct Scene {
     pub attributes: Vec<AttributeRequest>,
     /// What was replaced by a default, and what was not read.
     pub warnings: Vec<Warning>,
+    /// The files that the scene was read from, the model first.
+    pub files: Vec<PathBuf>,
 }
 
 /// A named part of a scene. Its three vertex lists have equal lengths.

@@ -18,7 +18,11 @@ fn loaded(files: &[(&str, &[u8])]) -> Result<Scene, Error> {
     for (path, (_, bytes)) in paths.iter().zip(files) {
         std::fs::write(path, bytes).unwrap();
     }
-    load(&paths[0], COLOR, &Limits::default())
+    let mut scene = load(&paths[0], COLOR, &Limits::default())?;
+    // Every model has a folder of its own.
+    assert_eq!(scene.files.first(), paths.first());
+    scene.files.clear();
+    Ok(scene)
 }
 
 /// Returns the file name, the position and the message of the error.

@@ -22,7 +22,9 @@ fn loaded(files: &[(&str, &str)]) -> (Scene, Vec<String>) {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
-    let scene = load(&paths[0], COLOR, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mut scene = load(&paths[0], COLOR, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    // Every model has a folder of its own.
+    scene.files.clear();
     let prefix = format!("{}/", folder.path().display());
     let warnings = scene.warnings.iter();
     let warnings = warnings

@@ -6,6 +6,7 @@ use std::pin::pin;
 use std::str::FromStr;
 use std::task::{Context, Poll, Waker};
 
+use super::instance;
 use crate::Error;
 
 /// The choice of an adapter.
@@ -42,14 +43,27 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Returns every adapter of this machine that can write buffers from fragment shaders, best first.
-pub fn adapters() -> Vec<wgpu::AdapterInfo> {
-    suitable_adapters().iter().map(wgpu::Adapter::get_info).collect()
+/// Returns every adapter of this machine that can write buffers from fragment shaders, best first. OpenGL adapters are listed only if
+/// there are no others, because they are the same devices with fewer features.
+pub fn adapters() -> Vec<wgpu::Adapter> {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
+    let allowed = descriptor().backends;
+    let mut adapters = Vec::new();
+    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].map(|some| some & allowed) {
+        if adapters.is_empty() && !backends.is_empty() {
+            let instance = instance::create(wgpu::InstanceDescriptor { backends, ..descriptor() });
+            adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
+            adapters.retain(is_suitable);
+        }
+    }
+    // The sort is stable: adapters of one kind keep the drivers' order.
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    adapters
 }
 
 /// Returns the chosen adapter, for [`open_device`](super::open_device) or a device of the caller.
 pub fn adapter(choice: &Choice) -> Result<wgpu::Adapter, Error> {
-    let adapters = suitable_adapters();
+    let adapters = adapters();
     let available = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let chosen = adapters.into_iter().find(|adapter| {
         let info = adapter.get_info();
@@ -70,24 +84,6 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
     }
-}
-
-/// Returns the adapters that can run fragment buffers, best first. OpenGL adapters are listed only if there are no others,
-/// because they are the same devices with fewer features.
-fn suitable_adapters() -> Vec<wgpu::Adapter> {
-    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env;
-    let allowed = descriptor().backends;
-    let mut adapters = Vec::new();
-    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].map(|some| some & allowed) {
-        if adapters.is_empty() && !backends.is_empty() {
-            let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor() });
-            adapters = ready(instance.enumerate_adapters(backends)).unwrap_or_default();
-            adapters.retain(is_suitable);
-        }
-    }
-    // The sort is stable: adapters of one kind keep the drivers' order.
-    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-    adapters
 }
 
 fn is_suitable(adapter: &wgpu::Adapter) -> bool {

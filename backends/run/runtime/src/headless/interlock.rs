@@ -24,6 +24,17 @@ pub fn open_device(
     Ok((device, queue, Interlock::Absent))
 }
 
+/// Returns whether a device that [`open_device`] opens has interlock.
+pub fn supported_interlock(adapter: &wgpu::Adapter) -> Interlock {
+    #[cfg(not(any(target_vendor = "apple", target_family = "wasm")))]
+    if vulkan::has_interlock(adapter) {
+        return Interlock::Enabled;
+    }
+    #[cfg(any(target_vendor = "apple", target_family = "wasm"))]
+    let _ = adapter;
+    Interlock::Absent
+}
+
 #[cfg(not(any(target_vendor = "apple", target_family = "wasm")))]
 #[allow(unsafe_code, reason = "only wgpu's lower layer can enable extensions that wgpu does not support")]
 mod vulkan {
@@ -33,12 +44,12 @@ mod vulkan {
 
     type OpenResult = Result<(wgpu::Device, wgpu::Queue), String>;
 
-    /// Opens the device; `None` if the adapter is not a Vulkan adapter or has no interlock.
-    pub(super) fn open(adapter: &wgpu::Adapter, descriptor: &wgpu::DeviceDescriptor<'_>) -> Option<OpenResult> {
+    /// Returns whether the adapter is a Vulkan adapter with interlock.
+    pub(super) fn has_interlock(adapter: &wgpu::Adapter) -> bool {
         // SAFETY: the adapter is only queried, and outlives the guard.
-        let hal = unsafe { adapter.as_hal::<Vulkan>() }?;
+        let Some(hal) = (unsafe { adapter.as_hal::<Vulkan>() }) else { return false };
         if !hal.physical_device_capabilities().supports_extension(NAME) {
-            return None;
+            return false;
         }
         let mut has = vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default();
         let mut query = vk::PhysicalDeviceFeatures2::default().push_next(&mut has);
@@ -47,9 +58,16 @@ mod vulkan {
             let instance = hal.shared_instance().raw_instance();
             instance.get_physical_device_features2(hal.raw_physical_device(), &mut query);
         }
-        if has.fragment_shader_pixel_interlock == vk::FALSE {
+        has.fragment_shader_pixel_interlock != vk::FALSE
+    }
+
+    /// Opens the device; `None` if the adapter is not a Vulkan adapter or has no interlock.
+    pub(super) fn open(adapter: &wgpu::Adapter, descriptor: &wgpu::DeviceDescriptor<'_>) -> Option<OpenResult> {
+        if !has_interlock(adapter) {
             return None;
         }
+        // SAFETY: the adapter outlives the guard.
+        let hal = unsafe { adapter.as_hal::<Vulkan>() }?;
         let mut enabled =
             vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT::default().fragment_shader_pixel_interlock(true);
         let chained = &mut enabled;

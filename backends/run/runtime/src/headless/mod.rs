@@ -1,11 +1,12 @@
 //! A device and a target without a window, for tests, the command line and servers.
 
 mod adapter;
+mod instance;
 mod interlock;
 mod offscreen;
 
 pub use adapter::{Choice, adapter, adapters};
-pub use interlock::open_device;
+pub use interlock::{open_device, supported_interlock};
 pub use offscreen::{BLENDED, Offscreen};
 
 use std::sync::Arc;
@@ -36,10 +37,14 @@ const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::PASSTHROUGH_SHADERS);
 
 impl Headless {
-    /// Opens the chosen adapter with all its limits and the features of `required`, and with timestamps, coherent buffers, 64-bit
-    /// atomics, early depth tests, passthrough shaders and interlock if available. Blocks.
+    /// Opens the chosen adapter as [`Headless::open_adapter`] does. Blocks.
     pub fn open(choice: &Choice, required: wgpu::Features) -> Result<Self, Error> {
-        let adapter = adapter(choice)?;
+        Headless::open_adapter(&adapter(choice)?, required)
+    }
+
+    /// Opens an adapter with all its limits and the features of `required`, and with timestamps, coherent buffers, 64-bit atomics, early
+    /// depth tests, passthrough shaders and interlock if available. Blocks.
+    pub fn open_adapter(adapter: &wgpu::Adapter, required: wgpu::Features) -> Result<Self, Error> {
         let missing = required - adapter.features();
         if !missing.is_empty() {
             return Err(Error::MissingFeatures(missing));
@@ -50,7 +55,7 @@ impl Headless {
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
         };
-        let (device, queue, interlock) = open_device(&adapter, &descriptor)?;
+        let (device, queue, interlock) = open_device(adapter, &descriptor)?;
         let lost = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
