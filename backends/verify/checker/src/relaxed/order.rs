@@ -1,8 +1,11 @@
 //! Fences, barriers and critical sections of relaxed memory, and the removal of what no fragment can observe.
 
+use std::rc::Rc;
+
 use fragbuf_interpreter::{Barrier, Event};
 
-use super::view::{MemoryKind, View, clock, is_clock_of, kind_of_clock};
+use super::history::PlainRead;
+use super::view::{MemoryKind, View, clock, fragment_of_clock, is_clock_of, kind_of_clock};
 use super::{RelaxedMemory, Views};
 
 impl RelaxedMemory {
@@ -64,8 +67,9 @@ impl RelaxedMemory {
 
     /// Adds the view of the last write of a word to a fragment's view.
     pub(super) fn acquire(&mut self, fragment: usize, at: usize) {
-        let Some(write) = self.histories[at].1.writes.last() else { return };
-        let views = &mut self.fragments[fragment];
+        let RelaxedMemory { histories, fragments, .. } = self;
+        let Some(write) = histories[at].1.writes.last() else { return };
+        let views = &mut fragments[fragment];
         for view in std::iter::once(&mut views.current).chain(&mut views.outside) {
             view.join_where(&write.view, |key| !is_clock_of(key, fragment));
         }
@@ -74,7 +78,7 @@ impl RelaxedMemory {
     /// Passes a fragment's view on with the last write of a word.
     pub(super) fn release(&mut self, fragment: usize, at: usize) {
         let views = &mut self.fragments[fragment];
-        if let Some(write) = self.histories[at].1.writes.last_mut() {
+        if let Some(write) = Rc::make_mut(&mut self.histories[at].1).writes.last_mut() {
             write.view = views.current.clone();
             write.view.raise_clocks(fragment, views.epoch);
             views.epoch += 1;
@@ -118,8 +122,8 @@ impl RelaxedMemory {
             let oldest = observable.max(history.repeated_before());
             forgets |= oldest > observable;
             if oldest > 0 {
-                self.histories[at].1.forget_before(oldest);
-                self.each_view(|view| view.map(word, |position| position.saturating_sub(oldest)));
+                Rc::make_mut(&mut self.histories[at].1).forget_before(oldest);
+                self.each_view(|key, position| if key == word { position.saturating_sub(oldest) } else { position });
             }
         }
         forgets
@@ -131,34 +135,46 @@ impl RelaxedMemory {
         if !has_reads && self.fragments.iter().all(|views| views.epoch == 1) {
             return;
         }
-        for reader in 0..self.fragments.len() {
-            let known = MemoryKind::ALL.map(|kind| {
-                let others = self.fragments.iter().enumerate();
-                let others = others.filter(|(other, _)| *other != reader && is_running(*other));
-                others.map(|(_, views)| views.lasting().get(clock(reader, kind))).min()
-            });
-            let mut epochs: Vec<u32> = Vec::new();
-            let first_of_workgroups = self.first_of_workgroups;
-            for (word, history) in &mut self.histories {
-                let known = known[usize::from(*word >= first_of_workgroups)];
-                history.reads.retain(|read| {
-                    usize::from(read.accessor.fragment) != reader || known.is_some_and(|known| read.epoch > known)
-                });
-                let own = history.reads.iter().filter(|read| usize::from(read.accessor.fragment) == reader);
-                epochs.extend(own.map(|read| read.epoch));
-            }
-            epochs.sort_unstable();
-            epochs.dedup();
-            let dense = |epoch: u32| epochs.partition_point(|other| *other <= epoch) as u32;
-            for kind in MemoryKind::ALL {
-                self.each_view(|view| view.map(clock(reader, kind), dense));
-            }
-            let before = epochs.partition_point(|other| *other < self.fragments[reader].epoch) as u32;
-            self.fragments[reader].epoch = before + 1;
-            for (_, history) in &mut self.histories {
-                let own = history.reads.iter_mut().filter(|read| usize::from(read.accessor.fragment) == reader);
-                own.for_each(|read| read.epoch = dense(read.epoch));
+        let known: Vec<[Option<u32>; 2]> =
+            (0..self.fragments.len()).map(|reader| self.known_epochs(reader, &is_running)).collect();
+        let first_of_workgroups = self.first_of_workgroups;
+        let is_lasting = |word: u32, read: &PlainRead| {
+            let known = known[usize::from(read.accessor.fragment)][usize::from(word >= first_of_workgroups)];
+            known.is_some_and(|known| read.epoch > known)
+        };
+        let mut epochs: Vec<Vec<u32>> = vec![Vec::new(); self.fragments.len()];
+        for (word, history) in &self.histories {
+            for read in history.reads.iter().filter(|read| is_lasting(*word, read)) {
+                epochs[usize::from(read.accessor.fragment)].push(read.epoch);
             }
         }
+        for epochs in &mut epochs {
+            epochs.sort_unstable();
+            epochs.dedup();
+        }
+        let dense = |fragment: usize, epoch: u32| epochs[fragment].partition_point(|other| *other <= epoch) as u32;
+        let numbered = |read: &PlainRead| dense(usize::from(read.accessor.fragment), read.epoch);
+        for (word, history) in &mut self.histories {
+            if history.reads.iter().all(|read| is_lasting(*word, read) && numbered(read) == read.epoch) {
+                continue;
+            }
+            let reads = &mut Rc::make_mut(history).reads;
+            reads.retain(|read| is_lasting(*word, read));
+            reads.iter_mut().for_each(|read| read.epoch = numbered(read));
+        }
+        self.each_view(|key, epoch| fragment_of_clock(key).map_or(epoch, |fragment| dense(fragment, epoch)));
+        for (views, epochs) in self.fragments.iter_mut().zip(&epochs) {
+            views.epoch = epochs.partition_point(|other| *other < views.epoch) as u32 + 1;
+        }
+    }
+
+    /// Returns, per kind of memory, the last epoch of a fragment that every other running fragment is ordered after. `None`: no
+    /// other fragment runs.
+    fn known_epochs(&self, reader: usize, is_running: &impl Fn(usize) -> bool) -> [Option<u32>; 2] {
+        MemoryKind::ALL.map(|kind| {
+            let others = self.fragments.iter().enumerate();
+            let others = others.filter(|(other, _)| *other != reader && is_running(*other));
+            others.map(|(_, views)| views.lasting().get(clock(reader, kind))).min()
+        })
     }
 }
