@@ -31,6 +31,9 @@ pub struct OutOfBoundsAccess {
 /// The limit of backward jumps of one run.
 const BACKWARD_JUMP_LIMIT: u32 = 1 << 24;
 
+/// The backward jumps after which [`Machine::run_or_repeat`] looks for a cycle. Few programs have so many.
+const FIRST_JUMPS: u32 = 1 << 12;
+
 /// The most backward jumps in which [`Machine::repeats`] looks for a cycle.
 const LONGEST_CYCLE: u32 = 1 << 18;
 
@@ -132,7 +135,23 @@ impl<'p> Machine<'p> {
         self.run_jumps(shared, BACKWARD_JUMP_LIMIT)
     }
 
-    /// Returns whether the machine comes back to a state in which it has been, before `shared` stops it. It has reached the limit of
+    /// Runs the program until it ends, `shared` stops it, or it comes back to a state in which it has been. Then it is
+    /// [`Exit::Endless`], long before the limit of backward jumps. `changes` returns how often `shared` has changed what the program
+    /// can observe.
+    pub fn run_or_repeat<S: SharedMemory>(&mut self, shared: &mut S, changes: impl Fn(&S) -> u64) -> Exit {
+        let exit = self.run_jumps(shared, FIRST_JUMPS);
+        if exit != Exit::Endless {
+            return exit;
+        }
+        let before = changes(shared);
+        if self.repeats(shared) && changes(shared) == before {
+            return Exit::Endless;
+        }
+        // A machine that has ended or was stopped meanwhile does so again.
+        self.run(shared)
+    }
+
+    /// Returns whether the machine comes back to a state in which it has been, before `shared` stops it. It has reached a limit of
     /// backward jumps. `false` if it does not within [`LONGEST_CYCLE`] backward jumps.
     pub fn repeats<S: SharedMemory>(&mut self, shared: &mut S) -> bool {
         let (mut earlier, mut limit) = ((self.at, self.words.clone()), 1);

@@ -3,8 +3,7 @@
 //! Input: the words of a state. Output: a verdict. The remaining steps of the frame run first. Then the pixel is read out
 //! through the storage's own functions.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use fragbuf_codegen::FIRST_BINDING;
@@ -27,10 +26,13 @@ pub(crate) struct FinalStateProperty<'c, 's> {
     frame: Frame<'s>,
     /// Index in memory, first word in a state and number of words of every buffer that states hold.
     buffers: Vec<(usize, usize, usize)>,
-    is_racy: bool,
+    /// The least bound of an early cull that rejects no fragment that must be kept. `None`: no bound is checked.
+    least_bound: Option<u32>,
+    /// The watched words whose bound is not too low.
+    bounded: HashSet<Vec<u32>>,
     known: HashMap<Vec<u32>, StateVerdict>,
-    /// What the pixel may have emitted, by the number of fragments that timed out.
-    emitted: HashMap<usize, Vec<Emitted>>,
+    /// What the pixel may have emitted, by the number of fragments that timed out. `None`: not computed yet.
+    emitted: Option<Vec<Vec<Emitted>>>,
     /// The frame before the next iteration of the pass, by the words of the final state.
     pub(crate) next_iterations: HashMap<Vec<u32>, Frame<'s>>,
 }
@@ -38,13 +40,15 @@ pub(crate) struct FinalStateProperty<'c, 's> {
 impl<'c, 's> FinalStateProperty<'c, 's> {
     /// Returns the property for one iteration of a case. `frame`: the frame before the pass under test.
     pub(crate) fn new(setup: &'c CaseSetup<'s>, context: &SearchContext<'_>, frame: Frame<'s>) -> Self {
+        let has_bound = setup.subject.bound.is_some() && !setup.subject.is_racy();
         FinalStateProperty {
             setup,
+            least_bound: has_bound.then(|| setup.specification_in(&frame).least_bound()),
             frame,
             buffers: context.state_buffers().collect(),
-            is_racy: setup.subject.is_racy(),
+            bounded: HashSet::new(),
             known: HashMap::new(),
-            emitted: HashMap::new(),
+            emitted: None,
             next_iterations: HashMap::new(),
         }
     }
@@ -106,10 +110,10 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         };
         let mut memory = frame.memory.clone();
         let dropped = count("timed_out") as usize;
-        if let Entry::Vacant(entry) = self.emitted.entry(dropped) {
+        if self.emitted.is_none() {
             let stream = Stream { programs, kept_set, most };
             let fragments = specification.fragments.split_at(setup.case.prior.len());
-            entry.insert(stream.emitted(fragments, dropped, &mut memory)?);
+            self.emitted = Some(stream.emitted(fragments, &mut memory)?);
         }
         let mut machine = machine_with(&programs.streamed, &[vec![setup.case.pixel]]);
         if run_alone(&mut machine, &mut memory)? != Exit::Ended {
@@ -119,7 +123,8 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         let matches = |emitted: &Emitted| {
             emitted.out_of_order == out_of_order && emitted.color.as_ref().is_none_or(|known| known == color)
         };
-        let is_possible = self.emitted.get(&dropped).is_some_and(|known| known.iter().any(matches));
+        let is_possible =
+            self.emitted.as_ref().and_then(|all| all.get(dropped)).is_some_and(|known| known.iter().any(matches));
         Ok((!is_possible).then(|| {
             format!("no arrival order gives {out_of_order} fragments out of order and the emitted colour {color:08x?}")
         }))
@@ -128,14 +133,19 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
 
 impl Property for FinalStateProperty<'_, '_> {
     fn watched(&self) -> Vec<Range<usize>> {
-        let Some(bound) = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy) else { return Vec::new() };
+        let Some((bound, _)) = self.frame.subject.bound.as_ref().zip(self.least_bound) else { return Vec::new() };
         let is_read = |index: usize| bound.buffers.iter().any(|buffer| memory_index(buffer.binding) == index);
         let buffers = self.buffers.iter().filter(|(index, ..)| is_read(*index));
         buffers.map(|(_, first, count)| *first..first + count).collect()
     }
 
     fn instant(&mut self, words: &[u32]) -> Option<String> {
-        let bound = self.frame.subject.bound.as_ref().filter(|_| !self.is_racy)?;
+        let (bound, least) = self.frame.subject.bound.as_ref().zip(self.least_bound)?;
+        // The bound depends on nothing else that a fragment writes.
+        let watched: Vec<u32> = self.watched().into_iter().flat_map(|range| &words[range]).copied().collect();
+        if self.bounded.contains(&watched) {
+            return None;
+        }
         for (index, first, count) in &self.buffers {
             self.frame.memory[*index].copy_from_slice(&words[*first..first + count]);
         }
@@ -144,10 +154,13 @@ impl Property for FinalStateProperty<'_, '_> {
             Ok(Exit::Ended) => {}
             _ => return Some("the bound cannot be read".to_owned()),
         }
-        let (found, least) = (machine.result()[0], self.setup.specification_in(&self.frame).least_bound());
-        (found < least).then(|| {
-            format!("storage_bound is {found:08x}, but a fragment that must be kept has the greater key {least:08x}")
-        })
+        let found = machine.result()[0];
+        if found < least {
+            let text = "but a fragment that must be kept has the greater key";
+            return Some(format!("storage_bound is {found:08x}, {text} {least:08x}"));
+        }
+        self.bounded.insert(watched);
+        None
     }
 
     fn final_state(&mut self, words: &[u32]) -> StateVerdict {

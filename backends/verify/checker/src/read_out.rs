@@ -157,7 +157,9 @@ impl ReadOut {
         let textures = indices.iter().zip(&words);
         let textures = textures.map(|(index, words)| SampledTexture::new(words, self.format(*index), size));
         let textures: Vec<SampledTexture<'_>> = textures.collect();
-        let exit = with_buffers(program, memory, |buffers| machine.run(&mut Reader::new(buffers, &textures)));
+        let exit = with_buffers(program, memory, |buffers| {
+            machine.run_or_repeat(&mut Reader::new(buffers, &textures), |reader| reader.changes)
+        });
         indices.into_iter().zip(words).for_each(|(index, words)| memory[index] = words);
         match (machine.out_of_bounds.take(), exit) {
             (Some(_), _) => Err(ReadOutError::OutOfBounds),

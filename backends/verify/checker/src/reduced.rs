@@ -46,7 +46,7 @@ pub(crate) fn explore_reduced(
         stack: Vec::new(),
         result: SearchResult::default(),
     };
-    search.visit(first.clone(), vec![0; fragments * fragments], None);
+    search.visit(first.clone(), &vec![0; fragments * fragments], None);
     let found = match search.run(property, limit) {
         Ok(is_exhaustive) if !is_exhaustive || search.graph.endless().is_none() => {
             return SearchResult { is_exhaustive, ..search.result };
@@ -119,7 +119,7 @@ struct Visit {
 
 impl ReducedSearch<'_, '_> {
     /// Pushes a state that has not been visited; returns its number and whether it is new.
-    fn visit(&mut self, state: State, clocks: Vec<u32>, last: Option<usize>) -> (u32, bool) {
+    fn visit(&mut self, state: State, clocks: &[u32], last: Option<usize>) -> (u32, bool) {
         let number = self.graph.count();
         match self.numbers.entry(fingerprint(&state)) {
             Entry::Occupied(known) => return (*known.get(), false),
@@ -146,7 +146,7 @@ impl ReducedSearch<'_, '_> {
             choice: 0,
             choices: 0,
             clock: Vec::new(),
-            clocks,
+            clocks: clocks.to_vec(),
             has_moved: running.is_empty(),
             has_effect: false,
             has_exit: false,
@@ -274,7 +274,7 @@ impl ReducedSearch<'_, '_> {
         let count = visit.state.fragments.len();
         let mut clocks = visit.clocks.clone();
         clocks[fragment * count..(fragment + 1) * count].copy_from_slice(&visit.clock);
-        let (next, is_new) = self.visit(stepped.state, clocks.clone(), Some(fragment));
+        let (next, is_new) = self.visit(stepped.state, &clocks, Some(fragment));
         self.graph.connect(number, next, stepped.has_effect);
         let is_done = self.depths[next as usize] == DONE;
         let visit = &mut self.stack[top];

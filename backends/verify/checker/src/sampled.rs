@@ -6,6 +6,8 @@
 use fragbuf_interpreter::{Event, Reply, Sequential, SharedMemory, WordAddress};
 use fragbuf_templates::vocabulary::TextureFormat;
 
+use crate::sequential::changes;
+
 /// The words of a texture, with its format and size.
 pub(crate) struct SampledTexture<'a> {
     words: &'a [u32],
@@ -54,12 +56,14 @@ impl<'a> SampledTexture<'a> {
 pub(crate) struct Reader<'a> {
     buffers: Sequential<'a>,
     textures: &'a [SampledTexture<'a>],
+    /// The writes that have changed a word.
+    pub(crate) changes: u64,
 }
 
 impl<'a> Reader<'a> {
     /// Takes buffers and textures in the order of the program's numbers.
     pub(crate) fn new(buffers: &'a mut [Vec<u32>], textures: &'a [SampledTexture<'a>]) -> Self {
-        Reader { buffers: Sequential { buffers }, textures }
+        Reader { buffers: Sequential { buffers }, textures, changes: 0 }
     }
 }
 
@@ -81,6 +85,8 @@ impl SharedMemory for Reader<'_> {
     }
 
     fn event(&mut self, event: &Event) -> Reply {
-        self.buffers.event(event)
+        let reply = self.buffers.event(event);
+        self.changes += u64::from(changes(event, reply));
+        reply
     }
 }

@@ -11,6 +11,8 @@ struct SequentialMemory<'a> {
     buffers: Sequential<'a>,
     /// The words of textures, by the program's numbers.
     textures: Vec<Vec<u32>>,
+    /// The writes that have changed a word.
+    changes: u64,
 }
 
 impl SharedMemory for SequentialMemory<'_> {
@@ -31,7 +33,9 @@ impl SharedMemory for SequentialMemory<'_> {
     }
 
     fn event(&mut self, event: &Event) -> Reply {
-        self.buffers.event(event)
+        let reply = self.buffers.event(event);
+        self.changes += u64::from(changes(event, reply));
+        reply
     }
 }
 
@@ -39,11 +43,20 @@ impl SharedMemory for SequentialMemory<'_> {
 pub(crate) fn run_alone(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<Exit, String> {
     let textures = textures(machine.program(), memory);
     let exit = with_buffers(machine.program(), memory, |buffers| {
-        machine.run(&mut SequentialMemory { buffers: Sequential { buffers }, textures })
+        let mut memory = SequentialMemory { buffers: Sequential { buffers }, textures, changes: 0 };
+        machine.run_or_repeat(&mut memory, |memory| memory.changes)
     });
     match machine.out_of_bounds.take() {
         Some(_) => Err("an index is out of bounds".to_owned()),
         None => Ok(exit),
+    }
+}
+
+/// Returns whether an event has changed a word, by the reply to it.
+pub(crate) fn changes(event: &Event, reply: Reply) -> bool {
+    match (event, reply) {
+        (Event::Access(access), Reply::Done(old)) => access.writes() && access.new_value(old) != old,
+        _ => false,
     }
 }
 
@@ -67,4 +80,68 @@ pub(crate) fn set_arguments(machine: &mut Machine<'_>, words: &[u32]) {
 fn textures(program: &Bytecode, memory: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let words = |index: usize| memory.get(index).cloned().unwrap_or_default();
     program.textures.iter().map(|texture| words(memory_index(texture.binding))).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::test_program::compiled;
+
+    const WAITS: &str = "
+@group(0) @binding(0) var<storage, read_write> word: atomic<u32>;
+@compute @workgroup_size(1)
+fn main() {
+    loop {
+        if atomicLoad(&word) != 0u {
+            break;
+        }
+    }
+    atomicStore(&word, 2u);
+}
+";
+
+    /// Memory whose word becomes 1 after so many loads.
+    struct Later {
+        loads: u64,
+        from: u64,
+    }
+
+    impl SharedMemory for Later {
+        fn length(&self, _buffer: u16) -> u32 {
+            1
+        }
+
+        fn constant(&self, _address: WordAddress) -> u32 {
+            0
+        }
+
+        fn event(&mut self, _event: &Event) -> Reply {
+            self.loads += 1;
+            Reply::Done(u64::from(self.loads > self.from))
+        }
+    }
+
+    #[test]
+    fn a_machine_that_repeats_is_endless_unless_memory_changes() {
+        let program = compiled(WAITS);
+        let run = |from: u64, changes: fn(&Later) -> u64| {
+            Machine::new(&program).run_or_repeat(&mut Later { loads: 0, from }, changes)
+        };
+        assert_eq!(run(1 << 14, |memory| memory.loads), Exit::Ended);
+        assert_eq!(run(1 << 14, |_| 0), Exit::Endless);
+        assert_eq!(run(100, |_| 0), Exit::Ended);
+    }
+
+    #[test]
+    fn only_a_loop_that_changes_nothing_is_cut_short() {
+        let alone = |source: &str| {
+            let (program, mut memory) = (compiled(source), vec![vec![0]]);
+            let exit = run_alone(&mut Machine::new(&program), &mut memory).unwrap();
+            (exit, memory[0][0])
+        };
+        assert_eq!(alone(WAITS), (Exit::Endless, 0));
+        let counts = WAITS.replace("atomicLoad(&word) != 0u", "atomicAdd(&word, 1u) == 20000u");
+        assert_eq!(alone(&counts), (Exit::Ended, 2));
+    }
 }

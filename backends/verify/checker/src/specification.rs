@@ -107,7 +107,9 @@ impl Specification {
         if self.kept_set.is_unknown() {
             return self.unknown_entry(kept).or_else(|| self.counter_mismatch(kept.len() as u32, counts));
         }
-        if !self.surviving_sets(counts.dropped()).any(|surviving| self.is_kept_set_of(kept, &surviving)) {
+        let survivors = self.certain_survivors(kept);
+        let missing = self.missing_sets(counts.dropped()).filter(|out| out & survivors == 0);
+        if !missing.map(|out| self.without(out)).any(|surviving| self.is_kept_set_of(kept, &surviving)) {
             return Some(self.difference(kept, counts.dropped()));
         }
         if !self.kept_set.is_in_order(kept) {
@@ -124,10 +126,30 @@ impl Specification {
 
     /// Returns every set of fragments that can remain when `dropped` of them are lost.
     pub(crate) fn surviving_sets(&self, dropped: usize) -> impl Iterator<Item = Vec<Vec<u32>>> {
-        let count = self.fragments.len();
-        (0..1u32 << count)
-            .filter(move |out| self.can_be_missing(*out, dropped))
-            .map(move |out| (0..count).filter(|at| out >> at & 1 == 0).map(|at| self.fragments[at].clone()).collect())
+        self.missing_sets(dropped).map(|out| self.without(out))
+    }
+
+    /// Returns every set of fragments that can be missing when `dropped` of them are lost, as bits.
+    fn missing_sets(&self, dropped: usize) -> impl Iterator<Item = u32> {
+        (0..1u32 << self.fragments.len()).filter(move |out| self.can_be_missing(*out, dropped))
+    }
+
+    fn without(&self, out: u32) -> Vec<Vec<u32>> {
+        let remaining = (0..self.fragments.len()).filter(|at| out >> at & 1 == 0);
+        remaining.map(|at| self.fragments[at].clone()).collect()
+    }
+
+    /// Returns the fragments that a pixel with these entries has not lost, as bits: an entry has the deciding words of this
+    /// fragment alone. A merged entry may be no fragment's.
+    fn certain_survivors(&self, kept: &[Vec<u32>]) -> u32 {
+        if self.kept_set.merging.is_some() {
+            return 0;
+        }
+        let prefix = |words: &[u32]| words[..self.kept_set.deciding.min(words.len())].to_vec();
+        let all: Vec<Vec<u32>> = self.fragments.iter().map(|words| prefix(words)).collect();
+        let kept: Vec<Vec<u32>> = kept.iter().map(|entry| prefix(entry)).collect();
+        let is_certain = |at: &usize| times(&all, &all[*at]) == 1 && kept.contains(&all[*at]);
+        (0..all.len()).filter(is_certain).map(|at| 1 << at).sum()
     }
 
     /// Returns whether the fragments of this bit mask can be missing: `dropped` of them are lost, and the others were culled.

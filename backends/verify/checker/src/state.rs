@@ -151,7 +151,8 @@ impl SearchContext<'_> {
         machine.is_helper = self.helper == Some(fragment);
         machine.clamps = self.clamps;
         let is_helper = machine.is_helper;
-        let exit = machine.run(&mut Pausing { context: self, reply, words, is_helper });
+        // Writes that commute are the only changes, and the program cannot observe them.
+        let exit = machine.run_or_repeat(&mut Pausing { context: self, reply, words, is_helper }, |_| 0);
         if let Some(access) = machine.out_of_bounds.take() {
             match &self.out_of_bounds {
                 Some(known) => drop(known.borrow_mut().insert(access.at)),
@@ -167,7 +168,7 @@ impl SearchContext<'_> {
             }
             Exit::Stopped(event) => {
                 let event = self.placed(fragment, event);
-                let mut saved = Vec::new();
+                let mut saved = Vec::with_capacity(64);
                 machine.save(&mut saved);
                 Ok(Status::Before { event, at: machine.at(), saved: saved.into(), anchor: None })
             }
@@ -196,7 +197,7 @@ impl SearchContext<'_> {
                 let value = value(&state.words[word..], access.words);
                 match self.model {
                     Model::Relaxed => {
-                        state.order.ways(fragment, word as u32, access, value, self.has_weak_exchange).len() as u32
+                        state.order.count_ways(fragment, word as u32, access, value, self.has_weak_exchange)
                     }
                     Model::Sequential => 1 + u32::from(self.has_weak_exchange && exchanges(access, value)),
                 }
@@ -309,8 +310,8 @@ impl SearchContext<'_> {
                 false => Reply::Failed(old),
             });
         }
-        let ways = state.order.ways(fragment, word as u32, access, old, self.has_weak_exchange);
-        let way = ways[(choice as usize).min(ways.len() - 1)];
+        let of = (old, self.has_weak_exchange);
+        let Some(way) = state.order.way(fragment, word as u32, access, of, choice) else { return Ok(Reply::Stop) };
         let observed = Rc::make_mut(&mut state.order).perform(fragment, (word as u32, is_mixed), access, old, way);
         if let Some(last) = state.order.last(word as u32).filter(|_| access.writes()) {
             state.words[word] = last as u32;

@@ -31,18 +31,26 @@ pub(crate) struct Stream<'a> {
     pub(crate) most: usize,
 }
 
+/// A pixel after some fragments.
+struct Arrived {
+    count: usize,
+    kept: Vec<Vec<u32>>,
+    /// The key of the farthest fragment that was emitted; 0 if none was.
+    farthest_emitted: u32,
+}
+
 impl Stream<'_> {
-    /// Returns what may have been emitted when `prior` have arrived in order, and all of `new` but `dropped` in any order.
+    /// Returns what may have been emitted when `prior` have arrived in order, and `new` in any order; by the number of new
+    /// fragments that were dropped.
     pub(crate) fn emitted(
         &self,
         (prior, new): (&[Vec<u32>], &[Vec<u32>]),
-        dropped: usize,
         memory: &mut Memory,
-    ) -> Result<Vec<Emitted>, String> {
+    ) -> Result<Vec<Vec<Emitted>>, String> {
         let color = (new.len() <= MOST_COLORED).then(|| vec![0; 4]);
         let mut first = Emitted { out_of_order: 0, color };
         for at in 0..prior.len() {
-            first = self.after(&first, &prior[..at], &prior[at], memory)?;
+            first = self.after(&first, &self.arrived(prior[..at].to_vec()), &prior[at], memory)?;
         }
         // Indexed by the set of new fragments that have arrived, because what the pixel holds depends on that set only.
         let mut by_set: Vec<Vec<Emitted>> = vec![Vec::new(); 1 << new.len()];
@@ -50,6 +58,7 @@ impl Stream<'_> {
         for set in 0..by_set.len() {
             let mut arrived = prior.to_vec();
             arrived.extend(members(set, new).map(|(_, fragment)| fragment.clone()));
+            let arrived = self.arrived(arrived);
             let missing = !set & (by_set.len() - 1);
             for (at, fragment) in members(missing, new) {
                 for emitted in by_set[set].clone() {
@@ -61,29 +70,36 @@ impl Stream<'_> {
                 }
             }
         }
-        let is_final = |set: &usize| set.count_ones() as usize + dropped == new.len();
-        Ok((0..by_set.len()).filter(is_final).flat_map(|set| by_set[set].clone()).collect())
+        let mut by_dropped: Vec<Vec<Emitted>> = vec![Vec::new(); new.len() + 1];
+        for (set, emitted) in by_set.into_iter().enumerate() {
+            by_dropped[new.len() - set.count_ones() as usize].extend(emitted);
+        }
+        Ok(by_dropped)
+    }
+
+    /// Returns what the pixel holds, and has emitted, after these fragments.
+    fn arrived(&self, mut fragments: Vec<Vec<u32>>) -> Arrived {
+        let kept = self.kept_set.kept_of(fragments.clone());
+        fragments.sort();
+        let farthest_emitted = fragments.len().checked_sub(kept.len() + 1).map_or(0, |at| fragments[at][0]);
+        Arrived { count: fragments.len(), kept, farthest_emitted }
     }
 
     /// Returns what has been emitted when `fragment` has arrived after `arrived`.
     fn after(
         &self,
         emitted: &Emitted,
-        arrived: &[Vec<u32>],
+        arrived: &Arrived,
         fragment: &[u32],
         memory: &mut Memory,
     ) -> Result<Emitted, String> {
-        if arrived.len() < self.most {
+        if arrived.count < self.most {
             return Ok(emitted.clone());
         }
-        let kept = self.kept_set.kept_of(arrived.to_vec());
-        let mut all = arrived.to_vec();
-        all.sort();
-        let farthest_emitted = all.len().checked_sub(kept.len() + 1).map_or(0, |at| all[at][0]);
-        let mut nearest = kept;
+        let mut nearest = arrived.kept.clone();
         nearest.push(fragment.to_vec());
         nearest.sort();
-        let is_out_of_order = nearest[0][0] < farthest_emitted;
+        let is_out_of_order = nearest[0][0] < arrived.farthest_emitted;
         let color = match &emitted.color {
             Some(color) => Some(self.composited(color, &nearest[0], &nearest[1], memory)?),
             None => None,

@@ -20,6 +20,8 @@ mod history;
 mod order;
 mod view;
 
+use std::rc::Rc;
+
 use fragbuf_interpreter::{Access, Atomic, Operation};
 
 pub(crate) use history::REPEATED;
@@ -30,7 +32,7 @@ use view::{MemoryKind, View, clock};
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RelaxedMemory {
     /// The histories that hold more than the value of their word, by word.
-    histories: Vec<(u32, History)>,
+    histories: Vec<(u32, Rc<History>)>,
     fragments: Vec<Views>,
     /// What fragments have accessed inside of critical sections.
     sections: View,
@@ -100,33 +102,59 @@ impl RelaxedMemory {
         self.histories.is_empty() && self.fragments.iter().all(|views| views.epoch == 1 && views.outside.is_none())
     }
 
-    /// Returns the ways in which an atomic access can be performed, the latest write first; `value` is the last value of the
-    /// word. A plain access can be performed in one way. `is_weak`: a compare-exchange may fail for no reason.
-    pub(crate) fn ways(&self, fragment: usize, word: u32, access: &Access, value: u64, is_weak: bool) -> Vec<Way> {
-        let single = History::new(value);
-        let history = self.history(word).unwrap_or(&single);
+    /// Returns in how many ways an access can be performed; `value` is the last value of the word. `is_weak`: a compare-exchange
+    /// may fail for no reason.
+    pub(crate) fn count_ways(&self, fragment: usize, word: u32, access: &Access, value: u64, is_weak: bool) -> u32 {
+        let mut count = 0;
+        self.each_way(fragment, word, access, (value, is_weak), |_| count += 1);
+        count
+    }
+
+    /// Returns the way of a number, the latest write first. Numbers beyond the last way mean the last.
+    pub(crate) fn way(&self, fragment: usize, word: u32, access: &Access, of: (u64, bool), number: u32) -> Option<Way> {
+        let (mut count, mut found) = (0, None);
+        self.each_way(fragment, word, access, of, |way| {
+            if count <= number {
+                found = Some(way);
+            }
+            count += 1;
+        });
+        found
+    }
+
+    /// Calls `visit` with each way in which an atomic access can be performed, the latest write first. A plain access can be
+    /// performed in one way.
+    fn each_way(
+        &self,
+        fragment: usize,
+        word: u32,
+        access: &Access,
+        (value, is_weak): (u64, bool),
+        mut visit: impl FnMut(Way),
+    ) {
+        let history = self.history(word);
+        let last = history.map_or(0, History::last);
+        let is_followed = |at: u32| history.is_some_and(|history| history.is_followed(at));
         let oldest = self.fragments[fragment].current.get(word);
-        let observable = (oldest..=history.last()).rev();
+        let observable = (oldest..=last).rev();
         match access.operation {
-            Operation::Load if access.is_atomic => observable.map(Way::Load).collect(),
-            Operation::Load => vec![Way::Load(history.last())],
-            Operation::Store if !access.is_atomic => vec![Way::Store(history.last() + 1)],
-            Operation::Store => {
-                observable.filter(|at| !history.is_followed(*at)).map(|at| Way::Store(at + 1)).collect()
-            }
+            Operation::Load if access.is_atomic => observable.map(Way::Load).for_each(visit),
+            Operation::Load => visit(Way::Load(last)),
+            Operation::Store if !access.is_atomic => visit(Way::Store(last + 1)),
+            Operation::Store => observable.filter(|at| !is_followed(*at)).for_each(|at| visit(Way::Store(at + 1))),
             Operation::Atomic(Atomic::CompareExchange) => {
-                let is_expected = |at: u32| {
-                    truncated(history.writes[at as usize].value, access) == truncated(access.expected, access)
-                };
-                let mut ways: Vec<Way> = Vec::new();
                 for at in observable {
-                    let succeeds = is_expected(at);
-                    ways.extend((succeeds && !history.is_followed(at)).then_some(Way::Modify(at)));
-                    ways.extend((!succeeds || is_weak).then_some(Way::Fail(at)));
+                    let found = history.map_or(value, |history| history.writes[at as usize].value);
+                    let succeeds = truncated(found, access) == truncated(access.expected, access);
+                    if succeeds && !is_followed(at) {
+                        visit(Way::Modify(at));
+                    }
+                    if !succeeds || is_weak {
+                        visit(Way::Fail(at));
+                    }
                 }
-                ways
             }
-            Operation::Atomic(_) => observable.filter(|at| !history.is_followed(*at)).map(Way::Modify).collect(),
+            Operation::Atomic(_) => observable.filter(|at| !is_followed(*at)).for_each(|at| visit(Way::Modify(at))),
         }
     }
 
@@ -139,6 +167,13 @@ impl RelaxedMemory {
         value: u64,
         way: Way,
     ) -> Observed {
+        // An atomic load of a word without a history leaves nothing, unless a plain access may race with it.
+        let loads = access.is_atomic && matches!(way, Way::Load(_) | Way::Fail(_));
+        if loads && !is_mixed && self.history(word).is_none() {
+            let value = truncated(value, access);
+            let is_spurious = matches!(way, Way::Fail(_)) && value == truncated(access.expected, access);
+            return if is_spurious { Observed::Spurious(value) } else { Observed::Value(value) };
+        }
         let at = self.materialise(word, value);
         if let Some(other) = self.racing(fragment, (word, is_mixed), at, access) {
             return Observed::Race(other);
@@ -168,7 +203,7 @@ impl RelaxedMemory {
                     );
                 }
                 if plain.is_some() {
-                    self.histories[at].1.accesses.clear();
+                    Rc::make_mut(&mut self.histories[at].1).accesses.clear();
                 }
                 Observed::Value(0)
             }
@@ -204,11 +239,15 @@ impl RelaxedMemory {
         is_done: bool,
     ) -> Option<usize> {
         if !access.is_atomic {
-            let way = self.ways(fragment, word, access, value, false)[0];
+            let last = self.history(word).map_or(0, History::last);
+            let way = if access.writes() { Way::Store(last + 1) } else { Way::Load(last) };
             return match self.perform(fragment, (word, is_mixed), access, value, way) {
                 Observed::Race(other) => Some(other),
                 _ => None,
             };
+        }
+        if !access.writes() && !is_mixed && self.history(word).is_none() {
+            return None;
         }
         let at = self.materialise(word, value);
         if let Some(other) = self.racing(fragment, (word, is_mixed), at, access) {
@@ -244,7 +283,7 @@ impl RelaxedMemory {
     /// Returns the index of a word's history, which is made if it is not there.
     fn materialise(&mut self, word: u32, value: u64) -> usize {
         self.histories.binary_search_by_key(&word, |entry| entry.0).unwrap_or_else(|at| {
-            self.histories.insert(at, (word, History::new(value)));
+            self.histories.insert(at, (word, Rc::new(History::new(value))));
             at
         })
     }
@@ -286,7 +325,11 @@ impl RelaxedMemory {
             _ => return,
         };
         let (accessor, epoch) = (self.accessor(fragment), self.fragments[fragment].epoch);
-        let accesses = &mut self.histories[at].1.accesses;
+        let is_known = |one: &Recorded| one.accessor == accessor && one.kind == kind && one.epoch == epoch;
+        if self.histories[at].1.accesses.iter().any(is_known) {
+            return;
+        }
+        let accesses = &mut Rc::make_mut(&mut self.histories[at].1).accesses;
         match accesses.iter_mut().find(|one| one.accessor == accessor && one.kind == kind) {
             Some(one) => one.epoch = epoch,
             None => {
@@ -314,31 +357,39 @@ impl RelaxedMemory {
             || self.fragments.iter().enumerate().any(|(other, views)| {
                 other != fragment && (has(&views.current) || views.outside.as_ref().is_some_and(has))
             });
-        let last = self.histories[at].1.writes.last_mut();
-        let own = last.filter(|write| write.plain == Some(accessor) && !is_known);
-        own.map(|write| write.value = value).is_some()
+        let own = |write: &Write| write.plain == Some(accessor) && !is_known;
+        if !self.histories[at].1.writes.last().is_some_and(own) {
+            return false;
+        }
+        let last = Rc::make_mut(&mut self.histories[at].1).writes.last_mut();
+        last.map(|write| write.value = value).is_some()
     }
 
     fn insert(&mut self, fragment: usize, (word, at): (u32, usize), position: u32, mut write: Write) {
-        self.each_view(|view| view.shift(word, position));
-        write.view.shift(word, position);
+        // No view has a position beyond the last write.
+        if position <= self.histories[at].1.last() {
+            self.each_view(|key, number| number + u32::from(key == word && number >= position));
+            write.view.shift(word, position);
+        }
         if write.plain.is_none() {
             write.view.raise(word, position);
         }
-        self.histories[at].1.writes.insert(position as usize, write);
+        Rc::make_mut(&mut self.histories[at].1).writes.insert(position as usize, write);
         self.advance(fragment, word, position);
     }
 
-    fn each_view(&mut self, change: impl Fn(&mut View)) {
-        let writes = self.histories.iter_mut().flat_map(|(_, history)| &mut history.writes);
-        writes.for_each(|write| change(&mut write.view));
-        for views in &mut self.fragments {
-            change(&mut views.current);
-            change(&mut views.observed);
-            change(&mut views.released);
-            views.outside.as_mut().map(&change);
+    /// Replaces every number in every view by a function of its key and itself.
+    fn each_view(&mut self, new: impl Fn(u32, u32) -> u32) {
+        for (_, history) in &mut self.histories {
+            if history.writes.iter().any(|write| write.view.is_changed_by(&new)) {
+                Rc::make_mut(history).writes.iter_mut().for_each(|write| write.view.map_all(&new));
+            }
         }
-        change(&mut self.sections);
+        for views in &mut self.fragments {
+            let Views { current, observed, released, outside, .. } = views;
+            [current, observed, released].into_iter().chain(outside).for_each(|view| view.map_all(&new));
+        }
+        self.sections.map_all(&new);
     }
 }
 

@@ -1,8 +1,11 @@
 //! Fences, barriers and critical sections of relaxed memory, and the removal of what no fragment can observe.
 
+use std::rc::Rc;
+
 use fragbuf_interpreter::{Barrier, Event};
 
-use super::view::{MemoryKind, View, clock, is_clock_of, kind_of_clock};
+use super::history::Recorded;
+use super::view::{MemoryKind, View, clock, fragment_of_clock, is_clock_of, kind_of_clock};
 use super::{RelaxedMemory, Views};
 
 impl RelaxedMemory {
@@ -64,8 +67,9 @@ impl RelaxedMemory {
 
     /// Adds the view of the last write of a word to a fragment's view.
     pub(super) fn acquire(&mut self, fragment: usize, at: usize) {
-        let Some(write) = self.histories[at].1.writes.last() else { return };
-        let views = &mut self.fragments[fragment];
+        let RelaxedMemory { histories, fragments, .. } = self;
+        let Some(write) = histories[at].1.writes.last() else { return };
+        let views = &mut fragments[fragment];
         for view in std::iter::once(&mut views.current).chain(&mut views.outside) {
             view.join_where(&write.view, |key| !is_clock_of(key, fragment));
         }
@@ -74,7 +78,7 @@ impl RelaxedMemory {
     /// Passes a fragment's view on with the last write of a word.
     pub(super) fn release(&mut self, fragment: usize, at: usize) {
         let views = &mut self.fragments[fragment];
-        if let Some(write) = self.histories[at].1.writes.last_mut() {
+        if let Some(write) = Rc::make_mut(&mut self.histories[at].1).writes.last_mut() {
             write.view = views.current.clone();
             write.view.raise_clocks(fragment, views.epoch);
             views.epoch += 1;
@@ -118,8 +122,8 @@ impl RelaxedMemory {
             let oldest = observable.max(history.repeated_before());
             forgets |= oldest > observable;
             if oldest > 0 {
-                self.histories[at].1.forget_before(oldest);
-                self.each_view(|view| view.map(word, |position| position.saturating_sub(oldest)));
+                Rc::make_mut(&mut self.histories[at].1).forget_before(oldest);
+                self.each_view(|key, position| if key == word { position.saturating_sub(oldest) } else { position });
             }
         }
         forgets
@@ -131,34 +135,46 @@ impl RelaxedMemory {
         if !has_accesses && self.fragments.iter().all(|views| views.epoch == 1) {
             return;
         }
-        for accessor in 0..self.fragments.len() {
-            let known = MemoryKind::ALL.map(|kind| {
-                let others = self.fragments.iter().enumerate();
-                let others = others.filter(|(other, _)| *other != accessor && is_running(*other));
-                others.map(|(_, views)| views.lasting().get(clock(accessor, kind))).min()
-            });
-            let mut epochs: Vec<u32> = Vec::new();
-            let first_of_workgroups = self.first_of_workgroups;
-            for (word, history) in &mut self.histories {
-                let known = known[usize::from(*word >= first_of_workgroups)];
-                history.accesses.retain(|one| {
-                    usize::from(one.accessor.fragment) != accessor || known.is_some_and(|known| one.epoch > known)
-                });
-                let own = history.accesses.iter().filter(|one| usize::from(one.accessor.fragment) == accessor);
-                epochs.extend(own.map(|one| one.epoch));
-            }
-            epochs.sort_unstable();
-            epochs.dedup();
-            let dense = |epoch: u32| epochs.partition_point(|other| *other <= epoch) as u32;
-            for kind in MemoryKind::ALL {
-                self.each_view(|view| view.map(clock(accessor, kind), dense));
-            }
-            let before = epochs.partition_point(|other| *other < self.fragments[accessor].epoch) as u32;
-            self.fragments[accessor].epoch = before + 1;
-            for (_, history) in &mut self.histories {
-                let own = history.accesses.iter_mut().filter(|one| usize::from(one.accessor.fragment) == accessor);
-                own.for_each(|one| one.epoch = dense(one.epoch));
+        let known: Vec<[Option<u32>; 2]> =
+            (0..self.fragments.len()).map(|accessor| self.known_epochs(accessor, &is_running)).collect();
+        let first_of_workgroups = self.first_of_workgroups;
+        let is_lasting = |word: u32, one: &Recorded| {
+            let known = known[usize::from(one.accessor.fragment)][usize::from(word >= first_of_workgroups)];
+            known.is_some_and(|known| one.epoch > known)
+        };
+        let mut epochs: Vec<Vec<u32>> = vec![Vec::new(); self.fragments.len()];
+        for (word, history) in &self.histories {
+            for one in history.accesses.iter().filter(|one| is_lasting(*word, one)) {
+                epochs[usize::from(one.accessor.fragment)].push(one.epoch);
             }
         }
+        for epochs in &mut epochs {
+            epochs.sort_unstable();
+            epochs.dedup();
+        }
+        let dense = |fragment: usize, epoch: u32| epochs[fragment].partition_point(|other| *other <= epoch) as u32;
+        let numbered = |one: &Recorded| dense(usize::from(one.accessor.fragment), one.epoch);
+        for (word, history) in &mut self.histories {
+            if history.accesses.iter().all(|one| is_lasting(*word, one) && numbered(one) == one.epoch) {
+                continue;
+            }
+            let accesses = &mut Rc::make_mut(history).accesses;
+            accesses.retain(|one| is_lasting(*word, one));
+            accesses.iter_mut().for_each(|one| one.epoch = numbered(one));
+        }
+        self.each_view(|key, epoch| fragment_of_clock(key).map_or(epoch, |fragment| dense(fragment, epoch)));
+        for (views, epochs) in self.fragments.iter_mut().zip(&epochs) {
+            views.epoch = epochs.partition_point(|other| *other < views.epoch) as u32 + 1;
+        }
+    }
+
+    /// Returns, per kind of memory, the last epoch of a fragment that every other running fragment is ordered after. `None`: no
+    /// other fragment runs.
+    fn known_epochs(&self, accessor: usize, is_running: &impl Fn(usize) -> bool) -> [Option<u32>; 2] {
+        MemoryKind::ALL.map(|kind| {
+            let others = self.fragments.iter().enumerate();
+            let others = others.filter(|(other, _)| *other != accessor && is_running(*other));
+            others.map(|(_, views)| views.lasting().get(clock(accessor, kind))).min()
+        })
     }
 }

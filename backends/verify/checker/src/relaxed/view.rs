@@ -1,9 +1,11 @@
 //! Views: what a fragment, or a reader of a write, must have observed.
 
+use std::rc::Rc;
+
 /// A map from a key to a number, where absent keys have 0. Keys are words, with positions in their histories, and the clocks of
-/// fragments, with epochs.
+/// fragments, with epochs. Entries are sorted by key. Copies share them until one changes; an empty map has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct View(Vec<(u32, u32)>);
+pub(crate) struct View(Option<Rc<Vec<(u32, u32)>>>);
 
 /// The memory that a workgroup barrier may order by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,13 +36,26 @@ pub(crate) fn is_clock_of(key: u32, fragment: usize) -> bool {
     key >= CLOCKS && key & 0xffff == fragment as u32
 }
 
+/// Returns the fragment of a clock. `None`: the key is a word.
+pub(crate) fn fragment_of_clock(key: u32) -> Option<usize> {
+    (key >= CLOCKS).then_some((key & 0xffff) as usize)
+}
+
 impl View {
     pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.0.is_none()
+    }
+
+    fn entries(&self) -> &[(u32, u32)] {
+        self.0.as_ref().map_or(&[], |entries| entries)
+    }
+
+    fn find(&self, key: u32) -> Result<usize, usize> {
+        self.entries().binary_search_by_key(&key, |entry| entry.0)
     }
 
     pub(crate) fn get(&self, key: u32) -> u32 {
-        self.0.binary_search_by_key(&key, |entry| entry.0).map_or(0, |at| self.0[at].1)
+        self.find(key).map_or(0, |at| self.entries()[at].1)
     }
 
     /// Raises the number of a key to at least `to`.
@@ -48,9 +63,14 @@ impl View {
         if to == 0 {
             return;
         }
-        match self.0.binary_search_by_key(&key, |entry| entry.0) {
-            Ok(at) => self.0[at].1 = self.0[at].1.max(to),
-            Err(at) => self.0.insert(at, (key, to)),
+        let found = self.find(key);
+        if found.is_ok_and(|at| self.entries()[at].1 >= to) {
+            return;
+        }
+        let entries = Rc::make_mut(self.0.get_or_insert_default());
+        match found {
+            Ok(at) => entries[at].1 = to,
+            Err(at) => entries.insert(at, (key, to)),
         }
     }
 
@@ -60,7 +80,11 @@ impl View {
 
     /// Joins the keys of `other` that satisfy a condition.
     pub(crate) fn join_where(&mut self, other: &View, condition: impl Fn(u32) -> bool) {
-        for (key, to) in other.0.iter().filter(|(key, _)| condition(*key)) {
+        if self.is_empty() && other.entries().iter().all(|(key, _)| condition(*key)) {
+            self.0.clone_from(&other.0);
+            return;
+        }
+        for (key, to) in other.entries().iter().filter(|(key, _)| condition(*key)) {
             self.raise(*key, *to);
         }
     }
@@ -72,32 +96,34 @@ impl View {
 
     /// Returns whether no number of `other` is greater than that of the same key here, except for one key.
     pub(crate) fn covers_except(&self, other: &View, key: u32) -> bool {
-        other.0.iter().all(|(other, to)| *other == key || self.get(*other) >= *to)
+        other.entries().iter().all(|(other, to)| *other == key || self.get(*other) >= *to)
     }
 
     /// Keeps the entries that are greater than those of `other`.
     pub(crate) fn keep_above(&mut self, other: &View) {
-        self.0.retain(|(key, to)| other.get(*key) < *to);
+        self.map_all(|key, number| if other.get(key) < number { number } else { 0 });
     }
 
     /// Makes room for a write at a position of a word's history.
     pub(crate) fn shift(&mut self, word: u32, from: u32) {
-        if let Ok(at) = self.0.binary_search_by_key(&word, |entry| entry.0)
-            && self.0[at].1 >= from
-        {
-            self.0[at].1 += 1;
-        }
+        self.map_all(|key, position| position + u32::from(key == word && position >= from));
     }
 
-    /// Replaces the number of a key by a function of it.
-    pub(crate) fn map(&mut self, key: u32, new: impl Fn(u32) -> u32) {
-        if let Ok(at) = self.0.binary_search_by_key(&key, |entry| entry.0) {
-            match new(self.0[at].1) {
-                0 => {
-                    self.0.remove(at);
-                }
-                number => self.0[at].1 = number,
-            }
+    /// Returns whether a function of the entries changes a number.
+    pub(crate) fn is_changed_by(&self, new: impl Fn(u32, u32) -> u32) -> bool {
+        self.entries().iter().any(|(key, number)| new(*key, *number) != *number)
+    }
+
+    /// Replaces every number by a function of its key and itself.
+    pub(crate) fn map_all(&mut self, new: impl Fn(u32, u32) -> u32) {
+        if !self.is_changed_by(&new) {
+            return;
+        }
+        let entries = Rc::make_mut(self.0.get_or_insert_default());
+        entries.iter_mut().for_each(|(key, number)| *number = new(*key, *number));
+        entries.retain(|(_, number)| *number != 0);
+        if entries.is_empty() {
+            self.0 = None;
         }
     }
 }
