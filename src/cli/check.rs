@@ -249,7 +249,7 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
     let notes: String = notes.iter().map(|note| format!("  note: {note}\n")).collect();
     let Some(schedule) = &report.failure else {
         let sentence = match (Verdict::of(limits, report), limits.random_schedules) {
-            (Verdict::Undecided, _) => format!("NOT DECIDED: no failure found, but {}", undecided(limits)),
+            (Verdict::Undecided, _) => format!("NOT DECIDED: no failure found, but {}", undecided(limits, &notes)),
             (_, Some(count)) => format!("no failure in {count} random schedules per case; others may fail"),
             (_, None) => "no failure in any interleaving".to_owned(),
         };
@@ -257,7 +257,7 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
     };
     let verdict = match (Verdict::of(limits, report), report.is_declared) {
         (Verdict::Undecided, _) => {
-            format!("NOT DECIDED: fails with declared hazards, but {}", undecided(limits))
+            format!("NOT DECIDED: fails with declared hazards, but {}", undecided(limits, &notes))
         }
         (_, true) => "fails with declared hazards".to_owned(),
         (_, false) => "FAILS".to_owned(),
@@ -278,9 +278,10 @@ fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String
 }
 
 /// Says why a search decides nothing.
-fn undecided(limits: &Limits) -> String {
+fn undecided(limits: &Limits, notes: &str) -> String {
+    let reason = if notes.is_empty() { "" } else { "see the notes; " };
     format!(
-        "not every state was visited (see the notes; at most {} states of a case are visited, see `--states` and `--random-schedules`)",
+        "not every state was visited ({reason}at most {} states of a case are visited: raise `--states`, or use `--random-schedules`)",
         limits.states
     )
 }

@@ -1,6 +1,5 @@
 //! Parses `--device` and `--order`.
 
-use std::convert::Infallible;
 use std::str::FromStr;
 
 use fragbuf_cpu::FragmentOrder;
@@ -20,14 +19,15 @@ pub(crate) enum DeviceRequest {
 }
 
 impl FromStr for DeviceRequest {
-    type Err = Infallible;
+    type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(match text {
-            "auto" => DeviceRequest::Auto,
-            CPU => DeviceRequest::Cpu,
-            name => DeviceRequest::Named(name.to_owned()),
-        })
+        match text {
+            "" => Err("give `auto`, `cpu` or a part of an adapter's name, which `fragbuf devices` lists".to_owned()),
+            "auto" => Ok(DeviceRequest::Auto),
+            CPU => Ok(DeviceRequest::Cpu),
+            name => Ok(DeviceRequest::Named(name.to_owned())),
+        }
     }
 }
 

@@ -67,6 +67,10 @@ impl Generate {
 
     /// Writes everything once, and adds the files that it reads to `files`.
     fn generate(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
+        if self.out.as_os_str() == "-" {
+            let help = "`fragbuf show KEY --dump wgsl` prints the sources";
+            return Err(Failure::Usage(format!("`generate` writes a folder, and `-` is none: {help}")));
+        }
         let registry = Registry::builtin();
         let targets = targets::several(&self.target)?;
         let form = match self.form {

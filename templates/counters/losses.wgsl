@@ -1,5 +1,5 @@
-// Counts losses and no other events: a frame without losses never accesses the counters. That better fragments displace one is no
-// loss: the description limits how many a pixel keeps.
+// Counts losses and no other events: a frame without losses never accesses the counters. A fragment that better ones
+// displace is no loss, because the description limits how many a pixel keeps.
 
 /// Does nothing: an event is not a loss.
 fn count_event(counter: u32) {}
