@@ -1,7 +1,11 @@
 //! `fragbuf generate`: writes files and a manifest to a folder. Writing begins after everything is generated.
 
 use std::fs;
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
 use fragbuf::{Form, Generation, Registry, Request, generate, manifest};
 
@@ -79,7 +83,7 @@ impl Generate {
         };
         let request = Request { targets: &targets, form, prefix: &self.prefix, group: self.group };
         let all = registry.techniques().iter().filter(|_| self.all).map(|technique| technique.key.clone());
-        let mut folders: Vec<(PathBuf, Generation)> = Vec::new();
+        let (mut inputs, mut variants) = (Vec::new(), Vec::new());
         for argument in self.description.iter().cloned().chain(all) {
             let mut input = Input::read(&argument, &registry)?;
             if form == Form::Module {
@@ -87,10 +91,15 @@ impl Generate {
             }
             let variant = input.variant(&self.set, &registry);
             files.extend_from_slice(input.files());
-            let variant = variant?;
-            let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
+            variants.push(variant?);
+            inputs.push((argument, input));
+        }
+        let mut folders: Vec<(PathBuf, Generation)> = Vec::new();
+        let generations = on_all_cores(&variants, |variant| generate(variant, &request, &registry));
+        for (((argument, input), variant), generation) in inputs.into_iter().zip(&variants).zip(generations) {
+            let generation = generation.map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() && !self.all {
-                return Err(targets::unsupported(&argument, &variant, &request, &generation));
+                return Err(targets::unsupported(&argument, variant, &request, &generation));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));
@@ -113,6 +122,26 @@ impl Generate {
         }
         Ok(())
     }
+}
+
+/// Returns the result of `work` for each item, in the order of the items. A single item needs no thread.
+fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    if items.len() < 2 {
+        return items.iter().map(work).collect();
+    }
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(items.len())));
+    let worker = || {
+        let indices = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+        for (index, item) in indices.map_while(|index| Some((index, items.get(index)?))) {
+            let result = work(item);
+            results.lock().unwrap_or_else(PoisonError::into_inner).push((index, result));
+        }
+    };
+    thread::scope(|scope| (0..cores.min(items.len())).for_each(|_| drop(scope.spawn(&worker))));
+    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    results.sort_unstable_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// The error if no technique can be written for any of the targets.

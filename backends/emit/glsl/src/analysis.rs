@@ -11,6 +11,7 @@ use naga::{
 };
 
 use crate::footprint::{self, CallFootprints, Footprint};
+use crate::per_expression::PerExpression;
 use crate::types::numeric;
 
 /// One evaluation of an expression, or one statement.
@@ -45,8 +46,8 @@ pub struct Order<'m> {
     pub steps: Vec<OrderedStep<'m>>,
     pub blocks: Vec<BlockOrder>,
     /// The step that evaluates an expression; none for constants, arguments and variables.
-    pub evaluated: BTreeMap<Handle<Expression>, usize>,
-    pub uses: BTreeMap<Handle<Expression>, Vec<Use>>,
+    pub evaluated: PerExpression<Option<usize>>,
+    pub uses: PerExpression<Vec<Use>>,
     /// Used for look-up only, so that addresses do not affect the output.
     statements: BTreeMap<*const Statement, usize>,
     /// The comparison value of each compare-exchange, by its result.
@@ -69,15 +70,15 @@ impl<'m> Order<'m> {
             source,
             steps: Vec::new(),
             blocks: vec![BlockOrder { parent: None, owner: 0, is_loop: false }],
-            evaluated: BTreeMap::new(),
-            uses: BTreeMap::new(),
+            evaluated: PerExpression::new(function),
+            uses: PerExpression::new(function),
             statements: BTreeMap::new(),
             compared: BTreeMap::new(),
         };
         order.walk(&function.body, 0, calls);
         for (user, _) in function.expressions.iter() {
             for (operand, times, lazy) in order.operands(user) {
-                order.uses.entry(operand).or_default().push(Use::Expression { user, times, lazy });
+                order.uses[operand].push(Use::Expression { user, times, lazy });
             }
         }
         order
@@ -104,7 +105,7 @@ impl<'m> Order<'m> {
             if let Statement::Emit(range) = statement {
                 self.statements.insert(std::ptr::from_ref(statement), self.steps.len());
                 for expression in range.clone() {
-                    self.evaluated.insert(expression, self.steps.len());
+                    self.evaluated[expression] = Some(self.steps.len());
                     let footprint = footprint::of_expression(self.module, self.function, expression);
                     self.steps.push(OrderedStep { block: id, statement: None, footprint });
                 }
@@ -131,7 +132,7 @@ impl<'m> Order<'m> {
                     && std::ptr::eq(inner, continuing)
                 {
                     // The condition is evaluated at the end of the continuing block.
-                    self.uses.entry(*condition).or_default().push(Use::Step { step: self.steps.len(), times: 1 });
+                    self.uses[*condition].push(Use::Step { step: self.steps.len(), times: 1 });
                     self.steps.push(OrderedStep { block: inner_id, statement: None, footprint: Footprint::default() });
                 }
             }
@@ -142,7 +143,7 @@ impl<'m> Order<'m> {
     fn record_uses(&mut self, statement: &Statement, step: usize) {
         let mut results = Vec::new();
         let mut use_once = |operand: Handle<Expression>| {
-            self.uses.entry(operand).or_default().push(Use::Step { step, times: 1 });
+            self.uses[operand].push(Use::Step { step, times: 1 });
         };
         match *statement {
             Statement::If { condition, .. } => use_once(condition),
@@ -166,18 +167,18 @@ impl<'m> Order<'m> {
                     results.extend(result.map(|result| (result, compare)));
                 }
                 if let Some(result) = result {
-                    self.evaluated.insert(result, step);
+                    self.evaluated[result] = Some(step);
                 }
             }
             Statement::Call { ref arguments, result, .. } => {
                 arguments.iter().copied().for_each(use_once);
                 if let Some(result) = result {
-                    self.evaluated.insert(result, step);
+                    self.evaluated[result] = Some(step);
                 }
             }
             Statement::WorkGroupUniformLoad { pointer, result } => {
                 use_once(pointer);
-                self.evaluated.insert(result, step);
+                self.evaluated[result] = Some(step);
             }
             _ => {}
         }

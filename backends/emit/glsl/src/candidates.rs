@@ -85,7 +85,7 @@ fn only_load(order: &Order, variable: Handle<LocalVariable>, block: usize) -> Op
         matches!(expression, Expression::Load { pointer } if order.function.expressions[*pointer] == Expression::LocalVariable(variable))
     });
     let (load, _) = loads.next()?;
-    let step = *order.evaluated.get(&load)?;
+    let step = order.evaluated[load]?;
     (loads.next().is_none() && order.steps[step].block == block).then_some(load)
 }
 
@@ -96,7 +96,7 @@ pub fn find_compound_assignments(order: &Order) -> CompoundAssignments {
         let Some(statement @ Statement::Store { pointer, value }) = entry.statement else { continue };
         let Expression::Binary { op, left, .. } = order.function.expressions[*value] else { continue };
         let Expression::Load { pointer: loaded } = order.function.expressions[left] else { continue };
-        let single = |expression| order.uses.get(&expression).is_some_and(|uses| uses.len() == 1);
+        let single = |expression| order.uses[expression].len() == 1;
         let nameless = |expression| !order.function.named_expressions.contains_key(&expression);
         let atomic = footprint::is_atomic(order.module, order.function, *pointer);
         if loaded == *pointer

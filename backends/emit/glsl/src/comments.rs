@@ -3,6 +3,8 @@
 //! Input: the source and byte positions of statements. Output: each `//` comment at most once, with its statement. Doc
 //! comments are skipped, because the module contains them.
 
+use std::ops::Range;
+
 /// A `//` comment.
 struct Comment<'a> {
     start: usize,
@@ -62,10 +64,15 @@ impl<'a> Comments<'a> {
         self.comments.push(Comment { start, text: text.trim_end(), block, trailing, used: false });
     }
 
+    /// Returns the innermost pair of braces around a position.
+    fn braces_around(&self, position: usize) -> Option<(usize, usize)> {
+        let before = self.braces.partition_point(|(open, _)| *open < position);
+        self.braces[..before].iter().rev().find(|(_, close)| position < *close).copied()
+    }
+
     /// Returns the innermost pair of braces around a position, by its opening brace; 0 outside all braces.
     fn block_at(&self, position: usize) -> usize {
-        let around = self.braces.iter().filter(|(open, close)| *open < position && position < *close);
-        around.map(|(open, _)| *open).max().unwrap_or_default()
+        self.braces_around(position).map_or(0, |(open, _)| open)
     }
 
     /// Takes the unused comments before a position in the same block.
@@ -74,34 +81,35 @@ impl<'a> Comments<'a> {
         if block == 0 {
             return Vec::new();
         }
-        self.take(|comment| comment.block == block && comment.start < position)
+        self.take(block..position, |comment| comment.block == block)
     }
 
     /// Takes the unused comments inside a statement.
     pub fn within(&mut self, start: usize, end: usize) -> Vec<&'a str> {
-        self.take(|comment| (start..end).contains(&comment.start))
+        self.take(start..end, |_| true)
     }
 
     /// Takes all unused comments of the block around a position.
     pub fn rest(&mut self, position: usize) -> Vec<&'a str> {
-        let block = self.block_at(position);
-        if block == 0 {
-            return Vec::new();
+        match self.braces_around(position) {
+            Some((block, end)) if block != 0 => self.take(block..end, |comment| comment.block == block),
+            _ => Vec::new(),
         }
-        self.take(|comment| comment.block == block)
     }
 
     /// Takes the comment after the end of a statement, on the same line.
     pub fn after(&mut self, end: usize) -> Option<&'a str> {
         let line_end = self.source.get(end..)?.find('\n').map_or(self.source.len(), |length| end + length);
-        let mut comments = self.take(|comment| comment.trailing && (end..line_end).contains(&comment.start));
+        let mut comments = self.take(end..line_end, |comment| comment.trailing);
         comments.pop()
     }
 
-    /// Takes the unused comments that match.
-    fn take(&mut self, wanted: impl Fn(&Comment<'a>) -> bool) -> Vec<&'a str> {
+    /// Takes the unused comments that start in a range and match.
+    fn take(&mut self, range: Range<usize>, wanted: impl Fn(&Comment<'a>) -> bool) -> Vec<&'a str> {
         let mut texts = Vec::new();
-        for comment in self.comments.iter_mut().filter(|comment| !comment.used) {
+        let first = self.comments.partition_point(|comment| comment.start < range.start);
+        let in_range = self.comments[first..].iter_mut().take_while(|comment| comment.start < range.end);
+        for comment in in_range.filter(|comment| !comment.used) {
             if wanted(comment) {
                 comment.used = true;
                 texts.push(comment.text);

@@ -243,7 +243,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
         visible.any(|statement| match statement {
             Statement::Emit(_) => true,
             Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. } => {
-                self.plan.baked.contains(result)
+                self.plan.baked[*result]
             }
             Statement::Store { .. } => self.declarations.by_store.contains_key(&self.order.step_of(statement)),
             _ => false,

@@ -37,10 +37,7 @@ impl FunctionPrinter<'_, '_> {
     /// Tests whether the printed body uses an argument.
     fn uses_argument(&self, index: usize) -> bool {
         let is_argument = |expression: &Expression| matches!(expression, Expression::FunctionArgument(argument) if *argument as usize == index);
-        self.function
-            .expressions
-            .iter()
-            .any(|(handle, expression)| is_argument(expression) && self.plan.live.contains(&handle))
+        self.function.expressions.iter().any(|(handle, expression)| is_argument(expression) && self.plan.live[handle])
     }
 
     /// Assigns the result to the outputs.

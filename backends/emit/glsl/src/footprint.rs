@@ -136,14 +136,19 @@ fn is_storage_image(module: &Module, function: &Function, image: Handle<Expressi
 /// The footprint of calling each function, with pointer arguments as parameters.
 pub type CallFootprints = BTreeMap<Handle<Function>, Footprint>;
 
-/// Returns the footprints of all functions; naga stores callees before callers.
-pub fn of_functions(module: &Module, marker: impl Fn(Handle<Function>) -> Option<Marker>) -> CallFootprints {
+/// Returns the footprints of `functions` and of all markers; naga stores callees before callers.
+pub fn of_functions(
+    module: &Module,
+    functions: &BTreeSet<Handle<Function>>,
+    marker: impl Fn(Handle<Function>) -> Option<Marker>,
+) -> CallFootprints {
     let mut calls = CallFootprints::new();
     for (handle, function) in module.functions.iter() {
         let footprint = match marker(handle) {
             Some(Marker::HelperLane) => Footprint::default(),
             Some(_) => Footprint::writing(MemoryObject::Memory),
-            None => of_body(module, function, &calls),
+            None if functions.contains(&handle) => of_body(module, function, &calls),
+            None => continue,
         };
         calls.insert(handle, footprint);
     }

@@ -11,9 +11,8 @@ use crate::analysis::Order;
 use crate::footprint::CallFootprints;
 use crate::interface::Interface;
 use crate::locals::{Declarations, declarations};
-use crate::names::{legal_name, unique_name};
+use crate::names::{legal_unreserved, unique_name};
 use crate::printer::Printer;
-use crate::reserved::is_reserved;
 use crate::schedule::{Plan, plan};
 
 /// A loop that is being printed, with what a `continue` must do first.
@@ -80,7 +79,7 @@ impl<'p, 'm> FunctionPrinter<'p, 'm> {
     pub fn declare(&mut self, wanted: &str) -> String {
         let taken =
             |name: &str| self.printer.names.is_taken(name) || self.scopes.iter().any(|scope| scope.contains(name));
-        let name = unique_name(&legal_name(wanted, is_reserved), taken);
+        let name = unique_name(&legal_unreserved(wanted), taken);
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.clone());
         }

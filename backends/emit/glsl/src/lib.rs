@@ -28,6 +28,7 @@ mod locals;
 mod math;
 mod names;
 mod options;
+mod per_expression;
 mod precedence;
 mod printer;
 mod reach;

@@ -3,6 +3,7 @@
 //! A name that GLSL reserves gets a `_` at the end; others are unchanged. The result depends only on the order of the
 //! module's arenas, so the same module has the same names on every run.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::reserved::{is_keyword, is_reserved};
@@ -30,6 +31,11 @@ pub fn legal_name(name: &str, reserved: impl Fn(&str) -> bool) -> String {
         text.push(if text.ends_with('_') { 'x' } else { '_' });
     }
     text
+}
+
+/// Returns a legal name for a function, variable or type; it may be taken.
+pub fn legal_unreserved(name: &str) -> Cow<'_, str> {
+    if is_legal(name) { Cow::Borrowed(name) } else { Cow::Owned(legal_name(name, is_reserved)) }
 }
 
 /// Tests whether a name is legal unchanged.
@@ -70,8 +76,12 @@ pub struct GlobalNames {
 impl GlobalNames {
     /// Reserves a new name at module scope.
     pub fn declare(&mut self, name: &str) -> String {
-        let legal = if is_legal(name) { name.to_owned() } else { legal_name(name, is_reserved) };
-        let name = unique_name(&legal, |candidate| self.taken.contains(candidate));
+        self.declare_legal(&legal_unreserved(name))
+    }
+
+    /// As [`Self::declare`], for a legal name.
+    fn declare_legal(&mut self, name: &str) -> String {
+        let name = unique_name(name, |candidate| self.taken.contains(candidate));
         self.taken.insert(name.clone());
         name
     }
@@ -94,34 +104,39 @@ pub fn field_name(members: &[naga::StructMember], index: usize) -> String {
     unique_name(&name, |candidate| before.iter().any(|earlier| earlier == candidate))
 }
 
+/// An item at module scope.
+enum Item {
+    Type(Handle<Type>),
+    Constant(Handle<Constant>),
+    Global(Handle<GlobalVariable>),
+    Function(Handle<Function>),
+}
+
+/// Returns the items that have a name.
+fn named_items(module: &Module) -> impl Iterator<Item = (Item, &str)> {
+    let types = module.types.iter().filter(|(_, ty)| matches!(ty.inner, TypeInner::Struct { .. }));
+    let types = types.filter_map(|(handle, ty)| Some((Item::Type(handle), ty.name.as_deref()?)));
+    let constants = module.constants.iter();
+    let constants = constants.filter_map(|(handle, item)| Some((Item::Constant(handle), item.name.as_deref()?)));
+    let globals = module.global_variables.iter();
+    let globals = globals.filter_map(|(handle, item)| Some((Item::Global(handle), item.name.as_deref()?)));
+    let functions = module.functions.iter();
+    let functions = functions.filter_map(|(handle, item)| Some((Item::Function(handle), item.name.as_deref()?)));
+    types.chain(constants).chain(globals).chain(functions)
+}
+
 /// Names all module-scope items. Legal names come first, so that a mangled name never takes one of them.
 pub fn global_names(module: &Module) -> GlobalNames {
     let mut names = GlobalNames::default();
-    for keep in [true, false] {
-        let wanted = |name: &Option<String>| name.clone().filter(|name| is_legal(name) == keep);
-        for (handle, ty) in module.types.iter() {
-            if let (Some(name), TypeInner::Struct { .. }) = (wanted(&ty.name), &ty.inner) {
-                let name = names.declare(&name);
-                names.types.insert(handle, name);
-            }
-        }
-        for (handle, constant) in module.constants.iter() {
-            if let Some(name) = wanted(&constant.name) {
-                let name = names.declare(&name);
-                names.constants.insert(handle, name);
-            }
-        }
-        for (handle, global) in module.global_variables.iter() {
-            if let Some(name) = wanted(&global.name) {
-                let name = names.declare(&name);
-                names.globals.insert(handle, name);
-            }
-        }
-        for (handle, function) in module.functions.iter() {
-            if let Some(name) = wanted(&function.name) {
-                let name = names.declare(&name);
-                names.functions.insert(handle, name);
-            }
+    let (legal, others): (Vec<_>, Vec<_>) = named_items(module).partition(|(_, name)| is_legal(name));
+    let count = legal.len();
+    for (index, (item, name)) in legal.into_iter().chain(others).enumerate() {
+        let name = if index < count { names.declare_legal(name) } else { names.declare(name) };
+        match item {
+            Item::Type(handle) => drop(names.types.insert(handle, name)),
+            Item::Constant(handle) => drop(names.constants.insert(handle, name)),
+            Item::Global(handle) => drop(names.globals.insert(handle, name)),
+            Item::Function(handle) => drop(names.functions.insert(handle, name)),
         }
     }
     for (handle, _) in module.global_variables.iter().filter(|(_, global)| global.name.is_none()) {

@@ -2,7 +2,7 @@
 //!
 //! Tests whether a name is reserved for fields, or for functions, variables and types. `names` chooses replacements.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// Keywords, keywords reserved for future use, and types: reserved for variables, functions, types and fields.
@@ -54,29 +54,32 @@ const TYPE_PREFIXES: &[&str] = &["", "i", "u"];
 const TYPE_STEMS: &[&str] = &["sampler", "texture", "image"];
 const SHAPES: &[&str] = &["1D", "2D", "3D", "Cube", "Buffer"];
 
-/// The two lists above, as sets.
-struct ReservedNames {
-    keywords: HashSet<&'static str>,
-    functions: HashSet<&'static str>,
+/// The two lists above.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum List {
+    Keywords,
+    Functions,
 }
 
-static RESERVED: LazyLock<ReservedNames> = LazyLock::new(|| ReservedNames {
-    keywords: KEYWORDS.split(' ').collect(),
-    functions: FUNCTIONS.split(' ').collect(),
+static RESERVED: LazyLock<HashMap<&'static str, List>> = LazyLock::new(|| {
+    let functions = FUNCTIONS.split(' ').map(|name| (name, List::Functions));
+    functions.chain(KEYWORDS.split(' ').map(|name| (name, List::Keywords))).collect()
 });
 
 /// Tests whether a name is reserved even for fields.
 pub fn is_keyword(name: &str) -> bool {
-    RESERVED.keywords.contains(name)
-        || name.starts_with("gl_")
-        || name.contains("__")
-        || is_matrix(name)
-        || is_opaque(name)
+    RESERVED.get(name) == Some(&List::Keywords) || has_reserved_form(name)
 }
 
 /// Tests whether a name is reserved for functions, variables and types.
 pub fn is_reserved(name: &str) -> bool {
-    is_keyword(name) || RESERVED.functions.contains(name) || FAMILIES.iter().any(|family| is_of_family(name, family))
+    RESERVED.contains_key(name) || has_reserved_form(name) || FAMILIES.iter().any(|family| is_of_family(name, family))
+}
+
+/// Tests for the forms of names that are reserved even for fields.
+fn has_reserved_form(name: &str) -> bool {
+    let has_two_underscores = || name.as_bytes().windows(2).any(|pair| pair == b"__");
+    name.starts_with("gl_") || has_two_underscores() || is_matrix(name) || is_opaque(name)
 }
 
 /// Tests whether a name is of a family: `texture` and `textureLod` are of `texture`; `textured` and `texture_size` are not.

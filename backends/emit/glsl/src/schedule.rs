@@ -16,14 +16,14 @@ use crate::candidates::{
     CompoundAssignments, ShortCircuit, ShortCircuits, find_compound_assignments, find_short_circuits,
 };
 use crate::footprint::{self, Footprint, MemoryObject};
+use crate::per_expression::PerExpression;
 
 /// The decisions for one function.
-#[derive(Default)]
 pub struct Plan {
     /// Expressions that get a variable where they are evaluated.
-    pub baked: BTreeSet<Handle<Expression>>,
+    pub baked: PerExpression<bool>,
     /// Expressions that are used.
-    pub live: BTreeSet<Handle<Expression>>,
+    pub live: PerExpression<bool>,
     /// Short circuits, by the expression that loads their value.
     pub short_circuits: BTreeMap<Handle<Expression>, ShortCircuit>,
     /// Short circuits, by the step of the `if` that they were lowered to.
@@ -84,15 +84,23 @@ struct Decision<'a, 'm> {
     short_circuits: &'a ShortCircuits,
     compound: &'a CompoundAssignments,
     /// The steps at which an expression prints, through all users that are not baked.
-    sites: BTreeMap<Handle<Expression>, Vec<UseSite>>,
+    sites: PerExpression<Vec<UseSite>>,
     /// How often an expression prints.
-    times: BTreeMap<Handle<Expression>, usize>,
-    baked: BTreeSet<Handle<Expression>>,
+    times: PerExpression<usize>,
+    baked: PerExpression<bool>,
 }
 
 impl<'a, 'm> Decision<'a, 'm> {
     fn new(order: &'a Order<'m>, short_circuits: &'a ShortCircuits, compound: &'a CompoundAssignments) -> Self {
-        Self { order, short_circuits, compound, sites: BTreeMap::new(), times: BTreeMap::new(), baked: BTreeSet::new() }
+        let function = order.function;
+        Self {
+            order,
+            short_circuits,
+            compound,
+            sites: PerExpression::new(function),
+            times: PerExpression::new(function),
+            baked: PerExpression::new(function),
+        }
     }
 
     /// Decides all expressions, from last to first: users follow their operands, so every use of an operand is decided
@@ -101,11 +109,9 @@ impl<'a, 'm> Decision<'a, 'm> {
         let handles: Vec<_> = self.order.function.expressions.iter().map(|(handle, _)| handle).collect();
         for &expression in handles.iter().rev() {
             let (times, sites) = self.collect(expression);
-            self.times.insert(expression, times);
-            self.sites.insert(expression, sites);
-            if self.must_bake(expression) {
-                self.baked.insert(expression);
-            }
+            self.times[expression] = times;
+            self.sites[expression] = sites;
+            self.baked[expression] = self.must_bake(expression);
         }
         self
     }
@@ -114,7 +120,7 @@ impl<'a, 'm> Decision<'a, 'm> {
     fn collect(&self, expression: Handle<Expression>) -> (usize, Vec<UseSite>) {
         let mut total = 0;
         let mut sites = Vec::new();
-        for used in self.order.uses.get(&expression).into_iter().flatten() {
+        for used in &self.order.uses[expression] {
             match *used {
                 Use::Step { step, times } => {
                     total += times;
@@ -124,13 +130,13 @@ impl<'a, 'm> Decision<'a, 'm> {
                 Use::Expression { user, .. } if self.compound.values().any(|(_, load)| *load == user) => {}
                 Use::Expression { user, .. } if self.short_circuits.contains_key(&user) => {}
                 Use::Expression { user, times, lazy } => {
-                    let user_times = self.times.get(&user).copied().unwrap_or_default();
-                    if self.baked.contains(&user) {
+                    let user_times = self.times[user];
+                    if self.baked[user] {
                         total += times;
-                        sites.extend(self.order.evaluated.get(&user).map(|step| UseSite { step: *step, lazy }));
+                        sites.extend(self.order.evaluated[user].map(|step| UseSite { step, lazy }));
                     } else if user_times > 0 {
                         total += times * user_times;
-                        let passed_on = self.sites.get(&user).into_iter().flatten();
+                        let passed_on = self.sites[user].iter();
                         sites.extend(passed_on.map(|site| UseSite { step: site.step, lazy: site.lazy || lazy }));
                     }
                 }
@@ -141,17 +147,14 @@ impl<'a, 'm> Decision<'a, 'm> {
 
     /// Tests whether an expression needs a variable.
     fn must_bake(&self, expression: Handle<Expression>) -> bool {
-        if !self.order.evaluated.contains_key(&expression)
-            || self.order.is_pointer(expression)
-            || self.is_opaque(expression)
+        if self.order.evaluated[expression].is_none() || self.order.is_pointer(expression) || self.is_opaque(expression)
         {
             return false;
         }
         if name_of(self.order, expression).is_some() {
             return true;
         }
-        let times = self.times.get(&expression).copied().unwrap_or_default();
-        match times {
+        match self.times[expression] {
             0 => false,
             1 => !self.may_move(expression),
             _ => !self.is_cheap(expression) || !self.may_move(expression),
@@ -195,7 +198,7 @@ impl<'a, 'm> Decision<'a, 'm> {
             let footprint = self.short_circuit_footprint(circuit);
             return Some(Evaluation { first: circuit.first, end: circuit.end, footprint });
         }
-        let step = *self.order.evaluated.get(&expression)?;
+        let step = self.order.evaluated[expression]?;
         let mut footprint = self.order.steps[step].footprint.clone();
         // The operands of a call or atomic move with it.
         if let Some(statement) = self.order.steps[step].statement {
@@ -234,8 +237,7 @@ impl<'a, 'm> Decision<'a, 'm> {
         if name_of(self.order, expression).is_some() {
             return;
         }
-        let is_result =
-            self.order.evaluated.get(&expression).is_some_and(|step| self.order.steps[*step].statement.is_some());
+        let is_result = self.order.evaluated[expression].is_some_and(|step| self.order.steps[step].statement.is_some());
         if is_result || self.short_circuits.contains_key(&expression) {
             if let Some(evaluation) = self.evaluation(expression) {
                 footprint.join(&evaluation.footprint);
@@ -251,8 +253,7 @@ impl<'a, 'm> Decision<'a, 'm> {
     /// Tests whether an expression may print at all its uses.
     fn may_move(&self, expression: Handle<Expression>) -> bool {
         let Some(evaluation) = self.evaluation(expression) else { return true };
-        let sites = self.sites.get(&expression).map(Vec::as_slice).unwrap_or_default();
-        sites.iter().all(|site| self.may_move_to(expression, &evaluation, *site))
+        self.sites[expression].iter().all(|site| self.may_move_to(expression, &evaluation, *site))
     }
 
     /// Tests whether an expression may print at one use, by the rule above.
@@ -289,24 +290,21 @@ impl<'a, 'm> Decision<'a, 'm> {
     /// Tests whether everything that the right side of a short circuit needs can print within it.
     fn fits_short_circuit(&self, circuit: &ShortCircuit) -> bool {
         let steps = circuit.first + 1..circuit.end;
-        let baked = self
-            .order
-            .evaluated
-            .iter()
-            .any(|(expression, step)| steps.contains(step) && self.baked.contains(expression));
+        let is_within = |expression| self.order.evaluated[expression].is_some_and(|step| steps.contains(&step));
+        let mut expressions = self.order.function.expressions.iter();
+        let baked = expressions.any(|(expression, _)| self.baked[expression] && is_within(expression));
         let statements = steps.clone().all(|step| match self.order.steps[step].statement {
             None => true,
             Some(Statement::Store { .. }) => self.is_short_circuit_store(step),
             Some(Statement::If { .. }) => {
-                self.short_circuits.values().any(|other| other.first == step && !self.baked.contains(&other.value))
+                self.short_circuits.values().any(|other| other.first == step && !self.baked[other.value])
             }
             Some(Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. }) => {
-                self.times.get(result) == Some(&1)
+                self.times[*result] == 1
             }
             Some(_) => false,
         });
-        let used =
-            self.baked.contains(&circuit.value) || self.times.get(&circuit.value).is_some_and(|times| *times > 0);
+        let used = self.baked[circuit.value] || self.times[circuit.value] > 0;
         !baked && statements && used
     }
 
@@ -320,11 +318,12 @@ impl<'a, 'm> Decision<'a, 'm> {
     fn fits_compound_assignment(&self, step: usize, (value, load): (Handle<Expression>, Handle<Expression>)) -> bool {
         let Some(evaluation) = self.evaluation(load) else { return false };
         let site = UseSite { step, lazy: false };
-        !self.baked.contains(&value) && self.may_move_to(load, &evaluation, site)
+        !self.baked[value] && self.may_move_to(load, &evaluation, site)
     }
 
     fn into_plan(self) -> Plan {
-        let live = self.times.iter().filter(|(_, times)| **times > 0).map(|(expression, _)| *expression).collect();
+        let mut live = PerExpression::new(self.order.function);
+        self.order.function.expressions.iter().for_each(|(used, _)| live[used] = self.times[used] > 0);
         Plan {
             live,
             short_circuit_steps: self.short_circuits.values().map(|circuit| (circuit.first, circuit.value)).collect(),

@@ -82,8 +82,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
     /// Tests whether a statement prints nothing at its position.
     pub fn is_silent(&self, statement: &Statement) -> bool {
         let step = self.order.step_of(statement);
-        let inlined =
-            |result: &Handle<Expression>| self.plan.live.contains(result) && !self.plan.baked.contains(result);
+        let inlined = |result: &Handle<Expression>| self.plan.live[*result] && !self.plan.baked[*result];
         let silent = match statement {
             Statement::Emit(range) => !range.clone().any(|expression| self.is_baked_here(expression)),
             Statement::If { .. } => self.plan.short_circuit_steps.get(&step).is_some_and(inlined),
@@ -97,7 +96,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
 
     /// Tests whether an `Emit` prints a variable for an expression.
     fn is_baked_here(&self, expression: Handle<Expression>) -> bool {
-        self.plan.baked.contains(&expression) && !self.plan.short_circuits.contains_key(&expression)
+        self.plan.baked[expression] && !self.plan.short_circuits.contains_key(&expression)
     }
 
     /// Prints a statement other than a loop.
@@ -118,7 +117,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
                 }
             }
             Statement::Call { result: Some(result), .. } | Statement::Atomic { result: Some(result), .. }
-                if self.plan.baked.contains(result) =>
+                if self.plan.baked[*result] =>
             {
                 self.bake(*result, span);
             }
@@ -225,7 +224,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
     /// Records an error for a compare-exchange whose result is used as a whole.
     fn check_compare_exchange(&mut self, result: Option<Handle<Expression>>) {
         let Some(result) = result.filter(|result| self.order.compared.contains_key(result)) else { return };
-        let members_only = self.order.uses.get(&result).into_iter().flatten().all(|used| match used {
+        let members_only = self.order.uses[result].iter().all(|used| match used {
             crate::analysis::Use::Expression { user, .. } => {
                 matches!(self.function.expressions[*user], Expression::AccessIndex { .. })
             }
@@ -325,7 +324,7 @@ impl<'m> FunctionPrinter<'_, 'm> {
 
     /// Prints the call or atomic that produces a result, at the use of the result.
     pub fn result_in_place(&mut self, expression: Handle<Expression>) -> Text {
-        let step = self.order.evaluated.get(&expression).copied();
+        let step = self.order.evaluated[expression];
         let statement = step.and_then(|step| self.order.steps[step].statement);
         let text = statement.and_then(|statement| self.simple(statement));
         Text::primary(text.unwrap_or_else(|| self.error("a result without its statement", expression)))

@@ -17,7 +17,6 @@ use crate::reach::reached;
 /// Prints a unit.
 pub fn print(printer: &mut Printer, unit: Unit) -> String {
     let module = printer.module;
-    let calls = of_functions(module, |function| printer.marker(function));
     match unit {
         Unit::Library => {
             let functions = module
@@ -26,6 +25,7 @@ pub fn print(printer: &mut Printer, unit: Unit) -> String {
                 .map(|(handle, _)| handle)
                 .filter(|handle| printer.marker(*handle).is_none())
                 .collect();
+            let calls = of_functions(module, &functions, |function| printer.marker(function));
             let bodies = print_functions(printer, &functions, &calls);
             assemble(printer, Vec::new(), Vec::new(), bodies, false)
         }
@@ -36,6 +36,7 @@ pub fn print(printer: &mut Printer, unit: Unit) -> String {
             printer.has_main = true;
             let entry = &module.entry_points[index];
             let functions = reached(module, &entry.function.body, &|function| printer.marker(function).is_some());
+            let calls = of_functions(module, &functions, |function| printer.marker(function));
             let mut bodies = print_functions(printer, &functions, &calls);
             let (main, interface) = print_main(printer, index, &calls);
             bodies.push(main);
