@@ -148,7 +148,7 @@ impl<'p> Machine<'p> {
             return Exit::Endless;
         }
         // A machine that has ended or was stopped meanwhile does so again.
-        self.run(shared)
+        self.run_jumps(shared, BACKWARD_JUMP_LIMIT - FIRST_JUMPS - LONGEST_CYCLE)
     }
 
     /// Returns whether the machine comes back to a state in which it has been, before `shared` stops it. It has reached a limit of

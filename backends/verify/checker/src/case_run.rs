@@ -99,6 +99,7 @@ impl<'s> CaseRun<'s> {
         context.by_submission = subject.has_ordered_interlock;
         context.one_by_one = options.one_by_one;
         context.is_reduced = options.is_reduced;
+        context.wants_shortest = options.wants_shortest;
         context.has_weak_exchange = subject.has_weak_exchange && options.model == Model::Relaxed;
         context.counts_samples = runnable.is_awaited;
         context.helper = case.has_helper.then(|| case.new.len() - 1);

@@ -31,6 +31,8 @@ pub(crate) struct SearchOptions {
     pub(crate) is_reduced: bool,
     /// Whether the shortest schedule of a declared hazard is wanted.
     pub(crate) wants_hazard: bool,
+    /// Whether the shortest schedule of a failure is wanted.
+    pub(crate) wants_shortest: bool,
 }
 
 impl SearchOptions {

@@ -43,6 +43,8 @@ pub(crate) struct SearchContext<'p> {
     pub(crate) has_weak_exchange: bool,
     /// Whether steps that do not affect each other are followed in one order only.
     pub(crate) is_reduced: bool,
+    /// Whether a reduced search leaves failures to the search that finds the shortest schedule.
+    pub(crate) wants_shortest: bool,
     /// The fragment that is a helper invocation: its writes have no effect, and its atomic operations return any value.
     pub(crate) helper: Option<usize>,
     /// Whether the interlock admits fragments by number, in submission order.
@@ -125,6 +127,7 @@ impl<'p> SearchContext<'p> {
             has_fences: model == Model::Relaxed,
             has_weak_exchange: false,
             is_reduced: false,
+            wants_shortest: true,
             helper: None,
             by_submission: false,
             one_by_one: false,

@@ -54,6 +54,13 @@ pub(crate) fn explore_reduced(
         Ok(_) => None,
         Err(Undecided(found)) => found,
     };
+    // The steps of a failure are an execution, so it needs no confirmation. A loop that is too long decides nothing.
+    let found = match found {
+        Some(failure) if !context.wants_shortest && !failure.is_undecided() => {
+            return SearchResult { is_exhaustive: true, failure: Some(failure), ..search.result };
+        }
+        found => found,
+    };
     let result = explore(context, first, property, limit);
     match result.is_exhaustive {
         true => result,

@@ -49,9 +49,8 @@ pub(crate) struct SearchResult {
 impl SearchResult {
     /// Returns the result without a failure that decides nothing.
     pub(crate) fn decided(self) -> Self {
-        let is_undecided = |failure: &Failure| matches!(failure.kind, FailureKind::Step(_, StepError::TooLong));
         match &self.failure {
-            Some(failure) if is_undecided(failure) => {
+            Some(failure) if failure.is_undecided() => {
                 SearchResult { failure: None, hazard: None, is_exhaustive: false, ..self }
             }
             _ => self,
@@ -87,6 +86,13 @@ impl SearchResult {
 pub(crate) struct Failure {
     pub(crate) steps: Vec<Step>,
     pub(crate) kind: FailureKind,
+}
+
+impl Failure {
+    /// Returns whether it decides nothing: a loop was too long to be followed.
+    pub(crate) fn is_undecided(&self) -> bool {
+        matches!(self.kind, FailureKind::Step(_, StepError::TooLong))
+    }
 }
 
 /// What went wrong.

@@ -36,6 +36,8 @@ pub struct Limits {
     pub states: usize,
     /// Whether steps that do not affect each other are explored in one order only. The verdict is the same without.
     pub reduce: bool,
+    /// Whether the schedule of a failure is the shortest. Otherwise it is the first that is found. The verdict is the same.
+    pub shortest: bool,
 }
 
 impl Default for Limits {
@@ -48,6 +50,7 @@ impl Default for Limits {
             random_schedules: None,
             states: 4_000_000,
             reduce: true,
+            shortest: true,
         }
     }
 }
@@ -189,6 +192,7 @@ fn check_all(
         one_by_one: false,
         is_reduced: limits.reduce,
         wants_hazard: false,
+        wants_shortest: limits.shortest,
     };
     let has_races = subject.permits().any(|permits| permits.needs_race);
     let searches = [Some(options), has_races.then(|| options.without_races())];
@@ -214,7 +218,8 @@ fn check_all(
                 report.cases += 1;
                 for options in searches.iter().flatten() {
                     // The first declared hazard is reported.
-                    let options = SearchOptions { wants_hazard: report.failure.is_none(), ..*options };
+                    let options =
+                        SearchOptions { wants_hazard: limits.shortest && report.failure.is_none(), ..*options };
                     let setup = CaseSetup::new(subject, case.clone(), &candidates.ranked[NEIGHBOUR], &options);
                     let mut run = CaseRun::new(setup, &options)?;
                     let result = run.run(&options)?;

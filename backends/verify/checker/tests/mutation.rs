@@ -255,6 +255,7 @@ pub(crate) fn outcome(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) 
         let count = if number == 0 { registries.len() } else { 1 };
         let checked = registries[..count].iter().map(|(registry, limits)| (limits(*model), registry));
         for (limits, registry) in checked.chain([(deep, &registries[0].0)]) {
+            let limits = Limits { shortest: false, ..limits };
             match report(technique, set, target, &limits, registry) {
                 Ok(report) if report.failure.is_some() && !report.is_declared => return Outcome::Killed,
                 Ok(_) => {}

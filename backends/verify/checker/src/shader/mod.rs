@@ -167,6 +167,7 @@ impl ShaderCheck<'_> {
             SearchContext::with_workgroups(program, memory, limits.model, invocations.workgroups());
         context.has_weak_exchange = true;
         context.is_reduced = limits.reduce;
+        context.wants_shortest = limits.shortest;
         context.texels = memory::TEXELS;
         context.out_of_bounds = Some(RefCell::default());
         context.clamps = clamps;
