@@ -35,7 +35,8 @@ pub struct Schedule {
     pub race: Option<Race>,
 }
 
-/// Two accesses of the same word that nothing orders. At least one writes. Neither is atomic, because types of WGSL are atomic or not.
+/// Two accesses of the same word that nothing orders. At least one writes, and at least one is not
+/// atomic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Race {
     /// The word, by the name of its variable and its indices.
@@ -140,7 +141,8 @@ fn race(kind: &FailureKind, steps: &[Replayed], context: &SearchContext<'_>, nam
     let (second, earlier) = steps.split_last()?;
     let access = second.access?;
     let conflicts = |step: &&Replayed| {
-        let same = |one: &Access| context.word(one.address) == Some(*word as usize) && !one.is_atomic;
+        let same =
+            |one: &Access| context.word(one.address) == Some(*word as usize) && !(one.is_atomic && access.is_atomic);
         step.number == *other && step.access.is_some_and(|one| same(&one) && (one.writes() || access.writes()))
     };
     let first = earlier.iter().rfind(conflicts)?;
@@ -237,7 +239,7 @@ fn violation(kind: &FailureKind, context: &SearchContext<'_>, source: &CheckedSo
                 let access = |step: &ScheduleStep| format!("{} {} at {}", step.fragment, step.action, step.location);
                 format!(" on {}: {}, and {}", race.word, access(&race.first), access(&race.second))
             });
-            format!("data race{places}. The accesses are not atomic, and nothing orders them")
+            format!("data race{places}. They are not both atomic, and nothing orders them")
         }
         FailureKind::Step(fragment, error) => step_violation(context, *fragment, *error, source),
     }

@@ -236,8 +236,9 @@ pub(crate) enum Outcome {
     Illegal,
 }
 
-/// The rows with a heap: an error below its second level shows with more entries only. No mutant of another row needs them.
-const HEAPS: [&str; 2] = ["max_heap", "bounded_regions"];
+/// The rows with mutants that only more entries, or more initial fragments, kill: an error below the second level of a heap, a counter
+/// of repairs that starts too high, and pages that are skipped.
+const DEEP: [&str; 4] = ["max_heap", "bounded_regions", "checksummed_array", "paged_list"];
 
 /// Returns limits of seven fragments for heaps of five and six, with a few random schedules. All initial fragments are displaced,
 /// so that an error deep in the heap reaches its root.
@@ -257,7 +258,7 @@ pub(crate) fn outcome(axis: &str, key: &str, checks: &[Check], mutant: &Mutant) 
         // The first check uses every registry, the others only that of the changed row.
         let count = if number == 0 { registries.len() } else { 1 };
         let checked = registries[..count].iter().map(|(registry, limits)| (limits(*model), registry));
-        let deep = HEAPS.contains(&key).then_some((deep, &registries[0].0));
+        let deep = DEEP.contains(&key).then_some((deep, &registries[0].0));
         for (limits, registry) in checked.chain(deep) {
             let limits = Limits { shortest: false, ..limits };
             match report(technique, set, target, &limits, registry) {

@@ -34,6 +34,12 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/max_array",
+        "entries_store(slot, pixel, entry); keys_publish(slot, pixel, entry.key);",
+        "keys_publish(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
+        "the same",
+    ),
+    (
+        "storage/max_array",
         "if worst_slot != 0u {",
         "if worst_slot != 4294967295u {",
         "if slot 0 is the worst, it already holds the entry, which is written there again",
