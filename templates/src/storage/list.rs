@@ -4,7 +4,8 @@ use super::parts::resolve;
 use crate::vocabulary::{Access, Capability, Element, Feature, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn linked_list() -> Row {
-    let store = |pass: Pass| pass.uses("heads", Access::Atomic).uses("links", Access::Plain).uses("nodes", Access::Plain);
+    let store =
+        |pass: Pass| pass.uses("heads", Access::Atomic).uses("links", Access::Plain).uses("nodes", Access::Plain);
     Row {
         template: Some(template!("storage/linked_list")),
         resources: resources([
@@ -31,7 +32,8 @@ pub(super) fn linked_list() -> Row {
 pub(super) fn ordered_list() -> Row {
     // A link that is read may be old: the compare-exchange then fails. The link of a node that is not in the list yet is the
     // fragment's own, and a fence precedes the exchange that inserts it.
-    let store = |pass: Pass| pass.uses("heads", Access::Hinted).uses("links", Access::Hinted).uses("nodes", Access::Coherent);
+    let store =
+        |pass: Pass| pass.uses("heads", Access::Hinted).uses("links", Access::Hinted).uses("nodes", Access::Coherent);
     Row {
         template: Some(template!("storage/ordered_list")),
         resources: resources([

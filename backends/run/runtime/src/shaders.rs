@@ -99,7 +99,9 @@ impl Shaders {
         let mut features = wgpu::Features::empty();
         let passed_through = self.modules.iter().any(|module| matches!(module.code, Code::SpirV(_)));
         let passes = &self.plan.passes;
-        let coherent = passes.iter().any(|pass| pass.uses.iter().any(|usage| matches!(usage.access, Access::Coherent | Access::Hinted)));
+        let coherent = passes
+            .iter()
+            .any(|pass| pass.uses.iter().any(|usage| matches!(usage.access, Access::Coherent | Access::Hinted)));
         if passed_through {
             features |= wgpu::Features::PASSTHROUGH_SHADERS;
         } else if coherent && self.profile == Profile::Native {

@@ -1,8 +1,8 @@
 //! Triangles at any angle. A shader of this test appends the coverage and depth of every pixel to a list, and the techniques must
 //! keep the best of exactly these fragments.
 
-use fragbuf_runtime::headless::{Headless, Offscreen};
 use fragbuf_runtime::Output;
+use fragbuf_runtime::headless::{Headless, Offscreen};
 
 use crate::capture::compare;
 use crate::kept;
