@@ -15,12 +15,6 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "no fragment reads a list before the end of the pass",
     ),
     (
-        "storage/sorted_array",
-        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
-        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
-        "inside the lock no fragment reads between the two, and outside it the cull reads keys only",
-    ),
-    (
         "storage/max_array",
         "if kept_before < frame.k {",
         "if kept_before <= frame.k {",
@@ -37,12 +31,6 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "entries_store(slot, pixel, entry); keys_publish(slot, pixel, entry.key);",
         "keys_publish(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
         "the same",
-    ),
-    (
-        "storage/max_array",
-        "if worst_slot != 0u {",
-        "if worst_slot != 4294967295u {",
-        "if slot 0 is the worst, it already holds the entry, which is written there again",
     ),
     (
         "storage/max_array",
@@ -73,12 +61,6 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "if kept_before < frame.k {",
         "if kept_before <= frame.k {",
         "the slots of a full heap are in order and do not change",
-    ),
-    (
-        "storage/max_heap",
-        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
-        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
-        "inside the lock no fragment reads between the two, and outside it the cull reads one key only",
     ),
     (
         "storage/max_heap",
