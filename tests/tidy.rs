@@ -152,12 +152,7 @@ fn the_readme_names_every_axis() {
 /// The guide's table of values is the output of `list --axes`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_guide_has_every_value_with_what_it_does() {
-    let path = root().join("src/guide/axes.md");
-    let table = fragbuf(&["list", "--axes"], root());
-    if updating() {
-        std::fs::write(&path, &table).unwrap();
-    }
-    assert_eq!(read(&path), table, "{} is out of date", path.display());
+    is_computed("src/guide/axes.md", &["list", "--axes"]);
 }
 
 /// Every crate has what its page in a registry shows. Crates above it are dependencies of its tests by path alone, because a version
@@ -233,12 +228,7 @@ fn technique_rows() -> String {
 /// The table of every column is the output of `list --markdown`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_page_of_all_techniques_is_computed() {
-    let path = root().join("examples/techniques/README.md");
-    let page = fragbuf(&["list", "--markdown"], root());
-    if updating() {
-        std::fs::write(&path, &page).unwrap();
-    }
-    assert_eq!(read(&path), page, "{} is out of date", path.display());
+    is_computed("examples/techniques/README.md", &["list", "--markdown"]);
 }
 
 /// Every technique has a page and an image. Pages are computed from the rows: `INSTA_UPDATE=always` updates them.
@@ -246,12 +236,8 @@ fn the_page_of_all_techniques_is_computed() {
 fn every_technique_has_its_page() {
     let techniques = Registry::builtin().techniques().to_vec();
     for technique in &techniques {
-        let path = root().join(format!("examples/techniques/{}.md", technique.key));
-        let page = fragbuf(&["show", &technique.key, "--page"], root());
-        if updating() {
-            std::fs::write(&path, &page).unwrap();
-        }
-        assert_eq!(read(&path), page, "{} is out of date", path.display());
+        let path = format!("examples/techniques/{}.md", technique.key);
+        is_computed(&path, &["show", &technique.key, "--page"]);
         assert!(
             root().join(format!("examples/gallery/{}.png", technique.key)).exists(),
             "no picture of {}",
@@ -264,23 +250,13 @@ fn every_technique_has_its_page() {
 /// The comparison with Table 1 of the k⁺-buffer paper is computed.
 #[test]
 fn the_comparison_with_table_1_is_computed() {
-    let path = root().join("examples/techniques/table_1.md");
-    let table = fragbuf(&["list", "--table-1"], root());
-    if updating() {
-        std::fs::write(&path, &table).unwrap();
-    }
-    assert_eq!(read(&path), table, "{} is out of date", path.display());
+    is_computed("examples/techniques/table_1.md", &["list", "--table-1"]);
 }
 
 /// The guide's language reference is computed from the type checker's tables. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_guide_has_the_computed_reference() {
-    let path = root().join("src/guide/language.md");
-    let reference = fragbuf(&["language"], root());
-    if updating() {
-        std::fs::write(&path, &reference).unwrap();
-    }
-    assert_eq!(read(&path), reference, "{} is out of date", path.display());
+    is_computed("src/guide/language.md", &["language"]);
 }
 
 /// Every description in the guide's chapter on diagnostics is followed by the output of the command line. `INSTA_UPDATE=always` updates it.
@@ -313,6 +289,16 @@ fn the_guide_builds_the_example() {
     let guide = read(&root().join("src/guide/extend.md"));
     let example = read(&root().join("examples/user_storage/first_k.wgsl"));
     assert!(example.ends_with(&block(&guide, "wgsl")));
+}
+
+/// Asserts that a file is what the command line prints.
+fn is_computed(path: &str, arguments: &[&str]) {
+    let path = root().join(path);
+    let computed = fragbuf(arguments, root());
+    if updating() {
+        std::fs::write(&path, &computed).unwrap();
+    }
+    assert_eq!(read(&path), computed, "{} is out of date", path.display());
 }
 
 fn updating() -> bool {

@@ -67,6 +67,7 @@ impl<'s> CaseSetup<'s> {
             overflows: case.pool.overflows.clone(),
             may_time_out: options.may_time_out,
             culls: subject.culls(),
+            counts_events: subject.plan.selection.provides().contains(&Capability::CountsEvents),
             k_best_only: case.k.filter(|_| subject.accepts_k_best_only()).map(|k| k as usize),
             fragments,
             neighbours: 1,

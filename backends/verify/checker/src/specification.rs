@@ -25,6 +25,8 @@ pub(crate) struct Specification {
     pub(crate) may_time_out: bool,
     /// Whether fragments can be culled without being counted as a loss.
     pub(crate) culls: bool,
+    /// Whether every event is counted, culled and displaced fragments included.
+    pub(crate) counts_events: bool,
     /// k, where the storage may be given the k best only, so that all others may be culled.
     pub(crate) k_best_only: Option<usize>,
     /// Words of every fragment of this pixel.
@@ -85,8 +87,11 @@ impl Specification {
 
     /// Describes counted fragments that must not be dropped, whatever the hazards permit: timed out, overflowed or occluded.
     fn forbidden_drop(&self, counts: Counts, permits: &Permits) -> Option<String> {
-        let counts_all = counts.generated > 0;
-        if counts_all && counts.occluded != self.occluded || counts.occluded > self.occluded {
+        let generated = self.fragments.len() as u32 + self.neighbours;
+        if self.counts_events && counts.generated != generated {
+            return Some(format!("{} fragments are counted as generated, expected {generated}", counts.generated));
+        }
+        if self.counts_events && counts.occluded != self.occluded || counts.occluded > self.occluded {
             return Some(format!("{} fragments are counted as occluded, expected {}", counts.occluded, self.occluded));
         }
         if counts.timed_out > 0 && !self.may_time_out && !permits.times_out {
@@ -207,18 +212,13 @@ impl Specification {
         let total = self.fragments.len() as u32;
         let out = total - kept.min(total);
         let counted = counts.lost + counts.culled + counts.emitted;
-        let is_wrong = if self.counts_all(counts) { counted != out } else { counts.lost > out };
+        let is_wrong = if self.counts_events { counted != out } else { counts.lost > out };
         is_wrong.then(|| {
             format!(
                 "{kept} of {total} fragments are kept, but the counters report {} lost and {} culled",
                 counts.lost, counts.culled
             )
         })
-    }
-
-    /// Returns whether every event is counted, culled and displaced fragments included.
-    fn counts_all(&self, counts: Counts) -> bool {
-        counts.generated == self.fragments.len() as u32 + self.neighbours
     }
 
     /// Returns whether the declared hazards permit everything that is wrong.
@@ -299,14 +299,14 @@ impl Specification {
             return permits.duplicate || kept + counts.lost <= total;
         }
         if permits.counted_twice {
-            return permits.lost || !self.counts_all(counts) || self.culls || kept + counted >= total;
+            return permits.lost || !self.counts_events || self.culls || kept + counted >= total;
         }
         match (permits.lost, permits.duplicate) {
             (false, false) => self.counter_mismatch(kept, counts).is_none(),
             (is_lossy, has_duplicates) => {
                 counted <= total
                     && (has_duplicates || kept + counted <= total)
-                    && (is_lossy || !self.counts_all(counts) || self.culls || kept + counted >= total)
+                    && (is_lossy || !self.counts_events || self.culls || kept + counted >= total)
             }
         }
     }

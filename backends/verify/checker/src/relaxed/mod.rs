@@ -18,6 +18,7 @@
 
 mod history;
 mod order;
+mod races;
 mod view;
 
 use std::rc::Rc;
@@ -25,8 +26,8 @@ use std::rc::Rc;
 use fragbuf_interpreter::{Access, Atomic, Operation};
 
 pub(crate) use history::REPEATED;
-use history::{AccessKind, Accessor, History, Recorded, Write};
-use view::{MemoryKind, View, clock};
+use history::{History, Write};
+use view::{MemoryKind, View};
 
 /// The memory of all words whose order matters.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -286,57 +287,6 @@ impl RelaxedMemory {
             self.histories.insert(at, (word, Rc::new(History::new(value))));
             at
         })
-    }
-
-    fn accessor(&self, fragment: usize) -> Accessor {
-        Accessor { fragment: fragment as u8, in_section: self.fragments[fragment].outside.is_some() }
-    }
-
-    /// Returns a fragment with an earlier access that this one is a data race with.
-    fn racing(&self, fragment: usize, (word, is_mixed): (u32, bool), at: usize, access: &Access) -> Option<usize> {
-        if access.is_atomic && !is_mixed {
-            return None;
-        }
-        let history = &self.histories[at].1;
-        let views = &self.fragments[fragment];
-        let unseen = history.writes.iter().skip(views.current.get(word) as usize + 1);
-        let writer = unseen.filter_map(|write| write.plain).next();
-        let is_ordered = |one: &Recorded| {
-            let other = usize::from(one.accessor.fragment);
-            other == fragment
-                || views.current.get(clock(other, self.kind(word))) >= one.epoch
-                || (one.accessor.in_section && views.outside.is_some())
-        };
-        let conflicts = |one: &Recorded| match one.kind {
-            AccessKind::PlainRead => access.writes(),
-            AccessKind::AtomicRead => access.writes() && !access.is_atomic,
-            AccessKind::AtomicWrite => !access.is_atomic,
-        };
-        let other = history.accesses.iter().find(|one| conflicts(one) && !is_ordered(one));
-        writer.or(other.map(|one| one.accessor)).map(|accessor| usize::from(accessor.fragment))
-    }
-
-    /// Records an access that a later one may race with.
-    fn record(&mut self, fragment: usize, at: usize, access: &Access, is_mixed: bool) {
-        let kind = match (access.is_atomic, access.writes()) {
-            (false, false) => AccessKind::PlainRead,
-            (true, false) if is_mixed => AccessKind::AtomicRead,
-            (true, true) if is_mixed => AccessKind::AtomicWrite,
-            _ => return,
-        };
-        let (accessor, epoch) = (self.accessor(fragment), self.fragments[fragment].epoch);
-        let is_known = |one: &Recorded| one.accessor == accessor && one.kind == kind && one.epoch == epoch;
-        if self.histories[at].1.accesses.iter().any(is_known) {
-            return;
-        }
-        let accesses = &mut Rc::make_mut(&mut self.histories[at].1).accesses;
-        match accesses.iter_mut().find(|one| one.accessor == accessor && one.kind == kind) {
-            Some(one) => one.epoch = epoch,
-            None => {
-                accesses.push(Recorded { kind, accessor, epoch });
-                accesses.sort_unstable_by_key(|one| (one.accessor.fragment, one.accessor.in_section, one.kind));
-            }
-        }
     }
 
     /// Records that a fragment has observed or written the write at a position.
