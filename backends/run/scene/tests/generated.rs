@@ -1,6 +1,6 @@
 //! Generated scenes, cameras and light.
 #![allow(missing_docs, reason = "tests are read, not documented")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Eye, Limits, Scene, light, open};
 
@@ -32,6 +32,26 @@ fn the_hairball_has_over_two_million_triangles() {
     assert!(made.triangles() > 2_000_000, "{}", made.triangles());
 }
 
+/// Layers cover the whole frame, and each is a plane within clip space.
+#[test]
+fn layers_are_planes_over_the_frame() {
+    let made = scene("layers,n=200");
+    assert_eq!((made.objects.len(), made.triangles()), (200, 400));
+    for object in &made.objects {
+        let [a, b, c, d] = object.positions[..] else { panic!("{object:?}") };
+        assert_eq!([a, b, c, d].map(|[x, y, _]| (x, y)), [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]);
+        assert!((a[2] + c[2] - b[2] - d[2]).abs() < 1.0e-6, "{object:?}");
+        assert!([a, b, c, d].iter().all(|[_, _, z]| (0.0..=1.0).contains(z)), "{object:?}");
+    }
+    // The order of depths differs between corners.
+    let order = |corner: usize| {
+        let mut order: Vec<usize> = (0..200).collect();
+        order.sort_by(|a, b| made.objects[*a].positions[corner][2].total_cmp(&made.objects[*b].positions[corner][2]));
+        order
+    };
+    assert_ne!(order(0), order(2));
+}
+
 /// Every needle spans most of the depth of the scene, and their directions differ by a few degrees.
 #[test]
 fn needles_are_long_thin_and_nearly_parallel() {
@@ -61,7 +81,7 @@ fn unknown_names_list_the_known_ones() {
     };
     assert_eq!(
         error("builtin:bunny"),
-        "no scene `builtin:bunny`: the scenes are cubes, slabs, marbles, hairball, needles"
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
     assert_eq!(error("builtin:slabs,n=0"), "`n=0`: `n` must be from 1 to 65536");

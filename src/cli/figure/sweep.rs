@@ -1,0 +1,272 @@
+//! Runs a sweep: measures every series at every value, in turns.
+//!
+//! Input: a row and the options of the command. Output: points, which are also written to the CSV file after each value, so that a later
+//! run can resume. All series of one value are prepared first. Then each of the repeats draws one frame of every series, so the load of
+//! the machine is the same for all, and ratios of pairs within a repeat are free of it.
+
+use std::path::Path;
+
+use fragbuf::Registry;
+use fragbuf_frame::PassTime;
+
+use super::Figure;
+use super::csv;
+use super::experiment::{Axis, Panel, Series, Side, Sweep, at};
+use super::point::{COLUMNS, Measurement, Outcome, Point, points, rows};
+use super::run::Run;
+use crate::cli::input::Input;
+use crate::cli::output::{self, Failure};
+use crate::cli::rendering::{FrameTime, PreparedFrame, RenderRequest, RenderResult, prepare};
+use crate::cli::view::{SceneView, View};
+
+/// The frames of a series that are drawn and not counted, after the frame that finds its capacity.
+pub(super) const WARM_UP: u32 = 2;
+
+/// The pixels along a side in a quick run.
+const QUICK_SIDE: u32 = 24;
+
+/// The name of the only pass where the device measures no times.
+const HOST_CLOCK: &str = "frame by the host's clock";
+
+/// Measures the points that the CSV file does not have yet, and returns all of them.
+pub(super) fn measure(sweep: &Sweep, run: &mut Run<'_>) -> Result<Vec<Point>, Failure> {
+    let path = run.file("csv");
+    let mut found = resumed(sweep, run, &path);
+    let total: usize = sweep.panels.iter().map(|panel| values(panel.axis, run.options.quick).len()).sum();
+    let mut done = 0;
+    for panel in sweep.panels {
+        for x in values(panel.axis, run.options.quick) {
+            run.share = (done as f64 / total as f64, 1.0 / total as f64);
+            if !is_complete(panel, *x, &found) {
+                found.retain(|point| !(point.panel == panel.name && point.x == *x));
+                found.extend(group(panel, *x, run)?);
+                write(sweep, run, &path, &found)?;
+            }
+            done += 1;
+        }
+    }
+    sort(sweep, &mut found);
+    write(sweep, run, &path, &found)?;
+    Ok(found)
+}
+
+/// Returns the values of an axis.
+fn values(axis: Axis, quick: bool) -> &'static [u32] {
+    if quick { axis.quick } else { axis.values }
+}
+
+/// Returns the scene, the camera and the size of a panel in words.
+pub(super) fn setup(panel: &Panel, options: &Figure) -> String {
+    let [full, quick] = panel.scene;
+    let (scene, values) = if options.quick { (quick, panel.axis.quick) } else { (full, panel.axis.values) };
+    let side = match panel.side {
+        Side::Swept => "{x}".to_owned(),
+        Side::Fixed(_) => side(panel.side, 0, options).to_string(),
+    };
+    let values: Vec<String> = values.iter().map(u32::to_string).collect();
+    let symbol = panel.axis.symbol;
+    let text = format!("{}: {scene}, camera {}, {side} x {side} pixels, {symbol} = ", panel.name, panel.camera);
+    format!("{}{}", text.replace("{x}", symbol), values.join(" "))
+}
+
+/// Returns the pixels along a side at a value.
+fn side(side: Side, x: u32, options: &Figure) -> u32 {
+    match side {
+        Side::Swept => x,
+        Side::Fixed(_) if options.quick => QUICK_SIDE,
+        Side::Fixed(side) => options.size.unwrap_or(side),
+    }
+}
+
+/// Returns the points of an earlier run with the same header, and prints how many there are.
+fn resumed(sweep: &Sweep, run: &Run<'_>, path: &Path) -> Vec<Point> {
+    let Ok(text) = std::fs::read_to_string(path) else { return Vec::new() };
+    let (comments, rows) = csv::parse(&text);
+    if comments != run.header {
+        output::note(&format!("{} is of another run and is replaced", path.display()));
+        return Vec::new();
+    }
+    let mut found = points(&rows);
+    let expected = |point: &Point| {
+        let panel = sweep.panels.iter().find(|panel| panel.name == point.panel);
+        panel.is_some_and(|panel| values(panel.axis, run.options.quick).contains(&point.x))
+    };
+    found.retain(expected);
+    output::note(&format!(
+        "{} has {} points of an earlier run, which are not measured again",
+        path.display(),
+        found.len()
+    ));
+    found
+}
+
+/// Returns whether every series has its point.
+fn is_complete(panel: &Panel, x: u32, found: &[Point]) -> bool {
+    let has = |series: &Series| {
+        found.iter().any(|point| {
+            point.panel == panel.name
+                && point.series == series.label
+                && point.x == x
+                && point.description == description(series, x)
+        })
+    };
+    panel.series.iter().all(has)
+}
+
+/// Orders points as the row does.
+fn sort(sweep: &Sweep, found: &mut [Point]) {
+    let rank = |point: &Point| {
+        let panel = sweep.panels.iter().position(|panel| panel.name == point.panel);
+        let series =
+            panel.and_then(|panel| sweep.panels.get(panel)?.series.iter().position(|s| s.label == point.series));
+        (panel, point.x, series)
+    };
+    found.sort_by_key(rank);
+}
+
+fn write(sweep: &Sweep, run: &Run<'_>, path: &Path, found: &[Point]) -> Result<(), Failure> {
+    let reference = |point: &Point| {
+        let panel = sweep.panels.iter().find(|panel| panel.name == point.panel)?;
+        let first = panel.series.first()?.label;
+        let same = |other: &&Point| other.panel == point.panel && other.x == point.x && other.series == first;
+        match &found.iter().find(same)?.outcome {
+            Outcome::Measured(measured) => Some(measured),
+            Outcome::Unavailable(_) => None,
+        }
+    };
+    let lines: Vec<csv::Row> = found.iter().flat_map(|point| rows(point, reference(point))).collect();
+    csv::write(path, &run.header, &COLUMNS, &lines)
+}
+
+/// Returns the technique with the changes at a value.
+fn description(series: &Series, x: u32) -> String {
+    let changes = series.set.iter().map(|(name, value)| format!(" {name}={}", at(value, x)));
+    std::iter::once(series.technique.to_owned()).chain(changes).collect()
+}
+
+/// Measures all series of a panel at one value.
+fn group(panel: &Panel, x: u32, run: &mut Run<'_>) -> Result<Vec<Point>, Failure> {
+    let [full, quick] = panel.scene;
+    let side = side(panel.side, x, run.options);
+    let view =
+        run.view(at(if run.options.quick { quick } else { full }, x), panel.camera, (side, side), panel.series.len())?;
+    let (scene, _) = view.scene_views(&[])?;
+    let mut prepared: Vec<(Series, Result<Prepared, String>)> = Vec::new();
+    for (number, series) in panel.series.iter().enumerate() {
+        run.show(
+            number as f64 / (2 * panel.series.len()) as f64,
+            &format!("{}, {} = {x}", series.label, panel.axis.symbol),
+        );
+        prepared.push((*series, Prepared::new(series, x, (&view, &scene), run)?));
+    }
+    let frames = WARM_UP + run.options.repeats();
+    for frame in 0..frames {
+        run.show(0.5 + 0.5 * f64::from(frame) / f64::from(frames), &format!("{} = {x}", panel.axis.symbol));
+        for (_, prepared) in &mut prepared {
+            if let Ok(ready) = prepared
+                && let Err(reason) = ready.draw(frame >= WARM_UP)
+            {
+                *prepared = Err(unavailable(reason)?);
+            }
+        }
+    }
+    let point = |(series, prepared): (Series, Result<Prepared, String>)| {
+        let outcome = match prepared {
+            Ok(ready) => Outcome::Measured(ready.measurement()),
+            Err(reason) => Outcome::Unavailable(reason),
+        };
+        let (panel, series, description) = (panel.name.to_owned(), series.label.to_owned(), description(&series, x));
+        Point { panel, series, x, description, outcome }
+    };
+    Ok(prepared.into_iter().map(point).collect())
+}
+
+/// A series that is ready to be drawn repeatedly, and its times so far.
+struct Prepared {
+    frame: PreparedFrame,
+    result: RenderResult,
+    times: Vec<FrameTime>,
+}
+
+impl Prepared {
+    /// Draws the series until its capacity is known, and prepares its frame without counters. The inner `Err` is the reason why the
+    /// device cannot run it.
+    fn new(
+        series: &Series,
+        x: u32,
+        (view, scene): (&View, &SceneView),
+        run: &mut Run<'_>,
+    ) -> Result<Result<Self, String>, Failure> {
+        let registry = Registry::builtin();
+        let set: Vec<(String, String)> =
+            series.set.iter().map(|(name, value)| ((*name).to_owned(), at(value, x))).collect();
+        let mut input = Input::read(series.technique, &registry)?;
+        let variant = match input.variant(&set, &registry) {
+            Ok(variant) => variant,
+            Err(failure) => return unavailable(failure).map(Err),
+        };
+        if let Some(missing) = run.selection.missing(&variant, &registry) {
+            return Ok(Err(missing));
+        }
+        let request = RenderRequest {
+            description: series.technique,
+            set: &set,
+            uniforms: &[],
+            count_all: false,
+            opaque: None,
+            held: 0,
+        };
+        match prepare(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {
+            Ok((mut result, frame)) => {
+                result.stats.pixels = Vec::new();
+                Ok(Ok(Prepared { frame, result, times: Vec::new() }))
+            }
+            Err(failure) => unavailable(failure).map(Err),
+        }
+    }
+
+    /// Draws a frame, and keeps its time if it counts.
+    fn draw(&mut self, counts: bool) -> Result<(), Failure> {
+        let time = self.frame.draw()?;
+        self.times.extend(Some(time).filter(|_| counts));
+        Ok(())
+    }
+
+    /// Returns the times by pass.
+    fn measurement(self) -> Measurement {
+        let is_timed = |time: &FrameTime| !time.passes.is_empty() && time.passes.iter().all(|pass| pass.untimed == 0);
+        let passes = match self.times.first() {
+            Some(first) if self.times.iter().all(is_timed) => {
+                let of = |(number, pass): (usize, &PassTime)| {
+                    let times = self.times.iter().filter_map(|time| time.passes.get(number));
+                    (pass.pass.clone(), times.map(|pass| rounded(pass.milliseconds)).collect())
+                };
+                first.passes.iter().enumerate().map(of).collect()
+            }
+            _ => vec![(HOST_CLOCK.to_owned(), self.times.iter().map(|time| rounded(time.host)).collect())],
+        };
+        Measurement {
+            passes,
+            bytes: self.result.stats.bytes,
+            slices: self.result.stats.slices,
+            lost: self.result.stats.counters.as_ref().map(|counters| counters.lost()),
+            target: self.result.target.to_owned(),
+        }
+    }
+}
+
+/// Rounds milliseconds to what the CSV file has, so that a resumed run computes the same statistics.
+fn rounded(milliseconds: f64) -> f64 {
+    (1.0e4 * milliseconds).round() / 1.0e4
+}
+
+/// Returns the reason why a device cannot run a point. `Err`: the failure is of another kind.
+fn unavailable(failure: Failure) -> Result<String, Failure> {
+    match failure {
+        Failure::Device(text) | Failure::Input(text) => Ok(text),
+        Failure::Description(diagnostics, _) => {
+            Ok(diagnostics.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; "))
+        }
+        other => Err(other),
+    }
+}
