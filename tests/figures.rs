@@ -140,7 +140,8 @@ fn a_missing_feature_is_reported_and_no_failure() {
     let out = folder("figure-missing");
     let output = quick("k15-fig-9-left", "llvmpipe", &out, &["--repeats", "1"]);
     let sentence = String::from_utf8(output.stdout).unwrap();
-    let missing = "it is not measured whether K⁺B-Array is faster with the interlock than with the spin lock (K⁺B-Array, interlock: ";
+    let missing =
+        "it is not measured whether K⁺B-Array is faster with the interlock than with the spin lock, and whether ";
     assert!(sentence.contains(missing), "{sentence}");
     let (columns, rows) = table(&read(out.join("k15-fig-9-left.csv")));
     let reason = columns.iter().position(|column| column == "unavailable").unwrap();
@@ -155,4 +156,29 @@ fn an_unknown_name_suggests_the_nearest() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("did you mean `k15-fig-7`?"), "{}", stderr(&output));
     assert_eq!(fragbuf(&["figure"]).status.code(), Some(2));
+}
+
+/// Every experiment has its files among the examples, and those that are computed or rendered by a seed are up to date.
+#[test]
+fn the_examples_have_every_figure() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/figures");
+    let readme = read(examples.join("README.md"));
+    let out = folder("figure-examples");
+    for name in names() {
+        let csv = read(examples.join(format!("{name}.csv")));
+        is_well_formed(&read(examples.join(format!("{name}.svg"))));
+        assert!(csv.starts_with(&format!("# fragbuf {}, figure {name}\n", env!("CARGO_PKG_VERSION"))), "{name}");
+        let command = format!("fragbuf figure {name} ");
+        assert!(readme.contains(&command) && readme.contains(&format!("({name}.csv)")), "README.md has no {name}");
+        assert!(readme.contains(&format!("src=\"{name}.svg\"")), "README.md does not show {name}");
+    }
+    for name in ["k15-table-1", "k15-fig-1"] {
+        let output = fragbuf(&["figure", name, "--out", out.to_str().unwrap()]);
+        let sentence = String::from_utf8(output.stdout).unwrap();
+        assert!(readme.contains(sentence.trim_end()), "README.md should have: {sentence}");
+        for extension in ["csv", "svg"] {
+            let file = format!("{name}.{extension}");
+            assert!(read(examples.join(&file)) == read(out.join(&file)), "examples/figures/{file} is out of date");
+        }
+    }
 }

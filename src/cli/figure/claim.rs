@@ -71,13 +71,26 @@ pub(super) fn sentence(paper: &str, device: &str, findings: &[(&str, Finding)]) 
             Finding::Undecided(text) => Some(text),
             _ => None,
         }),
-        part("it is not measured ", "whether ", |finding| match finding {
-            Finding::Missing(text) => Some(text),
-            _ => None,
-        }),
+        missing(findings),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     format!("{paper}, on {device}: {}.", parts.join("; "))
+}
+
+/// Returns the part of a sentence about what was not measured: statements with the same reason share it.
+fn missing(findings: &[(&str, Finding)]) -> Option<String> {
+    let mut by_reason: Vec<(&str, Vec<String>)> = Vec::new();
+    for (statement, finding) in findings {
+        let Finding::Missing(reason) = finding else { continue };
+        let statement = format!("whether {statement}");
+        match by_reason.iter_mut().find(|(known, _)| known == reason) {
+            Some((_, statements)) => statements.push(statement),
+            None => by_reason.push((reason, vec![statement])),
+        }
+    }
+    let clause = |(reason, statements): (&str, Vec<String>)| format!("{} ({reason})", statements.join(", and "));
+    let clauses: Vec<String> = by_reason.into_iter().map(clause).collect();
+    (!clauses.is_empty()).then(|| format!("it is not measured {}", clauses.join(", and ")))
 }
 
 fn finding(check: Check, panels: &[Panel], points: &[Point]) -> Finding {
@@ -122,7 +135,7 @@ fn measured<'a>(points: &'a [Point], panel: &str, series: &str) -> Result<Vec<(u
     for point in of() {
         match &point.outcome {
             Outcome::Measured(measured) => found.push((point.x, measured)),
-            Outcome::Unavailable(text) => reason = Some(format!("{series}: {text}")),
+            Outcome::Unavailable(text) => reason = Some(text.clone()),
         }
     }
     match found.is_empty() {

@@ -2,6 +2,9 @@
 //!
 //! `{x}` in a text stands for the value of the sweep.
 
+use fragbuf_cpu::FragmentOrder;
+use fragbuf_templates::PaperRow;
+
 use super::claim::Claim;
 
 /// An experiment of a paper.
@@ -21,6 +24,12 @@ pub(super) struct Experiment {
 pub(super) enum Kind {
     /// Times of series of descriptions over a swept value.
     Sweep(Sweep),
+    /// Images of variants, and where they differ from the first.
+    Images(Images),
+    /// Properties of techniques, computed from their plans, beside those that a paper states.
+    Properties(Properties),
+    /// What pixels hold after each object of a scene.
+    Steps(Steps),
 }
 
 /// Times of frames and passes.
@@ -101,6 +110,78 @@ impl Passes {
             Passes::Except(names) => !names.contains(&pass),
         }
     }
+}
+
+/// Images of one scene.
+#[derive(Clone, Copy)]
+pub(super) struct Images {
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
+    /// The pixels along a side.
+    pub(super) side: u32,
+    /// The order of fragments on the CPU device, which `--device auto` selects.
+    pub(super) order: FragmentOrder,
+    /// The first is the reference.
+    pub(super) variants: &'static [Variant],
+    pub(super) claims: &'static [ImageClaim],
+}
+
+/// A description, and the order of the triangles that it renders.
+#[derive(Clone, Copy)]
+pub(super) struct Variant {
+    pub(super) series: Series,
+    pub(super) triangles: Triangles,
+}
+
+/// The order of triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Triangles {
+    /// That of the model.
+    AsModelled,
+    /// From front to back by the depth of their centroids.
+    ByCentroid,
+}
+
+/// A statement of a paper about the image of a variant.
+#[derive(Clone, Copy)]
+pub(super) struct ImageClaim {
+    pub(super) statement: &'static str,
+    /// The label of the variant.
+    pub(super) variant: &'static str,
+    pub(super) expected: Expected,
+}
+
+/// How an image differs from the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Expected {
+    /// In no pixel.
+    Equal,
+    /// In some pixels.
+    Different,
+    /// In fewer pixels than the image of another variant.
+    FewerThan(&'static str),
+}
+
+/// Properties of techniques.
+#[derive(Clone, Copy)]
+pub(super) struct Properties {
+    pub(super) rows: &'static [PaperRow],
+    /// The columns that are compared, each with what it states.
+    pub(super) compared: &'static [(&'static str, &'static str)],
+}
+
+/// The states of a row of pixels while a scene is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Steps {
+    /// The scene, whose objects are drawn one after the other.
+    pub(super) scene: &'static str,
+    pub(super) camera: &'static str,
+    pub(super) series: Series,
+    pub(super) k: u32,
+    /// The pixels along a side, and the row.
+    pub(super) side: u32,
+    pub(super) row: u32,
 }
 
 /// Replaces `{x}` by the value of a sweep.

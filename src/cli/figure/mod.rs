@@ -1,18 +1,22 @@
 //! `fragbuf figure`: repeats an experiment of a paper.
 //!
 //! Input: the name of an experiment, which is a row of data in [`experiments`]. Output: a CSV file, a chart or image, and one sentence that
-//! compares the trend with the paper's. [`experiment`] has the types of the rows, [`run`] what all kinds share, [`sweep`] the measurement,
-//! [`claim`] the comparison, [`chart`] the drawing.
+//! compares the trend with the paper's. [`experiment`] has the types of the rows, [`run`] what all kinds share. Each kind of
+//! experiment has a runner: [`sweep`], [`images`], [`properties`] and [`steps`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
 
 mod chart;
 mod claim;
 mod csv;
 mod experiment;
 mod experiments;
+mod images;
 mod point;
+mod properties;
 mod run;
 mod spread;
+mod steps;
 mod style;
+mod svg;
 mod sweep;
 
 use std::path::PathBuf;
@@ -62,6 +66,9 @@ impl Figure {
         let experiment = found.ok_or_else(|| Failure::unknown("experiment", name, &names))?;
         let text = match &experiment.kind {
             Kind::Sweep(sweep) => self.sweep(experiment, sweep)?,
+            Kind::Images(images) => images::run(images, self, experiment)?,
+            Kind::Properties(properties) => properties::run(properties, self, experiment)?,
+            Kind::Steps(steps) => steps::run(steps, self, experiment)?,
         };
         output::print(&format!("{text}\n"))
     }

@@ -3,14 +3,18 @@
 use std::path::PathBuf;
 
 use super::Figure;
-use super::experiment::Experiment;
+use super::experiment::{Experiment, Series, at};
 use crate::cli::camera::CameraRequest;
 use crate::cli::device::DeviceRequest;
+use crate::cli::memory::Budget;
 use crate::cli::output::Failure;
 use crate::cli::progress::Progress;
 use crate::cli::rendering::{DeviceSelection, select_for_figure};
 use crate::cli::view::View;
 use fragbuf_cpu::FragmentOrder;
+
+/// The pixels along a side in a quick run.
+pub(super) const QUICK_SIDE: u32 = 24;
 
 /// A run of an experiment.
 pub(super) struct Run<'a> {
@@ -60,10 +64,32 @@ impl<'a> Run<'a> {
         self.progress.set_fraction(|| format!("{}: {what}", self.experiment.name), done + share * part);
     }
 
-    /// Returns the view of a scene at a size, for one of several frames that are in memory at the same time.
-    pub(super) fn view(&self, scene: String, camera: &str, size: (u32, u32), frames: usize) -> Result<View, Failure> {
+    /// Returns the view of a scene at a size, with a memory budget.
+    pub(super) fn view(&self, scene: String, camera: &str, size: (u32, u32), memory: Budget) -> Result<View, Failure> {
         let camera: CameraRequest = camera.parse().map_err(Failure::Usage)?;
         let device: (DeviceRequest, _) = (self.options.device.clone(), self.order);
-        Ok(View::measured(scene, camera, size, device, self.options.memory.divided(frames as u64)))
+        Ok(View::measured(scene, camera, size, device, memory))
+    }
+}
+
+/// Returns the technique with the changes at a value.
+pub(super) fn description(series: &Series, x: u32) -> String {
+    let changes = series.set.iter().map(|(name, value)| format!(" {name}={}", at(value, x)));
+    std::iter::once(series.technique.to_owned()).chain(changes).collect()
+}
+
+/// Returns the changes of a description at a value.
+pub(super) fn changes(series: &Series, x: u32) -> Vec<(String, String)> {
+    series.set.iter().map(|(name, value)| ((*name).to_owned(), at(value, x))).collect()
+}
+
+/// Returns the reason why a device cannot run a point. `Err`: the failure is of another kind.
+pub(super) fn unavailable(failure: Failure) -> Result<String, Failure> {
+    match failure {
+        Failure::Device(text) | Failure::Input(text) => Ok(text),
+        Failure::Description(diagnostics, _) => {
+            Ok(diagnostics.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; "))
+        }
+        other => Err(other),
     }
 }

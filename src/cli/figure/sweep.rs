@@ -1,9 +1,10 @@
 //! Runs a sweep: measures every series at every value, in turns.
 //!
-//! Input: a row and the options of the command. Output: points, which are also written to the CSV file after each value, so that a later
-//! run can resume. All series of one value are prepared first. Then each of the repeats draws one frame of every series, so the load of
-//! the machine is the same for all, and ratios of pairs within a repeat are free of it.
+//! Input: a row and the options of the command. Output: points, which are also written to the CSV file after each group of values, so that a later
+//! run can resume. All series are prepared first, at as many values as fit into the memory budget. Then each of the repeats draws one frame
+//! of each, so the load of the machine is the same for all, and ratios of pairs within a repeat are free of it.
 
+use std::collections::VecDeque;
 use std::path::Path;
 
 use fragbuf::Registry;
@@ -13,7 +14,7 @@ use super::Figure;
 use super::csv;
 use super::experiment::{Axis, Panel, Series, Side, Sweep, at};
 use super::point::{COLUMNS, Measurement, Outcome, Point, points, rows};
-use super::run::Run;
+use super::run::{QUICK_SIDE, Run, changes, description, unavailable};
 use crate::cli::input::Input;
 use crate::cli::output::{self, Failure};
 use crate::cli::rendering::{FrameTime, PreparedFrame, RenderRequest, RenderResult, prepare};
@@ -22,9 +23,6 @@ use crate::cli::view::{SceneView, View};
 /// The frames of a series that are drawn and not counted, after the frame that finds its capacity.
 pub(super) const WARM_UP: u32 = 2;
 
-/// The pixels along a side in a quick run.
-const QUICK_SIDE: u32 = 24;
-
 /// The name of the only pass where the device measures no times.
 const HOST_CLOCK: &str = "frame by the host's clock";
 
@@ -32,21 +30,24 @@ const HOST_CLOCK: &str = "frame by the host's clock";
 pub(super) fn measure(sweep: &Sweep, run: &mut Run<'_>) -> Result<Vec<Point>, Failure> {
     let path = run.file("csv");
     let mut found = resumed(sweep, run, &path);
-    let total: usize = sweep.panels.iter().map(|panel| values(panel.axis, run.options.quick).len()).sum();
+    let quick = run.options.quick;
+    let missing = |panel: &Panel, found: &[Point]| -> VecDeque<u32> {
+        values(panel.axis, quick).iter().copied().filter(|x| !is_complete(panel, *x, found)).collect()
+    };
+    let total: usize = sweep.panels.iter().map(|panel| missing(panel, &found).len()).sum();
     let mut done = 0;
     for panel in sweep.panels {
-        for x in values(panel.axis, run.options.quick) {
-            run.share = (done as f64 / total as f64, 1.0 / total as f64);
-            if !is_complete(panel, *x, &found) {
-                found.retain(|point| !(point.panel == panel.name && point.x == *x));
-                found.extend(group(panel, *x, run)?);
-                write(sweep, run, &path, &found)?;
-            }
-            done += 1;
+        let mut waiting = missing(panel, &found);
+        found.retain(|point| point.panel != panel.name || !waiting.contains(&point.x));
+        while !waiting.is_empty() {
+            let before = waiting.len();
+            run.share = (done as f64 / total as f64, before as f64 / total as f64);
+            found.extend(group(panel, &mut waiting, run)?);
+            done += before - waiting.len();
+            sort(sweep, &mut found);
+            write(sweep, run, &path, &found)?;
         }
     }
-    sort(sweep, &mut found);
-    write(sweep, run, &path, &found)?;
     Ok(found)
 }
 
@@ -138,39 +139,30 @@ fn write(sweep: &Sweep, run: &Run<'_>, path: &Path, found: &[Point]) -> Result<(
     csv::write(path, &run.header, &COLUMNS, &lines)
 }
 
-/// Returns the technique with the changes at a value.
-fn description(series: &Series, x: u32) -> String {
-    let changes = series.set.iter().map(|(name, value)| format!(" {name}={}", at(value, x)));
-    std::iter::once(series.technique.to_owned()).chain(changes).collect()
-}
-
-/// Measures all series of a panel at one value.
-fn group(panel: &Panel, x: u32, run: &mut Run<'_>) -> Result<Vec<Point>, Failure> {
-    let [full, quick] = panel.scene;
-    let side = side(panel.side, x, run.options);
-    let view =
-        run.view(at(if run.options.quick { quick } else { full }, x), panel.camera, (side, side), panel.series.len())?;
-    let (scene, _) = view.scene_views(&[])?;
-    let mut prepared: Vec<(Series, Result<Prepared, String>)> = Vec::new();
-    for (number, series) in panel.series.iter().enumerate() {
-        run.show(
-            number as f64 / (2 * panel.series.len()) as f64,
-            &format!("{}, {} = {x}", series.label, panel.axis.symbol),
-        );
-        prepared.push((*series, Prepared::new(series, x, (&view, &scene), run)?));
-    }
-    let frames = WARM_UP + run.options.repeats();
-    for frame in 0..frames {
-        run.show(0.5 + 0.5 * f64::from(frame) / f64::from(frames), &format!("{} = {x}", panel.axis.symbol));
-        for (_, prepared) in &mut prepared {
-            if let Ok(ready) = prepared
-                && let Err(reason) = ready.draw(frame >= WARM_UP)
-            {
-                *prepared = Err(unavailable(reason)?);
-            }
+/// Measures all series of a panel, at as many of the waiting values as are in memory together: those share the load of the machine.
+fn group(panel: &Panel, waiting: &mut VecDeque<u32>, run: &mut Run<'_>) -> Result<Vec<Point>, Failure> {
+    let whole = run.options.memory.whole();
+    let mut prepared: Vec<(u32, Series, Result<Prepared, String>)> = Vec::new();
+    let (mut bytes, values) = (0, waiting.len() * panel.series.len());
+    // A value needs at most the rest of the budget.
+    while bytes <= whole / 4
+        && let Some(x) = waiting.pop_front()
+    {
+        let [full, quick] = panel.scene;
+        let (scene, side) = (at(if run.options.quick { quick } else { full }, x), side(panel.side, x, run.options));
+        let memory = run.options.memory.without(whole / 4, "other values")?.divided(panel.series.len() as u64);
+        let view = run.view(scene, panel.camera, (side, side), memory)?;
+        let (scene, _) = view.scene_views(&[])?;
+        for series in panel.series {
+            let what = format!("{}, {} = {x}", series.label, panel.axis.symbol);
+            run.show(0.5 * prepared.len() as f64 / values as f64, &what);
+            let ready = Prepared::new(series, x, (&view, &scene), run)?;
+            bytes += ready.as_ref().map_or(0, |ready| ready.result.stats.bytes + scene.scene.bytes());
+            prepared.push((x, *series, ready));
         }
     }
-    let point = |(series, prepared): (Series, Result<Prepared, String>)| {
+    draw(&mut prepared, run)?;
+    let point = |(x, series, prepared): (u32, Series, Result<Prepared, String>)| {
         let outcome = match prepared {
             Ok(ready) => Outcome::Measured(ready.measurement()),
             Err(reason) => Outcome::Unavailable(reason),
@@ -179,6 +171,23 @@ fn group(panel: &Panel, x: u32, run: &mut Run<'_>) -> Result<Vec<Point>, Failure
         Point { panel, series, x, description, outcome }
     };
     Ok(prepared.into_iter().map(point).collect())
+}
+
+/// Draws the frames of all series in turns.
+fn draw(prepared: &mut [(u32, Series, Result<Prepared, String>)], run: &Run<'_>) -> Result<(), Failure> {
+    let (frames, count) = (WARM_UP + run.options.repeats(), prepared.len());
+    for frame in 0..frames {
+        for (number, (_, _, prepared)) in prepared.iter_mut().enumerate() {
+            let part = f64::from(frame) + number as f64 / count as f64;
+            run.show(0.5 + 0.5 * part / f64::from(frames), &format!("frame {} of {frames}", frame + 1));
+            if let Ok(ready) = prepared
+                && let Err(reason) = ready.draw(frame >= WARM_UP)
+            {
+                *prepared = Err(unavailable(reason)?);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A series that is ready to be drawn repeatedly, and its times so far.
@@ -198,8 +207,7 @@ impl Prepared {
         run: &mut Run<'_>,
     ) -> Result<Result<Self, String>, Failure> {
         let registry = Registry::builtin();
-        let set: Vec<(String, String)> =
-            series.set.iter().map(|(name, value)| ((*name).to_owned(), at(value, x))).collect();
+        let set = changes(series, x);
         let mut input = Input::read(series.technique, &registry)?;
         let variant = match input.variant(&set, &registry) {
             Ok(variant) => variant,
@@ -258,15 +266,4 @@ impl Prepared {
 /// Rounds milliseconds to what the CSV file has, so that a resumed run computes the same statistics.
 fn rounded(milliseconds: f64) -> f64 {
     (1.0e4 * milliseconds).round() / 1.0e4
-}
-
-/// Returns the reason why a device cannot run a point. `Err`: the failure is of another kind.
-fn unavailable(failure: Failure) -> Result<String, Failure> {
-    match failure {
-        Failure::Device(text) | Failure::Input(text) => Ok(text),
-        Failure::Description(diagnostics, _) => {
-            Ok(diagnostics.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; "))
-        }
-        other => Err(other),
-    }
 }

@@ -37,6 +37,7 @@ pub(super) fn missing(adapter: &wgpu::Adapter, variant: &Variant, registry: &Reg
     let candidates = candidates(variant, registry).ok()?;
     runnable(candidates, adapter).err().map(|error| match error {
         Error::MissingFeatures(features) => format!("it lacks {features:?}"),
+        Error::Unsupported { what, .. } => format!("it does not support {what}"),
         other => other.to_string(),
     })
 }

@@ -56,6 +56,18 @@ pub(crate) fn render(
     Ok(result)
 }
 
+/// Renders the scene as [`render`] does, without warnings and without the image of an opaque scene.
+#[cfg(feature = "figures")]
+pub(crate) fn render_quietly(
+    request: &RenderRequest<'_>,
+    input: &mut Input,
+    (view, selection): (&View, &mut DeviceSelection),
+    scene: &SceneView,
+    progress: &Progress,
+) -> Result<RenderResult, Failure> {
+    Ok(complete(request, input, (view, selection), scene, progress)?.result)
+}
+
 /// Renders the scene as [`render`] does, without warnings, and prepares the same frame without counters, to be drawn repeatedly.
 #[cfg(feature = "figures")]
 pub(crate) fn prepare(

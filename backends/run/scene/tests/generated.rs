@@ -52,6 +52,31 @@ fn layers_are_planes_over_the_frame() {
     assert_ne!(order(0), order(2));
 }
 
+/// Sorting keeps the triangles with their vertices, and orders them by the centroid.
+#[test]
+fn sorted_triangles_are_the_same_triangles() {
+    let made = scene("cubes");
+    let mut sorted = made.clone();
+    sorted.sort_triangles(|[_, y, z]| z - 2.0 * y);
+    let corners = |scene: &Scene| -> Vec<[([f32; 3], [f32; 4]); 3]> {
+        let of = |object: &fragbuf_scene::Object| {
+            let vertex = |corner: u32| (object.positions[corner as usize], object.colors[corner as usize]);
+            object.triangles.iter().map(|triangle| triangle.map(vertex)).collect::<Vec<_>>()
+        };
+        scene.objects.iter().flat_map(of).collect()
+    };
+    let (before, after) = (corners(&made), corners(&sorted));
+    assert!(made.objects.len() > 1 && sorted.objects.len() == 1 && before != after);
+    let text = |mut all: Vec<[([f32; 3], [f32; 4]); 3]>| {
+        all.sort_by_key(|triangle| format!("{triangle:?}"));
+        all
+    };
+    let keys: Vec<f32> =
+        after.iter().map(|corners| corners.iter().map(|([_, y, z], _)| z - 2.0 * y).sum::<f32>()).collect();
+    assert!(keys.windows(2).all(|pair| pair[0] <= pair[1] + 1.0e-4), "{keys:?}");
+    assert_eq!(text(before), text(after));
+}
+
 /// Every needle spans most of the depth of the scene, and their directions differ by a few degrees.
 #[test]
 fn needles_are_long_thin_and_nearly_parallel() {

@@ -74,9 +74,17 @@ fn what_is_missing_is_named() {
     let mut points = series("b", &[(4, 1.0)]);
     let outcome = Outcome::Unavailable("it lacks interlock".to_owned());
     points.push(Point { outcome, series: "a".to_owned(), ..points[0].clone() });
-    assert_eq!(check(faster(&[]), &points), Finding::Missing("a: it lacks interlock".to_owned()));
+    assert_eq!(check(faster(&[]), &points), Finding::Missing("it lacks interlock".to_owned()));
     let other = Check::Exponent { panel: "p", series: "c", range: [0.0, 1.0] };
     assert_eq!(check(other, &points), Finding::Missing("no point of c".to_owned()));
+}
+
+#[test]
+fn statements_with_the_same_reason_share_it() {
+    let missing = |reason: &str| Finding::Missing(reason.to_owned());
+    let findings = [("a", missing("no x")), ("b", missing("no y")), ("c", missing("no x"))];
+    let expected = "P, on D: it is not measured whether a, and whether c (no x), and whether b (no y).";
+    assert_eq!(sentence("P", "D", &findings), expected);
 }
 
 #[test]
