@@ -37,6 +37,7 @@ pub(super) struct Properties {
 
 /// One property.
 pub(super) struct Cell {
+    #[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "the table of figures prints it"))]
     pub(super) heading: &'static str,
     /// `None`: the technique or the column is not in the legible part of the paper's table.
     pub(super) paper: Option<&'static str>,

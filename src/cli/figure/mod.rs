@@ -35,7 +35,7 @@ pub(crate) struct Figure {
     #[arg(required_unless_present = "list")]
     name: Option<String>,
     /// List the experiments with their papers
-    #[arg(long, exclusive = true)]
+    #[arg(long, conflicts_with = "name")]
     list: bool,
     /// `auto`: the first adapter, or the CPU device where fragments must be interleaved. `cpu`: the CPU device. NAME: an adapter whose
     /// name contains NAME

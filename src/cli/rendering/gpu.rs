@@ -88,15 +88,21 @@ pub(crate) struct GpuFrame {
     gpu: GpuRenderer,
     renderer: Renderer,
     mesh: Mesh,
-    offscreen: Offscreen,
+    size: (u32, u32),
+    /// The image; `None` until the frame is drawn again.
+    offscreen: Option<Offscreen>,
 }
 
 #[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
 impl GpuFrame {
     /// Draws the frame again, and reads back its times alone.
     pub(super) fn draw(&mut self) -> Result<FrameTime, Failure> {
-        let GpuFrame { gpu: GpuRenderer { headless: Headless { device, queue, .. }, .. }, renderer, mesh, offscreen } =
-            self;
+        let GpuFrame { gpu, renderer, mesh, size, offscreen } = self;
+        let Headless { device, queue, .. } = &gpu.headless;
+        let offscreen = match offscreen {
+            Some(offscreen) => offscreen,
+            none => none.insert(Offscreen::new(device, BLENDED, size.0, size.1)?),
+        };
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         FrameTime::measure(|| {
             renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
@@ -182,7 +188,6 @@ impl GpuRenderer {
                 Err(error) => return Err(error.into()),
             }
         };
-        let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let result = RenderResult {
             stats,
             opaque: opaque.map(|opaque| opaque.pixels),
@@ -192,7 +197,7 @@ impl GpuRenderer {
             plan: self.shaders.plan.clone(),
             frames: redraw.frames,
         };
-        Ok((result, GpuFrame { gpu: self, renderer, mesh, offscreen }))
+        Ok((result, GpuFrame { gpu: self, renderer, mesh, size: (width, height), offscreen: None }))
     }
 
     /// Renders the opaque scene on the same device.

@@ -1,5 +1,5 @@
 //! K15, Fig. 10: differences of k-buffer variants from the image of K⁺B-Array. The paper renders the hairball with k = 16. Here k is 8, because
-//! KB-SR has at most 8 samples, and fragments are interleaved by a seed on the CPU device; a GPU has races of its own.
+//! KB-SR has at most 8 samples. KB-AB_Array with too few slots is left out, because the command enlarges its array. Fragments are interleaved by a seed on the CPU device; a GPU has races of its own.
 
 use fragbuf_cpu::FragmentOrder;
 
