@@ -150,6 +150,25 @@ fn a_missing_feature_is_reported_and_no_failure() {
     assert!(unavailable.iter().all(|row| row[1].contains("interlock") && row[5].is_empty()), "{unavailable:?}");
 }
 
+/// A budget that is too small is a row with the reason, or more slices, and no failure.
+#[test]
+fn a_point_beyond_the_budget_is_reported_and_no_failure() {
+    let out = folder("figure-memory");
+    let frames = |memory: &str| {
+        quick("k15-fig-7", "cpu", &out, &["--repeats", "1", "--memory", memory]);
+        let (columns, rows) = table(&read(out.join("k15-fig-7.csv")));
+        let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+        let [pass, slices, reason] = ["pass", "slices", "unavailable"].map(column);
+        let frames = rows.into_iter().filter(|row| row[pass] == "frame");
+        frames.map(|row| (row[slices].clone(), row[reason].clone())).collect::<Vec<_>>()
+    };
+    assert!(frames("2GiB").iter().all(|(slices, reason)| slices == "1" && reason.is_empty()));
+    let sliced = frames("256KiB");
+    assert!(sliced.iter().all(|(slices, _)| slices.parse::<u32>().unwrap() > 1), "{sliced:?}");
+    let missing = frames("16KiB");
+    assert!(missing.len() == 12 && missing.iter().all(|(_, reason)| reason.contains("memory")), "{missing:?}");
+}
+
 #[test]
 fn an_unknown_name_suggests_the_nearest() {
     let output = fragbuf(&["figure", "k15-fig7"]);

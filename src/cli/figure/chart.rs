@@ -39,7 +39,7 @@ pub(super) fn svg(experiment: &Experiment, sweep: &Sweep, points: &[Point], devi
                 draw(area, chart, panel, points, &labels)?;
             }
         }
-        legend(&side, &labels)?;
+        legend(&side, &labels, points)?;
         root.present().map_err(failure)?;
     }
     Ok(text)
@@ -128,14 +128,22 @@ fn draw(area: &Area<'_>, chart: &Chart, panel: &Panel, points: &[Point], labels:
     Ok(())
 }
 
-fn legend(area: &Area<'_>, labels: &[&str]) -> Result<(), Failure> {
+/// Draws the legend. A series that the device cannot run has a note instead of a line.
+fn legend(area: &Area<'_>, labels: &[&str], points: &[Point]) -> Result<(), Failure> {
     for (style, label) in labels.iter().enumerate() {
         let (y, color) = (40 + 22 * style as i32, COLORS[style % COLORS.len()]);
-        let line = PathElement::new(vec![(6, y), (34, y)], color.stroke_width(2));
-        area.draw(&line).map_err(failure)?;
-        area.draw(&marker((20, y), style, color)).map_err(failure)?;
-        area.draw(&Text::new((*label).to_owned(), (42, y - 7), (FONT, 13).into_font().color(&BLACK)))
-            .map_err(failure)?;
+        let is_measured = |point: &Point| point.series == *label && matches!(point.outcome, Outcome::Measured(_));
+        if points.iter().any(is_measured) {
+            let line = PathElement::new(vec![(6, y), (34, y)], color.stroke_width(2));
+            area.draw(&line).map_err(failure)?;
+            area.draw(&marker((20, y), style, color)).map_err(failure)?;
+            let text = (*label).to_owned();
+            area.draw(&Text::new(text, (42, y - 7), (FONT, 13).into_font().color(&BLACK))).map_err(failure)?;
+        } else {
+            area.draw(&Text::new("none:", (6, y - 7), (FONT, 11).into_font().color(&MUTED))).map_err(failure)?;
+            let text = (*label).to_owned();
+            area.draw(&Text::new(text, (42, y - 7), (FONT, 13).into_font().color(&MUTED))).map_err(failure)?;
+        }
     }
     Ok(())
 }

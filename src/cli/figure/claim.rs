@@ -159,7 +159,7 @@ fn faster(quotients: Quotients, symbol: &str) -> Finding {
     if spreads.is_empty() {
         return Finding::Missing("no common value".to_owned());
     }
-    let text = format!("quotient {}", numbers(&spreads, symbol));
+    let text = format!("quotient of times {}", numbers(&spreads, symbol));
     if spreads.iter().all(|(_, spread)| spread.quartiles[1] < 1.0) {
         Finding::Agrees(text)
     } else if spreads.iter().any(|(_, spread)| spread.quartiles[0] > 1.0) {
@@ -197,7 +197,8 @@ fn changes(quotients: Quotients, change: Change, symbol: &str) -> Finding {
     let (Some(first), Some(last)) = (spread(first).filter(|_| from < to), spread(last)) else {
         return Finding::Missing("one value".to_owned());
     };
-    let text = format!("quotient {:.2} at {symbol} = {from}, {:.2} at {symbol} = {to}", first.median, last.median);
+    let text =
+        format!("quotient of times {:.2} at {symbol} = {from}, {:.2} at {symbol} = {to}", first.median, last.median);
     let rises = last.quartiles[0] > first.quartiles[1];
     let falls = last.quartiles[1] < first.quartiles[0];
     match (change, rises, falls) {

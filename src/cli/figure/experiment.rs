@@ -83,6 +83,16 @@ pub(super) struct Series {
     pub(super) set: &'static [(&'static str, &'static str)],
 }
 
+impl Series {
+    pub(super) const fn new(
+        label: &'static str,
+        technique: &'static str,
+        set: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        Series { label, technique, set }
+    }
+}
+
 /// A chart of one panel.
 #[derive(Clone, Copy)]
 pub(super) struct Chart {

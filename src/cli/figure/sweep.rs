@@ -152,7 +152,14 @@ fn group(panel: &Panel, waiting: &mut VecDeque<u32>, run: &mut Run<'_>) -> Resul
         let (scene, side) = (at(if run.options.quick { quick } else { full }, x), side(panel.side, x, run.options));
         let memory = run.options.memory.without(whole / 4, "other values")?.divided(panel.series.len() as u64);
         let view = run.view(scene, panel.camera, (side, side), memory)?;
-        let (scene, _) = view.scene_views(&[])?;
+        let scene = match view.scene_views(&[]) {
+            Ok((scene, _)) => scene,
+            Err(failure) => {
+                let reason = unavailable(failure)?;
+                prepared.extend(panel.series.iter().map(|series| (x, *series, Err(reason.clone()))));
+                continue;
+            }
+        };
         for series in panel.series {
             let what = format!("{}, {} = {x}", series.label, panel.axis.symbol);
             run.show(0.5 * prepared.len() as f64 / values as f64, &what);

@@ -33,15 +33,18 @@ fn faster(at: &'static [u32]) -> Check {
 #[test]
 fn faster_holds_or_not_by_the_numbers() {
     let points = [series("a", &[(4, 1.0), (64, 3.0)]), series("b", &[(4, 2.0), (64, 2.0)])].concat();
-    assert_eq!(check(faster(&[4]), &points), Finding::Agrees("quotient 0.50 at k = 4".to_owned()));
-    assert_eq!(check(faster(&[]), &points), Finding::Differs("quotient 0.50 at k = 4, 1.50 at k = 64".to_owned()));
+    assert_eq!(check(faster(&[4]), &points), Finding::Agrees("quotient of times 0.50 at k = 4".to_owned()));
+    assert_eq!(
+        check(faster(&[]), &points),
+        Finding::Differs("quotient of times 0.50 at k = 4, 1.50 at k = 64".to_owned())
+    );
 }
 
 #[test]
 fn many_values_are_a_range() {
     let a = series("a", &[(4, 1.0), (8, 1.2), (16, 1.5)]);
     let points = [a, series("b", &[(4, 2.0), (8, 2.0), (16, 2.0)])].concat();
-    assert_eq!(check(faster(&[]), &points), Finding::Agrees("quotient 0.50 to 0.75 at k = 4 … 16".to_owned()));
+    assert_eq!(check(faster(&[]), &points), Finding::Agrees("quotient of times 0.50 to 0.75 at k = 4 … 16".to_owned()));
 }
 
 #[test]
@@ -57,7 +60,7 @@ fn changes_compare_the_least_and_the_greatest_value() {
     let points =
         [series("a", &[(64, 3.0), (4, 1.0), (16, 9.0)]), series("b", &[(4, 2.0), (16, 2.0), (64, 2.0)])].concat();
     let changes = |change| check(Check::Changes { panel: "p", series: "a", over: "b", change }, &points);
-    assert_eq!(changes(Change::Rises), Finding::Agrees("quotient 0.50 at k = 4, 1.50 at k = 64".to_owned()));
+    assert_eq!(changes(Change::Rises), Finding::Agrees("quotient of times 0.50 at k = 4, 1.50 at k = 64".to_owned()));
     assert!(matches!(changes(Change::Falls), Finding::Differs(_)));
 }
 
@@ -92,12 +95,12 @@ fn the_sentence_says_what_agrees_and_what_does_not() {
     let points = [series("a", &[(4, 1.0), (64, 3.0)]), series("b", &[(4, 2.0), (64, 2.0)])].concat();
     let claims = [Claim { statement: "a is faster", check: faster(&[4]) }];
     let agrees = sentence("K15, Fig. 6", "D", &findings(&claims, &[PANEL], &points));
-    assert_eq!(agrees, "K15, Fig. 6, on D: as in the paper, a is faster (quotient 0.50 at k = 4).");
+    assert_eq!(agrees, "K15, Fig. 6, on D: as in the paper, a is faster (quotient of times 0.50 at k = 4).");
     let claims = [Claim { statement: "a is faster", check: faster(&[64]) }, claims[0]];
     let both = sentence("K15", "D", &findings(&claims, &[PANEL], &points));
     assert_eq!(
         both,
-        "K15, on D: as in the paper, a is faster (quotient 0.50 at k = 4); unlike in the paper, it does not hold that a is \
-         faster (quotient 1.50 at k = 64)."
+        "K15, on D: as in the paper, a is faster (quotient of times 0.50 at k = 4); unlike in the paper, it does not hold that a is \
+         faster (quotient of times 1.50 at k = 64)."
     );
 }

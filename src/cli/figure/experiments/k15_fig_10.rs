@@ -34,7 +34,7 @@ const fn variant(
     technique: &'static str,
     set: &'static [(&'static str, &'static str)],
 ) -> Variant {
-    Variant { series: Series { label, technique, set }, triangles: Triangles::AsModelled }
+    Variant { series: Series::new(label, technique, set), triangles: Triangles::AsModelled }
 }
 
 const CLAIMS: [ImageClaim; 5] = [

@@ -22,25 +22,21 @@ const PANEL: Panel = Panel {
 };
 
 const SERIES: [Series; 10] = [
-    series("K⁺B-Array", "kplus_array", &HYBRID),
-    series("K⁺B-Heap", "kplus_heap", &HYBRID),
-    series("KB-PS", "kb_ps", &K),
-    series("KB-MDT₃₂", "kb_mdt32", &K),
-    series("KB-MDT₆₄", "kb_mdt64", &K),
-    series("K⁺B-AB_SB", "kplus_ab_sb", &HYBRID),
-    series("KB-AB_Array", "kb_ab_array", &HYBRID),
-    series("KB-AB_LL", "kb_ab_ll", &HYBRID),
-    series("KB-AB_SB", "kb_ab_sb", &HYBRID),
-    series("KB-LL", "kb_ll", &K),
+    Series::new("K⁺B-Array", "kplus_array", &HYBRID),
+    Series::new("K⁺B-Heap", "kplus_heap", &HYBRID),
+    Series::new("KB-PS", "kb_ps", &K),
+    Series::new("KB-MDT₃₂", "kb_mdt32", &K),
+    Series::new("KB-MDT₆₄", "kb_mdt64", &K),
+    Series::new("K⁺B-AB_SB", "kplus_ab_sb", &HYBRID),
+    Series::new("KB-AB_Array", "kb_ab_array", &HYBRID),
+    Series::new("KB-AB_LL", "kb_ab_ll", &HYBRID),
+    Series::new("KB-AB_SB", "kb_ab_sb", &HYBRID),
+    Series::new("KB-LL", "kb_ll", &K),
 ];
 
 const K: [(&str, &str); 1] = [("k", "{x}")];
 /// The paper's sort in the resolve pass: insertion sort up to 16 fragments, shell sort beyond.
 const HYBRID: [(&str, &str); 2] = [("k", "{x}"), ("sort", "hybrid")];
-
-const fn series(label: &'static str, technique: &'static str, set: &'static [(&'static str, &'static str)]) -> Series {
-    Series { label, technique, set }
-}
 
 const CHARTS: [Chart; 3] = [
     Chart { panel: "n128", title: "frame", passes: Passes::All },

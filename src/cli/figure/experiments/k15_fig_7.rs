@@ -18,18 +18,14 @@ const PANEL: Panel = Panel {
     axis: Axis { symbol: "k", label: "k", values: &[4, 16, 64], quick: &[4, 8] },
     side: Side::Fixed(128),
     series: &[
-        series("K⁺B-Array", "kplus_array", &[("k", "{x}"), ("sort", "hybrid")]),
-        series("K⁺B-Array, no cull", "kplus_array", &[("k", "{x}"), ("sort", "hybrid"), ("cull", "none")]),
-        series("KB-PS", "kb_ps", &[("k", "{x}")]),
-        series("KB-PS, no cull", "kb_ps", &[("k", "{x}"), ("cull", "none")]),
-        series("KB-MDT₃₂", "kb_mdt32", &[("k", "{x}")]),
-        series("KB-MDT₃₂, no cull", "kb_mdt32", &[("k", "{x}"), ("cull", "none")]),
+        Series::new("K⁺B-Array", "kplus_array", &[("k", "{x}"), ("sort", "hybrid")]),
+        Series::new("K⁺B-Array, no cull", "kplus_array", &[("k", "{x}"), ("sort", "hybrid"), ("cull", "none")]),
+        Series::new("KB-PS", "kb_ps", &[("k", "{x}")]),
+        Series::new("KB-PS, no cull", "kb_ps", &[("k", "{x}"), ("cull", "none")]),
+        Series::new("KB-MDT₃₂", "kb_mdt32", &[("k", "{x}")]),
+        Series::new("KB-MDT₃₂, no cull", "kb_mdt32", &[("k", "{x}"), ("cull", "none")]),
     ],
 };
-
-const fn series(label: &'static str, technique: &'static str, set: &'static [(&'static str, &'static str)]) -> Series {
-    Series { label, technique, set }
-}
 
 const CHARTS: [Chart; 2] = [
     Chart { panel: "n128", title: "frame", passes: Passes::All },

@@ -18,18 +18,14 @@ const PANEL: Panel = Panel {
     axis: Axis { symbol: "n", label: "n, fragments per pixel", values: &[8, 16, 32], quick: &[8, 16] },
     side: Side::Fixed(256),
     series: &[
-        series("K⁺B-Array, spin lock", "kplus_array", &[("k", "8"), ("sync", "spin_lock")]),
-        series("K⁺B-Array, interlock", "kplus_array", &[("k", "8"), ("sync", "interlock")]),
-        series("KB-PS, spin lock", "kb_ps", &[("k", "8"), ("sync", "spin_lock")]),
-        series("KB-PS, interlock", "kb_ps", &[("k", "8"), ("sync", "interlock")]),
-        series("KB-MDT₃₂", "kb_mdt32", &[("k", "8")]),
-        series("KB-AB_Array", "kb_ab_array", &[("k", "8")]),
+        Series::new("K⁺B-Array, spin lock", "kplus_array", &[("k", "8"), ("sync", "spin_lock")]),
+        Series::new("K⁺B-Array, interlock", "kplus_array", &[("k", "8"), ("sync", "interlock")]),
+        Series::new("KB-PS, spin lock", "kb_ps", &[("k", "8"), ("sync", "spin_lock")]),
+        Series::new("KB-PS, interlock", "kb_ps", &[("k", "8"), ("sync", "interlock")]),
+        Series::new("KB-MDT₃₂", "kb_mdt32", &[("k", "8")]),
+        Series::new("KB-AB_Array", "kb_ab_array", &[("k", "8")]),
     ],
 };
-
-const fn series(label: &'static str, technique: &'static str, set: &'static [(&'static str, &'static str)]) -> Series {
-    Series { label, technique, set }
-}
 
 const CHARTS: [Chart; 2] = [
     Chart { panel: "k8", title: "frame", passes: Passes::All },
