@@ -31,6 +31,16 @@ impl FromStr for DeviceRequest {
     }
 }
 
+/// Returns an order as [`order`] parses it.
+#[cfg(feature = "figures")]
+pub(crate) fn order_text(order: FragmentOrder) -> String {
+    match order {
+        FragmentOrder::Submission => "submission".to_owned(),
+        FragmentOrder::Shuffled(seed) => format!("shuffle:{seed}"),
+        FragmentOrder::Window { seed, triangles } => format!("window:{seed},{triangles}"),
+    }
+}
+
 /// Parses `submission`, `shuffle:SEED` or `window:SEED,TRIANGLES`.
 pub(crate) fn order(text: &str) -> Result<FragmentOrder, String> {
     let seed = text.strip_prefix("shuffle:").and_then(|seed| seed.parse().ok());

@@ -19,8 +19,8 @@ const COLUMNS: usize = 3;
 
 /// Returns the charts of a sweep.
 pub(super) fn svg(experiment: &Experiment, sweep: &Sweep, points: &[Point], device: &str) -> Result<String, Failure> {
-    let columns = sweep.charts.len().clamp(1, COLUMNS);
     let lines = sweep.charts.len().div_ceil(COLUMNS).max(1);
+    let columns = sweep.charts.len().div_ceil(lines).max(1);
     let size = (CHART.0 * columns as u32 + LEGEND, TITLE + CHART.1 * lines as u32);
     let mut text = String::new();
     {

@@ -22,7 +22,7 @@ pub(super) enum Check {
     Faster { panel: &'static str, series: &'static str, than: &'static str, passes: Passes, at: &'static [u32] },
     /// The quotient of the times of two series changes between the least and the greatest value.
     Changes { panel: &'static str, series: &'static str, over: &'static str, change: Change },
-    /// The time of a frame is a power of the value, with an exponent in this range.
+    /// The time of a frame is a power of the value, with an exponent in this range: that of each repeat is fitted.
     Exponent { panel: &'static str, series: &'static str, range: [f64; 2] },
 }
 
@@ -208,20 +208,30 @@ fn changes(quotients: Quotients, change: Change, symbol: &str) -> Finding {
     }
 }
 
+/// Fits an exponent to each repeat, and compares their quartiles with the range.
 fn powers(points: &[Point], panel: &str, series: &str, [least, greatest]: [f64; 2]) -> Finding {
     let measured = match measured(points, panel, series) {
         Ok(measured) => measured,
         Err(reason) => return Finding::Missing(reason),
     };
-    let median = |measured: &Measurement| Some(spread(&measured.samples(Passes::All))?.median);
-    let points: Vec<(f64, f64)> =
-        measured.iter().filter_map(|(x, measured)| Some((f64::from(*x), median(measured)?))).collect();
-    match exponent(&points) {
-        None => Finding::Missing("one value".to_owned()),
-        Some(found) => {
-            let text = format!("exponent {found:.2}");
-            if (least..=greatest).contains(&found) { Finding::Agrees(text) } else { Finding::Differs(text) }
-        }
+    let samples: Vec<(f64, Vec<f64>)> =
+        measured.iter().map(|(x, measured)| (f64::from(*x), measured.samples(Passes::All))).collect();
+    let repeats = samples.iter().map(|(_, times)| times.len()).min().unwrap_or(0);
+    let fitted = |repeat: usize| {
+        let points: Vec<(f64, f64)> = samples.iter().filter_map(|(x, times)| Some((*x, *times.get(repeat)?))).collect();
+        exponent(&points)
+    };
+    let exponents: Vec<f64> = (0..repeats).filter_map(fitted).collect();
+    let Some(Spread { median, quartiles: [low, high] }) = spread(&exponents) else {
+        return Finding::Missing("one value".to_owned());
+    };
+    let text = format!("exponent {median:.2}, quartiles {low:.2} to {high:.2}");
+    if least <= low && high <= greatest {
+        Finding::Agrees(text)
+    } else if high < least || greatest < low {
+        Finding::Differs(text)
+    } else {
+        Finding::Undecided(text)
     }
 }
 

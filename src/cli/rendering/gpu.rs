@@ -71,7 +71,7 @@ fn runnable(
     for (target, shaders) in candidates {
         let missing = shaders.features() - adapter.features();
         let checked = match missing.is_empty() {
-            true => shaders.check().and_then(|()| shaders.check_interlock(supported_interlock(adapter))),
+            true => shaders.check().and_then(|()| check_interlock(&shaders, adapter)),
             false => Err(Error::MissingFeatures(missing)),
         };
         match checked {
@@ -80,6 +80,14 @@ fn runnable(
         }
     }
     Err(failure)
+}
+
+/// Checks whether the driver of an adapter has the interlock of the shaders.
+fn check_interlock(shaders: &Shaders, adapter: &wgpu::Adapter) -> Result<(), Error> {
+    shaders.check_interlock(supported_interlock(adapter)).map_err(|_| Error::Unsupported {
+        what: "fragment shader interlock, because the driver has no `VK_EXT_fragment_shader_interlock`".to_owned(),
+        help: "write `sync: interlock else spin_lock`, or choose another device".to_owned(),
+    })
 }
 
 /// A frame that can be drawn again: a renderer with the capacity for its fragments, and the geometry of its scene.

@@ -10,6 +10,8 @@ use fragbuf_cpu::FragmentOrder;
 use super::RenderRequest;
 #[cfg(feature = "gpu")]
 use super::{estimate::Work, gpu, result::fixed_layers};
+#[cfg(feature = "figures")]
+use crate::cli::device::order_text;
 use crate::cli::device::{CPU, DeviceRequest};
 use crate::cli::input::Input;
 use crate::cli::output::{self, Failure};
@@ -93,12 +95,11 @@ impl DeviceSelection {
         }
     }
 
-    /// Returns the name of the device with its driver, and the order of fragments if it is not that of submission.
+    /// Returns the name of the device with its driver, and the order of fragments on the CPU device.
     #[cfg(feature = "figures")]
     pub(crate) fn description(&self) -> String {
         match &self.device {
-            SelectedDevice::Cpu(FragmentOrder::Submission) => format!("{CPU} ({})", fragbuf::GENERATOR),
-            SelectedDevice::Cpu(order) => format!("{CPU} ({}), order {order:?}", fragbuf::GENERATOR),
+            SelectedDevice::Cpu(order) => format!("{CPU} ({}), order {}", fragbuf::GENERATOR, order_text(*order)),
             SelectedDevice::Gpu(adapter) => {
                 let info = adapter.get_info();
                 format!("{}, {}, {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()

@@ -68,8 +68,24 @@ fn changes_compare_the_least_and_the_greatest_value() {
 fn exponents_are_compared_with_a_range() {
     let points = series("a", &[(4, 16.0), (8, 64.0), (16, 256.0)]);
     let power = |range| check(Check::Exponent { panel: "p", series: "a", range }, &points);
-    assert_eq!(power([1.8, 2.2]), Finding::Agrees("exponent 2.00".to_owned()));
-    assert_eq!(power([0.8, 1.2]), Finding::Differs("exponent 2.00".to_owned()));
+    assert_eq!(power([1.8, 2.2]), Finding::Agrees("exponent 2.00, quartiles 2.00 to 2.00".to_owned()));
+    assert_eq!(power([0.8, 1.2]), Finding::Differs("exponent 2.00, quartiles 2.00 to 2.00".to_owned()));
+}
+
+#[test]
+fn exponents_around_the_end_of_a_range_decide_nothing() {
+    let mut points = series("a", &[(4, 16.0), (16, 256.0)]);
+    let Some(Point { outcome: Outcome::Measured(measured), .. }) = points.last_mut() else { unreachable!("planted") };
+    // Four times the value: the exponents are 1.5, 2 and 2.5.
+    let times = [1.5, 2.0, 2.5].map(|power: f64| 4.0_f64.powf(power));
+    let first = [0.99 * 16.0, 16.0, 1.01 * 16.0];
+    let planted = first.iter().zip(times).map(|(first, factor)| first * factor).collect();
+    measured.passes = vec![("store".to_owned(), planted)];
+    let power = |range| check(Check::Exponent { panel: "p", series: "a", range }, &points);
+    let text = "exponent 2.00, quartiles 1.75 to 2.25".to_owned();
+    assert_eq!(power([1.7, 2.3]), Finding::Agrees(text.clone()));
+    assert_eq!(power([1.9, 2.1]), Finding::Undecided(text.clone()));
+    assert_eq!(power([0.0, 1.7]), Finding::Differs(text));
 }
 
 #[test]

@@ -61,11 +61,11 @@ const CLAIMS: [Claim; 4] = [
         check: faster("needles", Passes::All),
     },
     Claim {
-        statement: "it makes the store pass of the hairball faster for every k",
+        statement: "occupancy culling makes the store pass of the hairball faster for every k",
         check: faster("hairball", Passes::Only(&["store"])),
     },
     Claim {
-        statement: "it makes the store pass of the needles faster for every k",
+        statement: "occupancy culling makes the store pass of the needles faster for every k",
         check: faster("needles", Passes::Only(&["store"])),
     },
 ];

@@ -12,8 +12,8 @@ pub(super) const ROW: Experiment = Experiment {
 };
 
 const COMPARED: [(&str, &str); 4] = [
-    ("geometry passes", "the techniques draw the scene as often"),
-    ("primitives in order", "the same techniques need primitives in order"),
-    ("fragments sorted", "they sort fragments in the same stage"),
-    ("words per pixel", "they need as many words per pixel"),
+    ("geometry passes", "each technique draws the scene as often as the table states"),
+    ("primitives in order", "each needs primitives in order where the table states it"),
+    ("fragments sorted", "each sorts fragments in the stage of the table"),
+    ("words per pixel", "each needs the words per pixel of the table"),
 ];
