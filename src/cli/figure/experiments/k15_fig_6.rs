@@ -44,7 +44,7 @@ const CHARTS: [Chart; 3] = [
     Chart { panel: "n128", title: "resolve pass", passes: Passes::Only(&["resolve"]) },
 ];
 
-const CLAIMS: [Claim; 7] = [
+const CLAIMS: [Claim; 8] = [
     Claim {
         statement: "K⁺B-Array is faster than KB-PS for every k",
         check: Check::Faster { panel: "n128", series: "K⁺B-Array", than: "KB-PS", passes: Passes::All, at: &[] },
@@ -54,6 +54,10 @@ const CLAIMS: [Claim; 7] = [
         check: Check::Faster {
             panel: "n128", series: "K⁺B-Array", than: "KB-MDT₃₂", passes: Passes::All, at: &[]
         },
+    },
+    Claim {
+        statement: "K⁺B-Heap gains on K⁺B-Array as k grows",
+        check: Check::Changes { panel: "n128", series: "K⁺B-Heap", over: "K⁺B-Array", change: Change::Falls },
     },
     Claim {
         statement: "K⁺B-Heap is faster than K⁺B-Array for k = 64",
