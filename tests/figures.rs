@@ -66,7 +66,9 @@ fn every_experiment_runs_and_writes_what_it_states() {
         for name in &names {
             let out = &out;
             scope.spawn(move || {
-                let output = quick(name, "cpu", out, &[]);
+                // A folder without the files of a project: each technique has a line with the reason.
+                let peer = ["--peer", out.to_str().unwrap()];
+                let output = quick(name, "cpu", out, if name == "peers" { &peer } else { &[] });
                 let sentence = String::from_utf8(output.stdout).unwrap();
                 let csv = read(out.join(format!("{name}.csv")));
                 let paper = csv.lines().nth(1).unwrap().trim_start_matches("# ").split(": ").next().unwrap().to_owned();

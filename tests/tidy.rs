@@ -84,6 +84,7 @@ fn no_code_compares_a_key() {
         ("coverage", "a field of a pass's samples in the manifest"),
         ("one", "a blend factor"),
         ("early", "a field of a depth test in the manifest"),
+        ("interlock", "a feature in the manifest"),
     ];
     let registry = Registry::builtin();
     let chosen = |axis: &str| registry.axis(axis).is_some_and(|axis| axis.chosen);

@@ -30,6 +30,8 @@ pub(super) enum Kind {
     Properties(Properties),
     /// What pixels hold after each object of a scene.
     Steps(Steps),
+    /// Times of frames beside those of other projects, on OpenGL.
+    Peers(Peers),
 }
 
 /// Times of frames and passes.
@@ -120,6 +122,24 @@ impl Passes {
             Passes::Except(names) => !names.contains(&pass),
         }
     }
+}
+
+/// Scenes on which other projects' shaders run beside ours.
+#[derive(Clone, Copy)]
+pub(super) struct Peers {
+    pub(super) scenes: &'static [PeerScene],
+    /// The pixels along a side.
+    pub(super) side: u32,
+}
+
+/// A scene of at most 64 fragments per pixel, the capacity in the descriptions of peers.
+#[derive(Clone, Copy)]
+pub(super) struct PeerScene {
+    /// The name in the CSV file.
+    pub(super) name: &'static str,
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
 }
 
 /// Images of one scene.

@@ -2,7 +2,7 @@
 //!
 //! Input: the name of an experiment, which is a row of data in [`experiments`]. Output: a CSV file, a chart or image, and one sentence that
 //! compares the trend with the paper's. [`experiment`] has the types of the rows, [`run`] what all kinds share. Each kind of
-//! experiment has a runner: [`sweep`], [`images`], [`properties`] and [`steps`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
+//! experiment has a runner: [`sweep`], [`images`], [`properties`], [`steps`] and [`peers`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
 
 mod chart;
 mod claim;
@@ -10,6 +10,7 @@ mod csv;
 mod experiment;
 mod experiments;
 mod images;
+mod peers;
 mod point;
 mod properties;
 mod run;
@@ -44,6 +45,9 @@ pub(crate) struct Figure {
     /// Folder for NAME.csv and NAME.svg. Points that the CSV file has from an earlier run with the same options are not measured again
     #[arg(long, value_name = "DIR", default_value = "figures")]
     out: PathBuf,
+    /// Checkout of a project whose shaders `peers` compares with ours
+    #[arg(long, value_name = "DIR")]
+    peer: Option<PathBuf>,
     /// Measured frames per point [default: 7, or 2 with `--quick`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeats: Option<u32>,
@@ -69,6 +73,7 @@ impl Figure {
             Kind::Images(images) => images::run(images, self, experiment)?,
             Kind::Properties(properties) => properties::run(properties, self, experiment)?,
             Kind::Steps(steps) => steps::run(steps, self, experiment)?,
+            Kind::Peers(peers) => peers::run(peers, self, experiment)?,
         };
         output::print(&format!("{text}\n"))
     }

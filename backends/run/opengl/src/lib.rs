@@ -23,8 +23,8 @@ use std::fmt;
 pub use context::Context;
 pub use host::{Host, Image, Object, Scene};
 pub use manifest::VertexInput;
-pub use peer::{Description, Peer};
-pub use timing::{Comparison, compare};
+pub use peer::{Description, PROJECTS, Peer, Project};
+pub use timing::{Comparison, WARM_UP, compare};
 
 /// An error: a message for people.
 #[derive(Debug)]

@@ -4,12 +4,14 @@
 
 mod description;
 mod memory;
+mod table;
 
 use std::time::Duration;
 
 use glow::HasContext as _;
 
 pub use self::description::Description;
+pub use self::table::{PROJECTS, Project};
 
 use self::memory::PeerMemory;
 use crate::host::{Image, Scene};

@@ -11,31 +11,19 @@ use crate::{Context, Error};
 /// The frames that are drawn before the first that is measured. Drivers compile shaders in the first one.
 pub const WARM_UP: u32 = 3;
 
-/// Frame times of both sides.
+/// Frame times of both sides, frame by frame: those of equal index were measured one after the other.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Our frame times, in ascending order.
+    /// Our frame times.
     pub ours: Vec<Duration>,
-    /// The peer's frame times, in ascending order.
+    /// The peer's frame times.
     pub theirs: Vec<Duration>,
     /// The median time of each of our passes, measured one at a time in further frames.
-    pub passes: Vec<(String, Duration)>,
+    pub our_passes: Vec<(String, Duration)>,
     /// The same of the peer's passes.
     pub their_passes: Vec<(String, Duration)>,
     /// The greatest difference between the two images, in any channel.
     pub difference: f32,
-}
-
-impl Comparison {
-    /// Returns our median time by theirs.
-    pub fn ratio(&self) -> f64 {
-        median(&self.ours).as_secs_f64() / median(&self.theirs).as_secs_f64()
-    }
-}
-
-/// Returns the median of times in ascending order.
-pub fn median(times: &[Duration]) -> Duration {
-    times.get(times.len() / 2).copied().unwrap_or_default()
 }
 
 /// Draws `repeats` frames of each in turns. Each scene holds the vertices as its side expects them.
@@ -62,8 +50,6 @@ pub fn compare(
             their_times.push(end - middle);
         }
     }
-    our_times.sort();
-    their_times.sort();
     let (mut our_frames, mut their_frames) = (Vec::new(), Vec::new());
     for _ in 0..repeats {
         host.pass_times = Some(Vec::new());
@@ -76,7 +62,7 @@ pub fn compare(
     Ok(Comparison {
         ours: our_times,
         theirs: their_times,
-        passes: medians(&our_frames),
+        our_passes: medians(&our_frames),
         their_passes: medians(&their_frames),
         difference,
     })
@@ -88,7 +74,7 @@ fn medians(frames: &[Vec<(String, Duration)>]) -> Vec<(String, Duration)> {
     let of_pass = |index: usize, name: &String| {
         let mut times: Vec<Duration> = frames.iter().filter_map(|frame| Some(frame.get(index)?.1)).collect();
         times.sort();
-        (name.clone(), median(&times))
+        (name.clone(), times.get(times.len() / 2).copied().unwrap_or_default())
     };
     first.iter().enumerate().map(|(index, (name, _))| of_pass(index, name)).collect()
 }

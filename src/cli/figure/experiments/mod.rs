@@ -9,11 +9,12 @@ mod k15_fig_6;
 mod k15_fig_7;
 mod k15_fig_9_left;
 mod k15_table_1;
+mod peers;
 
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 9] = [
+pub(super) const EXPERIMENTS: [Experiment; 10] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_6::ROW,
@@ -23,4 +24,5 @@ pub(super) const EXPERIMENTS: [Experiment; 9] = [
     c15_fig_1::ROW,
     b06_fig_3::ROW,
     growth::ROW,
+    peers::ROW,
 ];

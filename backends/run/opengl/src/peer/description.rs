@@ -18,6 +18,9 @@ pub struct Description {
     pub set: BTreeMap<String, String>,
     /// What was changed in the peer's source, and why, in a sentence.
     pub note: String,
+    /// The folder of all files within the project.
+    #[serde(default)]
+    pub root: String,
     /// The folder of the files that `#include` names.
     pub include: String,
     /// The memory that the shaders bind.
