@@ -259,7 +259,7 @@ fn drawing(experiment: &Experiment, device: &str, points: &[Point]) -> String {
         };
         let width = (f64::from(UNIT) * ratio.median.min(2.0)) as u32;
         svg.rectangle([LEFT, y + 2, width, LINE - 6], if ratio.median <= 1.0 { "#0072b2" } else { "#d55e00" });
-        svg.text([LEFT + width + 6, y + 14], (12, "#000000", Anchor::Start), &format!("{:.2}", ratio.median));
+        svg.text([LEFT + 2 * UNIT + 12, y + 14], (12, "#000000", Anchor::Start), &format!("{:.2}", ratio.median));
     }
     svg.rectangle([LEFT + UNIT, TOP - 4, 1, LINE * points.len() as u32 + 4], "#000000");
     svg.text([LEFT + UNIT, TOP + LINE * points.len() as u32 + 16], (12, "#5f5f5f", Anchor::Middle), "1");
