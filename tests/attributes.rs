@@ -109,7 +109,7 @@ fn attributes_that_are_missing_are_errors() {
             Some(1),
             format!(
                 "error: examples/heat.ply: the scene has no `haet: f32` for the fragments: did you mean `heat`? it has heat (f32 or u32), \
-                 {every}; {advice}\n"
+                 position (vec3), {every}; {advice}\n"
             )
         )
     );

@@ -29,6 +29,7 @@ use self::selection::SelectedDevice;
 use super::input::Input;
 use super::output::Failure;
 use super::progress::Progress;
+use super::uniforms;
 use super::view::{SceneView, View};
 
 /// Renders the scene through the description `input`, on the device that [`select`] returned, or on the CPU device if a software driver
@@ -66,7 +67,7 @@ pub(crate) fn render(
                 set.push((option, layers.to_string()));
             }
             None => {
-                result.warn(request.description, &scene.scene);
+                result.warn(request.description, &uniforms::values(request.uniforms, &variant)?, &scene.scene);
                 if let Some(background) = result.opaque.take() {
                     blend_over(&mut result.stats.pixels, &background);
                 }

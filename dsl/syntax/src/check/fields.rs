@@ -41,6 +41,9 @@ impl Checker<'_, '_, '_> {
 
     fn attribute(&mut self, base: Expr, name: String, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let Some((_, ty)) = self.environment.attributes.iter().find(|(other, _)| *other == name) else {
+            if self.environment.incomplete.attributes {
+                return self.without_declaration(span);
+            }
             let existing: Vec<&str> = self.environment.attributes.iter().map(|(name, _)| name.as_str()).collect();
             let help = unknown_name::help(&name, &existing);
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("no attribute `{name}` on a fragment"), help);
@@ -52,6 +55,9 @@ impl Checker<'_, '_, '_> {
 
     fn uniform(&mut self, name: String, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let Some((_, ty)) = self.environment.uniforms.iter().find(|(other, _)| *other == name) else {
+            if self.environment.incomplete.uniforms {
+                return self.without_declaration(span);
+            }
             let existing: Vec<&str> = self.environment.uniforms.iter().map(|(name, _)| name.as_str()).collect();
             let help = match existing.is_empty() {
                 true => format!("declare it: `uniform {{ {name}: f32 }}`"),

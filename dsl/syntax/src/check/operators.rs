@@ -206,6 +206,7 @@ impl Checker<'_, '_, '_> {
         let message = format!("cannot cast {} as `{}`", quoted(self.inference.name(source)), target.rust());
         let help = match (source, target) {
             (Type::Bool, Type::F32) => "write `if … { 1.0 } else { 0.0 }`".to_string(),
+            (_, Type::Bool) if self.inference.is_float(source) => "compare it: `x != 0.0`".to_string(),
             (_, Type::Bool) => "compare it: `x != 0`".to_string(),
             _ => fix(&self.inference, &inner, target),
         };

@@ -220,6 +220,8 @@ fn syntax_help(message: &str) -> &'static str {
         "end the statement with `;`"
     } else if message.contains("unexpected end of input") {
         "add the missing code before this position"
+    } else if message.contains("expected `:`") {
+        "give each parameter its type, after its name: `x: f32`"
     } else {
         "functions use Rust syntax: check this token and the one before it"
     }

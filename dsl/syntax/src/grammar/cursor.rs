@@ -38,6 +38,11 @@ impl Cursor {
         self.tokens.get(self.next + 1)
     }
 
+    /// Returns the second token after the next without taking it.
+    pub(super) fn peek_third(&self) -> Option<&TokenTree> {
+        self.tokens.get(self.next + 2)
+    }
+
     /// Returns the number of tokens taken.
     pub(super) fn position(&self) -> usize {
         self.next
