@@ -101,7 +101,8 @@ pub fn variant(
 fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {
     match description {
         Description::Technique(key) => {
-            Ok((Draft::from_technique(key, &SourceSpan::new(key.as_str(), 1, 1)), Diagnostics::new()))
+            let span = SourceSpan::new(key.as_str(), 1, 1).with_length(key.chars().count() as u32);
+            Ok((Draft::from_technique(key, &span), Diagnostics::new()))
         }
         Description::Text { file, text } => {
             let parsed = parse(text, file);

@@ -82,6 +82,7 @@ fn a_missing_file_is_the_same_error_for_every_extension() {
         ("glas.fragbuf", 3, "does not exist: did you mean `glass.fragbuf`?"),
         ("./glass", 3, "did you mean `./glass.fragbuf`?"),
         ("glass.txt", 3, "does not exist"),
+        ("kplus_array.fragbuf", 3, "give the key of the technique alone, `kplus_array`"),
         (".", 3, "is a folder"),
         ("kplus_aray", 1, "did you mean `kplus_array`?"),
         ("list.wgsl", 2, "`fragbuf check --wgsl list.wgsl --entry NAME`"),

@@ -55,6 +55,8 @@ const CALLS: &[(&str, &str)] = &[
     ("degrees(f.normal)", ".x < 0.5"),
     ("fmod(f.normal, 0.1)", ".x < 0.5"),
     ("round(f.depth)", " < 0.5"),
+    ("sqrt(2)", " < f.depth"),
+    ("sqrt(f.id)", " < f.depth"),
     ("atan(f.depth, 1.0)", " < 0.5"),
     ("bitCount(f.id)", " < 5"),
     ("firstbithigh(f.id)", " < 5"),
@@ -277,4 +279,24 @@ fn wrong_items_say_what_to_write() {
     assert!(set("fragment", "vec4").contains("`fragment.name=format`"));
     assert!(set("uniform.far", "1").contains("`--uniform far=1`"));
     assert!(set("storage", "wgsl(\"a.wgsl\")").contains("in a .fragbuf file"));
+}
+
+/// Closures with slips of other languages: the help fits the types.
+#[test]
+fn wrong_expressions_say_what_to_write() {
+    for (closure, expected) in [
+        ("where |f| 2.sqrt() < f.depth;", "write `2.0_f32.sqrt(…)`"),
+        ("where |f| f.depth.sin < 0.5;", "it is a method: write `.sin(…)`"),
+        ("where |f| f.depth ** 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
+        ("where |f| f.depth ^ 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
+        ("where |f| dFdx(f.depth) < 0.5;", "closures have no derivatives"),
+        ("where |f| f.color > 0.5;", "compare components, `a.x < b.x`"),
+        ("where |f| any(f.color.xyz());", "`v.x > 0.5 || v.y > 0.5`"),
+        ("where |f| let x = f.depth; x < 0.5;", "enclose statements in braces"),
+        ("resolve |fragments| { fragments[-1].color }", "`fragments[fragments.len() - 1]`"),
+        ("where |f| length(f.depth) < 0.5;", "it is a method of Vec2, Vec3, Vec4"),
+    ] {
+        let error = only(&format!("buffer B from kplus_array {{\n    {closure}\n    keep 4;\n}}"), &[]);
+        assert!(error.help.contains(expected), "{closure}: {error}");
+    }
 }

@@ -27,7 +27,7 @@ impl Input {
     pub(crate) fn read(argument: &str, registry: &Registry) -> Result<Self, Failure> {
         let path = Path::new(argument);
         if registry.technique(argument).is_none() {
-            other_file(argument, path)?;
+            other_file(argument, path, registry)?;
         }
         if !Input::is_file(argument, registry) {
             return Ok(Input::of(Description::Technique(argument.to_owned())));
@@ -140,7 +140,7 @@ impl Input {
 }
 
 /// Returns the failure for an argument that names a file of another kind, or none although it looks like the name of a file.
-fn other_file(argument: &str, path: &Path) -> Result<(), Failure> {
+fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Failure> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let extension = extension.as_deref().unwrap_or_default();
     let usage = match extension {
@@ -154,13 +154,13 @@ fn other_file(argument: &str, path: &Path) -> Result<(), Failure> {
     }
     let looks_like_file = extension == "fragbuf" || argument.contains(['/', '\\', '.']);
     if path.is_dir() || (looks_like_file && !path.exists()) {
-        return Err(Failure::Files(missing_description(argument, path)));
+        return Err(Failure::Files(missing_description(argument, path, registry)));
     }
     Ok(())
 }
 
 /// Returns the message about a description that is not a file, with a file of nearly this name, if there is one.
-fn missing_description(argument: &str, path: &Path) -> String {
+fn missing_description(argument: &str, path: &Path, registry: &Registry) -> String {
     let folder = if path.is_dir() { Some(path) } else { path.parent() };
     let folder = folder.map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
     let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
@@ -173,9 +173,11 @@ fn missing_description(argument: &str, path: &Path) -> String {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let whole = if name.ends_with(".fragbuf") { name.to_owned() } else { format!("{name}.fragbuf") };
     let nearest = nearest_name(&whole, &names).filter(|_| !path.is_dir());
-    let help = match nearest.map(|nearest| path.with_file_name(nearest)) {
-        Some(nearest) => format!("did you mean `{}`?", nearest.display()),
-        None => "give a .fragbuf file, or the key of a technique, which `fragbuf list` lists".to_owned(),
+    let technique = path.file_stem().and_then(|stem| registry.technique(stem.to_str()?)).filter(|_| !path.is_dir());
+    let help = match (technique, nearest.map(|nearest| path.with_file_name(nearest))) {
+        (Some(technique), _) => format!("give the key of the technique alone, `{}`", technique.key),
+        (None, Some(nearest)) => format!("did you mean `{}`?", nearest.display()),
+        (None, None) => "give a .fragbuf file, or the key of a technique, which `fragbuf list` lists".to_owned(),
     };
     let what = if path.is_dir() { "is a folder" } else { "does not exist" };
     format!("the description `{argument}` {what}: {help}")

@@ -25,6 +25,17 @@ impl Given {
         }
     }
 
+    /// Returns it as a float: an integer is converted.
+    fn as_float(&self) -> Given {
+        match self.ty {
+            ty if ty.is_integer() && self.is_literal => Given { source: self.float(), ty: Type::F32, is_literal: true },
+            ty if ty.is_integer() => {
+                Given { source: format!("({} as f32)", self.source), ty: Type::F32, is_literal: false }
+            }
+            _ => self.clone(),
+        }
+    }
+
     /// Returns its type as an operand of floats.
     fn ty_as_float(&self) -> Type {
         if self.is_literal { Type::F32 } else { self.ty }
@@ -118,7 +129,13 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
 
 /// Returns the help for a function that is a method.
 fn method(name: &str, given: &[Given]) -> String {
-    let Some((receiver, rest)) = given.split_first() else { return format!("it is a method: write `a.{name}()`") };
+    let floats: Vec<Given> = match given.first() {
+        Some(first) if methods::find(first.ty, name).is_none() && methods::find(Type::F32, name).is_some() => {
+            given.iter().map(Given::as_float).collect()
+        }
+        _ => given.to_vec(),
+    };
+    let Some((receiver, rest)) = floats.split_first() else { return format!("it is a method: write `a.{name}()`") };
     let size = given.iter().filter_map(Given::size).max();
     let receiver = match (size, receiver.size()) {
         // `max(0.0, v)`
@@ -130,7 +147,7 @@ fn method(name: &str, given: &[Given]) -> String {
         _ => receiver,
     };
     let Some(found) = methods::find(receiver.ty, name) else {
-        return of_components(name, given).unwrap_or_else(|| {
+        return of_components(name, &floats).unwrap_or_else(|| {
             let receivers: Vec<&str> = methods::receivers(name).map(Type::rust).collect();
             format!("it is a method of {}", receivers.join(", "))
         });

@@ -85,6 +85,13 @@ pub(crate) fn function(name: &str, given: &[Given]) -> Option<String> {
         }
         Some(Number::Matrix) => return Some("matrices are not supported: use one vector per column".to_owned()),
         Some(Number::Texture) => return Some(TEXTURES.to_owned()),
+        None if DERIVATIVES.contains(&name) => {
+            return Some("closures have no derivatives: store what the derivative is for in an attribute".to_owned());
+        }
+        None if matches!(name, "any" | "all") => {
+            let operator = if name == "any" { "||" } else { "&&" };
+            return Some(format!("combine comparisons of components: `v.x > 0.5 {operator} v.y > 0.5`"));
+        }
         None if name.starts_with("tex2D") || name.starts_with("image") => return Some(TEXTURES.to_owned()),
         None => return foreign_functions::help(name, given),
     };
@@ -113,6 +120,8 @@ pub(crate) fn swizzle(name: &str) -> Option<String> {
         name.chars().map(component).collect()
     })
 }
+
+const DERIVATIVES: [&str; 8] = ["dFdx", "dFdy", "fwidth", "ddx", "ddy", "dpdx", "dpdy", "ddx_fine"];
 
 const TEXTURES: &str = "closures do not read textures: store the value in an attribute";
 

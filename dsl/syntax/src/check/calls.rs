@@ -250,8 +250,10 @@ impl Checker<'_, '_, '_> {
     /// Reports a method call on a number of unknown type, as Rust does.
     fn unknown_receiver(&mut self, receiver: &Expr, name: &str, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let is_integer = self.inference.is_integer(receiver.ty);
-        let suffix = if is_integer { "u32" } else { "f32" };
+        let has_integers = methods::find(Type::U32, name).is_some();
+        let suffix = if is_integer && has_integers { "u32" } else { "f32" };
         let help = match receiver.kind {
+            Kind::Integer(value) if !has_integers => format!("write `{value}.0_f32.{name}(…)`"),
             Kind::Float(value) => format!("write `{value:?}_{suffix}.{name}(…)`"),
             Kind::Integer(value) => format!("write `{value}_{suffix}.{name}(…)`"),
             _ => format!("give the variable its type: `let x: {suffix} = …;`"),

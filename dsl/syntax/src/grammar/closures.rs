@@ -24,6 +24,7 @@ pub(super) fn closure(
 ) -> Result<RawFunction, Stop> {
     let span = cursor.source_span(report);
     require_closure(cursor, &role, report)?;
+    reject_bare_let(cursor, report)?;
     let tokens = closure_tokens(cursor);
     let end = cursor.span();
     let closed = cursor.take_punct(';');
@@ -71,6 +72,19 @@ fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<
         _ => "write `where |f| f.depth > 0.5;`",
     };
     Err(cursor.expected("a closure", help, report))
+}
+
+/// Rejects statements without braces: `|f| let x = …; …`. Moves to the next item.
+fn reject_bare_let(cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
+    let after = cursor.after_parameters();
+    if !matches!(after, Some(TokenTree::Ident(keyword)) if keyword == "let") {
+        return Ok(());
+    }
+    let span = after.map_or_else(Span::call_site, TokenTree::span);
+    let help = "enclose statements in braces: `|f| { let x = …; … }`";
+    report.error(codes::UNEXPECTED_TOKEN, &report.at(span), "expected an expression, found `let`", help);
+    while !cursor.is_done() && cursor.take().is_some() && !starts_item(cursor) {}
+    Err(Stop)
 }
 
 /// Parses a closure; returns it, and whether its body is a block.

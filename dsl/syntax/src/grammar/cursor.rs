@@ -43,6 +43,14 @@ impl Cursor {
         self.tokens.get(self.next + 2)
     }
 
+    /// Returns the token after the second `|`, if a closure begins here.
+    pub(super) fn after_parameters(&self) -> Option<&TokenTree> {
+        let rest = self.tokens.get(self.next..)?;
+        let mut bars = rest.iter().enumerate().filter(|(_, token)| is_punct(Some(token), '|'));
+        bars.next()?;
+        rest.get(bars.next()?.0 + 1)
+    }
+
     /// Returns the number of tokens taken.
     pub(super) fn position(&self) -> usize {
         self.next
