@@ -33,16 +33,16 @@ impl ProgressLine {
             let (sender, receiver) = channel::<()>();
             let (message, since) = (message.clone(), Instant::now());
             let thread = std::thread::spawn(move || {
-                let mut wait = delay;
+                let (mut wait, mut is_shown) = (delay, false);
                 // The sender is dropped at the end.
                 while receiver.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
                     let text = message.lock().unwrap_or_else(PoisonError::into_inner).clone();
                     // Ignore errors: there is no other stream to report them on.
                     let _ = write!(out, "\r\x1b[K{text} ({} s)", since.elapsed().as_secs());
                     let _ = out.flush();
-                    wait = interval;
+                    (wait, is_shown) = (interval, true);
                 }
-                if wait != delay {
+                if is_shown {
                     let _ = write!(out, "\r\x1b[K");
                     let _ = out.flush();
                 }

@@ -172,7 +172,7 @@ fn odd_materials_are_read_as_others_read_them() {
         (
             "newmtl m\nKd 1 0 0\nTr 1\nd 1\nTr 1\n",
             RED,
-            "[out-of-range] a.mtl:5: `Tr` contradicts `d`, so the opacity is 1",
+            "[out-of-range] a.mtl:5: `Tr` contradicts `d`: the opacity is 1",
         ),
         (
             "Kd 0 1 0\nnewmtl m\nKd 1 0 0\n",
