@@ -300,3 +300,33 @@ fn wrong_expressions_say_what_to_write() {
         assert!(error.help.contains(expected), "{closure}: {error}");
     }
 }
+
+/// Slips that had follow-up errors or help that does not fit.
+#[test]
+fn slips_are_one_error_each() {
+    for (text, code, expected) in [
+        ("buffer B {\n    storge: linked_list;\n    sync: slot_counter;\n}", "unknown-axis", "did you mean `storage`?"),
+        ("buffer B from kplus_array {\n    keep 4 leats |f| f.depth;\n}", "unexpected-token", "did you mean `least`?"),
+        (
+            "buffer B from kplus_array {\n    fragment { color: rgba8, depth: f32, id: u32 }\n    ties: attribute { by: idd };\n}",
+            "invalid-option",
+            "did you mean `id`?",
+        ),
+        ("buffer B from kplus_array {\n    where |(a, b)| a < 0.5;\n}", "unsupported", "write a name"),
+        (
+            "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = Vec3::ZERO;\n        for f in fragments { c += f.color; }\n        \
+             c.extend(1.0)\n    }\n}",
+            "type-mismatch",
+            "write `.truncate()` or `.xyz()`",
+        ),
+        (
+            "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = 0.0;\n        for f in fragments { c += f.color; }\n        \
+             vec4(c, c, c, 1.0)\n    }\n}",
+            "type-mismatch",
+            "declare a vector: `let mut … = Vec4::ZERO;`",
+        ),
+    ] {
+        let error = only(text, &[]);
+        assert!(error.code.name == code && error.help.contains(expected), "{text}: {error}");
+    }
+}

@@ -8,8 +8,7 @@ use fragbuf_templates::vocabulary::{Axis, Parameter, ParameterType, Row, Techniq
 use super::suggestion::{listed, suggestion};
 use crate::variant::{AxisChoice, SelectedRow};
 use crate::{
-    Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, SourceSpan, Spanned, codes,
-    nearest_name,
+    Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, Spanned, codes, nearest_name,
 };
 
 /// Returns the preset that the draft names.
@@ -191,7 +190,11 @@ fn default_choice(
     let rows: Option<Vec<&Row>> =
         value.and_then(|value| value.split(" else ").map(|value| registry.row(axis.key, value)).collect());
     let Some(rows) = rows else {
-        if draft.incomplete.preset || draft.incomplete.choices {
+        // A misspelt name of the axis is reported.
+        let known: Vec<&str> = registry.axes().iter().map(|axis| axis.key).collect();
+        let is_misspelt = |name: &str| registry.axis(name).is_none() && nearest_name(name, &known) == Some(axis.key);
+        let has_choice = draft.choices.iter().any(|choice| is_misspelt(&choice.axis.value));
+        if draft.incomplete.preset || draft.incomplete.choices || has_choice {
             return None;
         }
         let known: Vec<&str> = registry.rows_of(axis.key).map(|row| row.key.as_str()).collect();
@@ -290,7 +293,7 @@ fn option_number(
         _ => None,
     };
     if number.is_none() {
-        diagnostics.push(invalid_option(parameter, attributes, &value.span));
+        diagnostics.push(invalid_option(parameter, attributes, value));
     }
     number.map(|number| (name.value.clone(), number))
 }
@@ -299,7 +302,7 @@ fn in_range(parameter: &Parameter, number: u32) -> bool {
     (parameter.range.0..=parameter.range.1).contains(&number)
 }
 
-fn invalid_option(parameter: &Parameter, attributes: &[Attribute], span: &SourceSpan) -> Diagnostic {
+fn invalid_option(parameter: &Parameter, attributes: &[Attribute], value: &Spanned<OptionValue>) -> Diagnostic {
     let (least, greatest) = parameter.range;
     let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.value.as_str()).collect();
     let expected = match parameter.kind {
@@ -307,10 +310,15 @@ fn invalid_option(parameter: &Parameter, attributes: &[Attribute], span: &Source
         ParameterType::PowerOfTwo => format!("a power of two from {least} to {greatest}"),
         ParameterType::Attribute => format!("an attribute of the payload: {}", listed(&names)),
     };
-    Diagnostic::new(
-        codes::INVALID_OPTION,
-        span,
-        format!("`{}` must be {expected}", parameter.name),
-        format!("{}; default: {}", parameter.summary, parameter.default),
-    )
+    let nearest = match (&value.value, parameter.kind) {
+        (OptionValue::Name(name), ParameterType::Attribute) => nearest_name(name, &names),
+        _ => None,
+    };
+    let help = match (nearest, parameter.kind) {
+        (Some(nearest), _) => format!("did you mean `{nearest}`?"),
+        (None, ParameterType::Attribute) => parameter.summary.to_string(),
+        _ => format!("{}; default: {}", parameter.summary, parameter.default),
+    };
+    let message = format!("`{}` must be {expected}", parameter.name);
+    Diagnostic::new(codes::INVALID_OPTION, &value.span, message, help)
 }

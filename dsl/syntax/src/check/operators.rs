@@ -171,6 +171,16 @@ impl Checker<'_, '_, '_> {
             (_, Type::Vector(_)) if self.inference.is_integer(a) && operator.is_arithmetic() => {
                 (&left.span, fix(&self.inference, left, Type::F32))
             }
+            (Type::Vector(n), Type::Vector(m)) if operator.is_arithmetic() && n > m => {
+                (&left.span, fix(&self.inference, left, b))
+            }
+            (Type::Vector(_), Type::Vector(_)) if operator.is_arithmetic() => {
+                (&right.span, fix(&self.inference, right, a))
+            }
+            // Only an assignment has this: `number += vector`.
+            (_, Type::Vector(size)) if operator.is_arithmetic() && self.inference.is_float(a) => {
+                (span, format!("use a component, `.x`, or declare a vector: `let mut … = Vec{size}::ZERO;`"))
+            }
             _ if self.is_number(a) && self.is_number(b) && !operator.is_shift() && !operator.is_bitwise() => {
                 // Point to the integer, which is the operand to convert.
                 if self.inference.is_float(a) || !self.inference.is_float(b) {

@@ -102,7 +102,12 @@ fn parse_closure(
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) => Some(*ty),
     };
-    let parameters = parsed.inputs.into_iter().filter_map(|pattern| parameter(pattern, report)).collect();
+    let count = parsed.inputs.len();
+    let parameters: Vec<_> = parsed.inputs.into_iter().filter_map(|pattern| parameter(pattern, report)).collect();
+    if parameters.len() < count {
+        // The names of a pattern are not known.
+        return Err(Stop);
+    }
     let rust = token_limits::spaced(tokens);
     let name_span = span.clone();
     Ok((RawFunction { role, name_span, span, rust, parameters, output, body: *parsed.body }, is_block))

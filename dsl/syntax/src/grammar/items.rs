@@ -147,6 +147,10 @@ fn keep(items: &mut Items, cursor: &mut Cursor, span: SourceSpan, report: &mut R
         if cursor.at_keyword("greatest") || cursor.at_keyword("most") {
             return Err(cursor.expected("`least`", "negate the value instead: `keep 8 least |f| -f.depth;`", report));
         }
+        let is_least = |word: &TokenTree| nearest_name(&word.to_string(), &["least"]).is_some();
+        if matches!(cursor.peek(), Some(word @ TokenTree::Ident(_)) if is_least(word)) {
+            return Err(cursor.expected("`least` or `;`", "did you mean `least`?", report));
+        }
         if cursor.at_punct('|') {
             return Err(cursor.expected(
                 "`least`",
