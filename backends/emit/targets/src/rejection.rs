@@ -119,13 +119,24 @@ fn with_backquotes(message: &str) -> String {
     }
 }
 
-/// Returns the other names in a source.
+/// The words before a name that they declare.
+const DECLARATORS: [&str; 7] = ["fn", "let", "var", "const", "struct", "alias", "override"];
+
+/// Returns the other names that a source declares: those after a keyword of declarations, and those before a type.
 fn names<'t>(text: &'t str, unknown: &str) -> Vec<&'t str> {
-    let words = text.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-    let begins = |word: &&str| word.starts_with(|letter: char| letter.is_alphabetic() || letter == '_');
-    let mut names: Vec<&str> = words.filter(|word| *word != unknown).filter(begins).collect();
-    names.sort_unstable();
-    names.dedup();
+    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let (mut names, mut before, mut rest) = (Vec::new(), "", text);
+    while let Some(begin) = rest.find(is_part) {
+        let word_and_rest = rest.get(begin..).unwrap_or_default();
+        let end = word_and_rest.find(|letter| !is_part(letter)).unwrap_or(word_and_rest.len());
+        let (word, after) = word_and_rest.split_at(end);
+        let has_type = after.trim_start().starts_with(':') && !after.trim_start().starts_with("::");
+        let is_name = !word.starts_with(|letter: char| letter.is_ascii_digit()) && !DECLARATORS.contains(&word);
+        if is_name && word != unknown && (has_type || DECLARATORS.contains(&before)) && !names.contains(&word) {
+            names.push(word);
+        }
+        (before, rest) = (word, after);
+    }
     names
 }
 
@@ -137,6 +148,8 @@ mod tests {
     fn messages_name_the_source_and_not_handles() {
         for (message, expected, part_of_help) in [
             ("no definition in scope for identifier: `coutn`", "cannot find `coutn`", "did you mean `count`?"),
+            // A keyword is no name.
+            ("no definition in scope for identifier: `fo`", "cannot find `fo`", "declare it, or correct its name"),
             (
                 "Entry point main at Compute is invalid: The pointer [2] doesn't relate to a valid destination for a store",
                 "the place cannot be assigned",
