@@ -156,6 +156,12 @@ fn order_works_only_on_the_cpu_device() {
     assert!(!out.exists());
     assert_eq!(run("shuffle:one", "cpu").status.code(), Some(2));
     assert_eq!(run("shuffle:1", "cpu").status.code(), Some(0));
+    assert_eq!(run("window:1,64", "cpu").status.code(), Some(0));
+    for order in ["window:1", "window:1,0", "window:x,2", "window:1,2,3"] {
+        let rejected = run(order, "cpu");
+        assert_eq!(rejected.status.code(), Some(2), "{order}");
+        assert!(stderr(&rejected).contains("window:SEED,TRIANGLES"), "{}", stderr(&rejected));
+    }
 }
 
 /// The first command of the README works on a machine without a driver.

@@ -21,6 +21,8 @@ mod command_line;
 mod devices;
 mod diagnostics;
 mod examples;
+#[cfg(feature = "figures")]
+mod figures;
 mod fuzz;
 mod inputs;
 mod instances;

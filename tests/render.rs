@@ -403,7 +403,7 @@ fn failures_have_their_exit_codes_and_write_nothing() {
         (&[&lacking, "--scene", "builtin:cubes"], 1, "`heat: f32`"),
         (&["no_such", "--scene", "builtin:cubes"], 1, "unknown technique"),
         (&["kb", "--scene", "nowhere.obj"], 3, "nowhere.obj"),
-        (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, marbles, hairball, needles"),
+        (&["kb", "--scene", "builtin:teapot"], 2, "cubes, slabs, layers, marbles, hairball, needles"),
         (&["kb", "--scene", "builtin:slabs,m=3"], 2, "n (16), seed (1)"),
         (&["kb", "--scene", "builtin:cubes", "--uniform", "x=1"], 2, "no uniform `x`"),
         (&["kb", "--scene", "builtin:cubes", "--size", "0x4"], 2, "WIDTHxHEIGHT"),

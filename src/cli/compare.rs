@@ -168,17 +168,17 @@ fn distance(a: f32, b: f32) -> f32 {
 }
 
 /// The difference between two images.
-struct Difference {
+pub(super) struct Difference {
     /// The greatest difference over the channels, by pixel.
     pixels: Vec<f32>,
-    greatest: f32,
+    pub(super) greatest: f32,
     /// Pixels that differ in 8 bits a channel.
-    count: usize,
+    pub(super) count: usize,
     mean_square: f64,
 }
 
 impl Difference {
-    fn of(images: impl Iterator<Item = ([f32; 4], [f32; 4])>) -> Self {
+    pub(super) fn of(images: impl Iterator<Item = ([f32; 4], [f32; 4])>) -> Self {
         let mut difference = Difference { pixels: Vec::new(), greatest: 0.0, count: 0, mean_square: 0.0 };
         difference.pixels.reserve_exact(images.size_hint().0);
         let mut squares = 0.0;
@@ -195,7 +195,7 @@ impl Difference {
     }
 
     /// Returns the peak signal-to-noise ratio over all channels in dB. `None`: the images are equal.
-    fn psnr(&self) -> Option<f64> {
+    pub(super) fn psnr(&self) -> Option<f64> {
         (self.mean_square > 0.0).then(|| -10.0 * self.mean_square.log10())
     }
 
@@ -204,9 +204,14 @@ impl Difference {
         [0.0, 1.0, 2.0, 3.0].map(|third| third / 3.0 * self.greatest)
     }
 
-    /// Returns the pixels of the heat map.
+    /// Returns the pixels of the heat map, in which white is the greatest difference.
     fn heat(&self) -> impl Iterator<Item = [f32; 4]> {
-        let scale = 3.0 / self.greatest.max(1.0e-6);
+        self.heat_up_to(self.greatest)
+    }
+
+    /// Returns the pixels of the heat map, in which white is a given difference.
+    pub(super) fn heat_up_to(&self, greatest: f32) -> impl Iterator<Item = [f32; 4]> {
+        let scale = 3.0 / greatest.max(1.0e-6);
         let heat = move |value: &f32| {
             let channel = |from: f32| (value * scale - from).clamp(0.0, 1.0);
             [channel(0.0), channel(1.0), channel(2.0), 1.0]

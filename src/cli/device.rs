@@ -31,12 +31,25 @@ impl FromStr for DeviceRequest {
     }
 }
 
-/// Parses `submission` or `shuffle:SEED`.
+/// Returns an order as [`order`] parses it.
+#[cfg(feature = "figures")]
+pub(crate) fn order_text(order: FragmentOrder) -> String {
+    match order {
+        FragmentOrder::Submission => "submission".to_owned(),
+        FragmentOrder::Shuffled(seed) => format!("shuffle:{seed}"),
+        FragmentOrder::Window { seed, triangles } => format!("window:{seed},{triangles}"),
+    }
+}
+
+/// Parses `submission`, `shuffle:SEED` or `window:SEED,TRIANGLES`.
 pub(crate) fn order(text: &str) -> Result<FragmentOrder, String> {
     let seed = text.strip_prefix("shuffle:").and_then(|seed| seed.parse().ok());
-    match (text, seed) {
-        ("submission", _) => Ok(FragmentOrder::Submission),
-        (_, Some(seed)) => Ok(FragmentOrder::Shuffled(seed)),
-        _ => Err("write submission, or shuffle:SEED with a whole number".to_owned()),
+    let window = text.strip_prefix("window:").and_then(|numbers| numbers.split_once(','));
+    let window = window.and_then(|(seed, triangles)| Some((seed.parse().ok()?, triangles.parse().ok()?)));
+    match (text, seed, window) {
+        ("submission", ..) => Ok(FragmentOrder::Submission),
+        (_, Some(seed), _) => Ok(FragmentOrder::Shuffled(seed)),
+        (_, _, Some((seed, triangles @ 1..))) => Ok(FragmentOrder::Window { seed, triangles }),
+        _ => Err("write submission, shuffle:SEED, or window:SEED,TRIANGLES with whole numbers".to_owned()),
     }
 }

@@ -26,6 +26,13 @@ impl Budget {
         self.whole
     }
 
+    /// Returns the budget of each of several parts that are in memory at the same time.
+    #[cfg(feature = "figures")]
+    pub(crate) fn divided(self, parts: u64) -> Self {
+        let parts = parts.max(1);
+        Budget { whole: self.whole / parts, left: self.left / parts }
+    }
+
     /// Returns what is left beside `bytes` bytes.
     pub(crate) fn without(self, bytes: u64, what: &str) -> Result<Self, Failure> {
         let Budget { whole, left } = self;

@@ -17,6 +17,8 @@ mod device;
 mod devices;
 mod earlier;
 mod explain;
+#[cfg(feature = "figures")]
+mod figure;
 mod generate;
 mod input;
 mod language;
@@ -93,6 +95,9 @@ enum Command {
     /// List the devices that can render
     #[cfg(feature = "pictures")]
     Devices(devices::Devices),
+    /// Repeat an experiment of a paper: write its measurements (CSV) and chart (SVG), and compare the trend with the paper's
+    #[cfg(feature = "figures")]
+    Figure(figure::Figure),
     /// Print the completions for a shell
     Completions(completions::Completions),
     /// Print the manual page, or write one page per command
@@ -121,6 +126,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(compare) => compare.run(),
         #[cfg(feature = "pictures")]
         Command::Devices(devices) => devices.run(),
+        #[cfg(feature = "figures")]
+        Command::Figure(figure) => figure.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

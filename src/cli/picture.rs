@@ -45,7 +45,6 @@ pub(crate) fn write(
     pixels: &mut dyn Iterator<Item = [f32; 4]>,
     linear: bool,
 ) -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::Files(format!("{}: {error}", path.display()));
     let file: Box<dyn Write> = if is_stdout(path) {
         if std::io::stdout().is_terminal() {
             return Err(Failure::Usage(
@@ -56,27 +55,65 @@ pub(crate) fn write(
     } else {
         Box::new(File::create(path).map_err(|error| Failure::files(path, &error))?)
     };
-    let mut file = BufWriter::new(file);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
+    match encode(&mut BufWriter::new(file), (width, height), pixels, linear) {
+        // A reader that has seen enough, such as `head`, is no failure.
+        Err(EncodeError::Write(error)) if is_stdout(path) && error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        Err(EncodeError::Write(error)) => Err(Failure::files(path, &error)),
+        Err(EncodeError::Encoding(error)) => Err(Failure::Files(format!("{}: {error}", path.display()))),
+        Ok(()) => Ok(()),
+    }
+}
+
+/// Returns a PNG as bytes. The pixels are those of [`write`].
+#[cfg(feature = "figures")]
+pub(crate) fn bytes(
+    size: (u32, u32),
+    pixels: &mut dyn Iterator<Item = [f32; 4]>,
+    linear: bool,
+) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    encode(&mut bytes, size, pixels, linear).map_err(|error| match error {
+        EncodeError::Write(error) => Failure::Files(error.to_string()),
+        EncodeError::Encoding(error) => Failure::Files(error.to_string()),
+    })?;
+    Ok(bytes)
+}
+
+/// Why a PNG was not written.
+enum EncodeError {
+    Write(std::io::Error),
+    Encoding(png::EncodingError),
+}
+
+impl From<png::EncodingError> for EncodeError {
+    fn from(error: png::EncodingError) -> Self {
+        EncodeError::Encoding(error)
+    }
+}
+
+/// Writes the pixels as a PNG.
+fn encode(
+    file: &mut dyn Write,
+    (width, height): (u32, u32),
+    pixels: &mut dyn Iterator<Item = [f32; 4]>,
+    linear: bool,
+) -> Result<(), EncodeError> {
+    let mut encoder = png::Encoder::new(&mut *file, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::High);
     if !linear {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     }
-    let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
-    let mut stream = writer.stream_writer().map_err(|error| failed(&error))?;
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
     let mut row = Vec::with_capacity(4 * width as usize);
     for _ in 0..height {
         row.clear();
         row.extend(pixels.take(width as usize).flatten().map(|value| (255.0 * value).round() as u8));
-        match stream.write_all(&row) {
-            // A reader that has seen enough, such as `head`, is no failure.
-            Err(error) if is_stdout(path) && error.kind() == ErrorKind::BrokenPipe => return Ok(()),
-            written => written.map_err(|error| Failure::files(path, &error))?,
-        }
+        stream.write_all(&row).map_err(EncodeError::Write)?;
     }
-    stream.finish().map_err(|error| failed(&error))?;
-    writer.finish().map_err(|error| failed(&error))?;
-    file.flush().map_err(|error| Failure::files(path, &error))
+    stream.finish()?;
+    writer.finish()?;
+    file.flush().map_err(EncodeError::Write)
 }

@@ -26,6 +26,12 @@ impl Progress {
         Progress { bar, waiting: Some((sender, thread)) }
     }
 
+    /// Returns a progress bar that is never shown.
+    #[cfg(feature = "figures")]
+    pub(crate) fn hidden() -> Self {
+        Progress { bar: ProgressBar::hidden(), waiting: None }
+    }
+
     /// Shows what is being done now.
     pub(crate) fn set_message(&self, message: impl Into<String>) {
         self.bar.set_message(message.into());

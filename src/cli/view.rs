@@ -53,9 +53,10 @@ pub(crate) struct View {
     /// which needs no driver. NAME: an adapter whose name contains NAME
     #[arg(long, default_value = "auto", value_name = "auto|cpu|NAME")]
     pub(crate) device: DeviceRequest,
-    /// Order of same-pixel fragments on the CPU device: as submitted, or with their shaders interleaved by a seed. Fixed-function
-    /// tests and blending keep the order of submission
-    #[arg(long, value_name = "submission|shuffle:SEED", value_parser = device::order)]
+    /// Order of same-pixel fragments on the CPU device: as submitted; with their shaders permuted and interleaved by a seed; or
+    /// interleaved, but begun as submitted, so that only those of some consecutive triangles overlap. Fixed-function tests and blending
+    /// keep the order of submission
+    #[arg(long, value_name = "submission|shuffle:SEED|window:SEED,TRIANGLES", value_parser = device::order)]
     pub(crate) order: Option<FragmentOrder>,
     /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
     /// slices of rows
@@ -85,6 +86,34 @@ pub(crate) struct SceneView {
 }
 
 impl View {
+    /// Returns the view of a measurement: it has a scene, a camera, a size and a device, writes no image, and measures the times of passes.
+    #[cfg(feature = "figures")]
+    pub(crate) fn measured(
+        scene: String,
+        camera: CameraRequest,
+        size: (u32, u32),
+        (device, order): (DeviceRequest, Option<FragmentOrder>),
+        memory: Budget,
+    ) -> Self {
+        View {
+            scene,
+            opaque: None,
+            size,
+            out: PathBuf::new(),
+            camera,
+            shading: Shading::Lit,
+            background: [1.0; 4],
+            color: [1.0; 4],
+            attributes: Vec::new(),
+            linear: false,
+            device,
+            order,
+            memory,
+            strict: false,
+            json: true,
+        }
+    }
+
     /// Loads or generates the scene with these attributes, and the opaque scene, whose alpha becomes 1. The camera frames both.
     pub(crate) fn scene_views(&self, attributes: &[ModelAttribute]) -> Result<(SceneView, Option<SceneView>), Failure> {
         let mut scene = self.open(&self.scene, attributes, self.memory)?;

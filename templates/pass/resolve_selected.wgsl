@@ -1,10 +1,9 @@
 // Computes one colour from the k best of each pixel's fragments, which this pass selects: the storage kept all. Pixels
 // without fragments keep the content of the target.
 
+/// The best fragments so far, best first.
 var<private> selected: array<Packed, CAPACITY>;
 var<private> selected_count: u32;
-/// The slot of the worst fragment, if k are selected.
-var<private> worst_slot: u32;
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -44,29 +43,22 @@ fn resolve_read(cursor: u32) -> Packed {
     return selected[cursor];
 }
 
+/// Inserts a fragment in order. The worst of more than k is lost.
 fn select_fragment(pixel: u32, entry: Packed) {
-    if selected_count < frame.k {
-        selected[selected_count] = entry;
+    if selected_count == frame.k {
+        let worst = selected[frame.k - 1u];
+        if !better(entry, worst) {
+            on_lost(pixel, entry, DISPLACED);
+            return;
+        }
+        on_lost(pixel, worst, DISPLACED);
+    } else {
         selected_count += 1u;
-        if selected_count == frame.k {
-            find_worst();
-        }
-        return;
     }
-    if !better(entry, selected[worst_slot]) {
-        on_lost(pixel, entry, DISPLACED);
-        return;
+    var slot = selected_count - 1u;
+    while slot > 0u && better(entry, selected[slot - 1u]) {
+        selected[slot] = selected[slot - 1u];
+        slot -= 1u;
     }
-    on_lost(pixel, selected[worst_slot], DISPLACED);
-    selected[worst_slot] = entry;
-    find_worst();
-}
-
-fn find_worst() {
-    worst_slot = 0u;
-    for (var slot = 1u; slot < selected_count; slot++) {
-        if better(selected[worst_slot], selected[slot]) {
-            worst_slot = slot;
-        }
-    }
+    selected[slot] = entry;
 }

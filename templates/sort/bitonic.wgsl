@@ -4,10 +4,11 @@
 // number.
 
 fn sort_gather(entry: Packed) {
-    layers_append(entry);
+    layers_gather(entry);
 }
 
 fn sort_finish() {
+    layers_finish();
     for (var block = 2u; block < 2u * gathered; block *= 2u) {
         // With one of them mirrored, two sorted runs are one bitonic run; halving distances merge it.
         bitonic_compare(block - 1u);

@@ -22,10 +22,11 @@ var<private> block_merged: u32;
 var<private> block_current: Packed;
 
 fn sort_gather(entry: Packed) {
-    layers_append(entry);
+    layers_gather(entry);
 }
 
 fn sort_finish() {
+    layers_finish();
     for (var first = 0u; first < gathered; first += BLOCK_LENGTH) {
         let length = min(gathered - first, BLOCK_LENGTH);
         block_filled = 0u;

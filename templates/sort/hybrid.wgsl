@@ -2,10 +2,11 @@
 // pixel decides.
 
 fn sort_gather(entry: Packed) {
-    layers_append(entry);
+    layers_gather(entry);
 }
 
 fn sort_finish() {
+    layers_finish();
     if gathered <= INSERTION_MOST {
         layers_insertion_sort(1u);
     } else {

@@ -3,10 +3,11 @@
 // the bitonic network; as there, only the number of fragments decides which indices are compared.
 
 fn sort_gather(entry: Packed) {
-    layers_append(entry);
+    layers_gather(entry);
 }
 
 fn sort_finish() {
+    layers_finish();
     var span = 1u;
     while 2u * span < gathered {
         span *= 2u;

@@ -12,6 +12,16 @@ pub(crate) fn rows() -> Vec<Row> {
             ..Row::new("sort", "none", "not at all: in the order of the storage", "")
         },
         Row {
+            template: Some(template!("sort/walk")),
+            provides: vec![Capability::StableSort, Capability::OneResolve],
+            ..Row::new(
+                "sort",
+                "walk",
+                "not at all: each fragment is read from the storage when the effect asks for it, without a copy",
+                "",
+            )
+        },
+        Row {
             template: Some(template!("sort/insertion")),
             calls: vec!["counters"],
             parameters: vec![layers()],

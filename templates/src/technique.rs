@@ -11,7 +11,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "B06 §3; Bavoil et al. 2007",
             summary: "the k nearest by unsynchronised read-modify-write of a sorted array, with its hazards",
             keep: KeepDefault::Best(8),
-            choices: vec![("storage", "sorted_array"), ("sync", "none"), ("sort", "none")],
+            choices: vec![("storage", "sorted_array"), ("sync", "none"), ("sort", "walk")],
         },
         Technique {
             key: "kb_ps".to_owned(),
@@ -23,7 +23,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("storage", "sorted_array"),
                 ("sync", "interlock else spin_lock"),
                 ("cull", "early"),
-                ("sort", "none"),
+                ("sort", "walk"),
             ],
         },
         Technique {
@@ -48,7 +48,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "after Liu et al. 2010; K15 §2",
             summary: "the k best without a lock, equal depths included; the same on every target, including browsers",
             keep: KeepDefault::Best(8),
-            choices: vec![("storage", "cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
+            choices: vec![("storage", "cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "walk")],
         },
         Technique {
             key: "ab_array".to_owned(),
@@ -56,7 +56,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "Liu et al. 2010; K15 §2",
             summary: "every fragment, in an array per pixel, until the array is full",
             keep: KeepDefault::All,
-            choices: vec![("storage", "fixed_array"), ("sync", "slot_counter"), ("sort", "insertion")],
+            choices: vec![("storage", "fixed_array"), ("sync", "slot_counter"), ("sort", "hybrid")],
         },
         Technique {
             key: "ab_ll".to_owned(),
@@ -64,7 +64,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "Yang et al. 2010; K15 §2",
             summary: "every fragment, in a linked list per pixel",
             keep: KeepDefault::All,
-            choices: vec![("storage", "linked_list"), ("sync", "slot_counter"), ("sort", "insertion")],
+            choices: vec![("storage", "linked_list"), ("sync", "slot_counter"), ("sort", "hybrid")],
         },
         Technique {
             key: "ab_sb".to_owned(),
@@ -72,7 +72,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "Vasilakis & Fudos 2012; K15 §4.2",
             summary: "every fragment, in a region of exactly the required size per pixel",
             keep: KeepDefault::All,
-            choices: vec![("storage", "exact_regions"), ("sync", "slot_counter"), ("sort", "insertion")],
+            choices: vec![("storage", "exact_regions"), ("sync", "slot_counter"), ("sort", "hybrid")],
         },
         Technique {
             key: "kb_ab_array".to_owned(),
@@ -124,7 +124,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("sync", "slot_counter"),
                 ("cull", "early"),
                 ("ties", "unordered"),
-                ("sort", "none"),
+                ("sort", "walk"),
             ],
         },
         Technique {
@@ -133,7 +133,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "K15 §2; Liu et al. 2010",
             summary: "the k nearest by 64-bit atomic minima of depth and color, equal depths included, in one pass",
             keep: KeepDefault::Best(8),
-            choices: vec![("storage", "wide_cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "none")],
+            choices: vec![("storage", "wide_cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "walk")],
         },
         Technique {
             key: "kplus_array_revised".to_owned(),
@@ -154,7 +154,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "Yu et al. 2012; K15 §2",
             summary: "the k nearest in a list that compare-exchange keeps sorted",
             keep: KeepDefault::Best(8),
-            choices: vec![("storage", "ordered_list"), ("sync", "slot_counter"), ("sort", "none")],
+            choices: vec![("storage", "ordered_list"), ("sync", "slot_counter"), ("sort", "walk")],
         },
         Technique {
             key: "depth_partition".to_owned(),
@@ -188,7 +188,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             paper: "after Crassin 2010",
             summary: "every fragment, in a list of pages per pixel",
             keep: KeepDefault::All,
-            choices: vec![("storage", "paged_list"), ("sync", "slot_counter"), ("sort", "insertion")],
+            choices: vec![("storage", "paged_list"), ("sync", "slot_counter"), ("sort", "hybrid")],
         },
         Technique {
             key: "ab_ll_bun".to_owned(),

@@ -41,6 +41,10 @@ fn storage_insert(pixel: u32, entry: Packed) {
 }
 
 fn storage_refine(pixel: u32, entry: Packed) {
+    // Keys are final here, so most fragments that are not kept need one access.
+    if entry.key > keys_load(frame.k - 1u, pixel) {
+        return;
+    }
     for (var slot = 0u; slot < frame.k; slot++) {
         let key = keys_load(slot, pixel);
         if key == entry.key {

@@ -24,19 +24,24 @@ fn storage_insert(pixel: u32, entry: Packed) {
         kept_counts_store(pixel, kept_before + 1u);
         return;
     }
-    if kept_before < frame.k {
-        kept_counts_store(pixel, frame.k);
-        // Sifts every slot with children, the deepest first; slot 0 follows below, with the new fragment.
-        for (var parent = frame.k / 2u; parent > 1u; parent--) {
-            max_heap_sift(pixel, parent - 1u, max_heap_read(pixel, parent - 1u));
-        }
-    }
     let worst = max_heap_read(pixel, 0u);
     if !better(entry, worst) {
         on_lost(pixel, entry, DISPLACED);
         return;
     }
-    max_heap_sift(pixel, 0u, entry);
+    // The k-th insert sifts every slot with children, the deepest first; each later one sifts slot 0 only.
+    var tops = 1u;
+    if kept_before < frame.k {
+        kept_counts_store(pixel, frame.k);
+        tops = max(frame.k / 2u, 1u);
+    }
+    for (; tops > 0u; tops--) {
+        var sifted = entry;
+        if tops > 1u {
+            sifted = max_heap_read(pixel, tops - 1u);
+        }
+        max_heap_sift(pixel, tops - 1u, sifted);
+    }
     // After the stores, so that the overflow row reads the kept fragments in their final slots.
     if worst.key != EMPTY {
         on_lost(pixel, worst, DISPLACED);

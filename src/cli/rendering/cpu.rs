@@ -10,9 +10,10 @@ use fragbuf_cpu::{Code, Device, Error, FragmentOrder, Mesh, Settings};
 use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
 
 use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
-use crate::cli::attributes::geometry;
+use crate::cli::attributes::{Geometry, geometry};
 use crate::cli::device::CPU;
 use crate::cli::input::Input;
 use crate::cli::output::{Failure, warn};
@@ -21,13 +22,30 @@ use crate::cli::uniforms;
 /// The bytes per pixel of an [`OpaqueImage`].
 const OPAQUE_IMAGE: u64 = 16 + 4;
 
-/// Renders the task.
+/// A device with the geometry of a scene, to draw the frame again.
+#[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
+pub(crate) struct CpuFrame {
+    device: Device,
+    geometry: Geometry,
+}
+
+#[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
+impl CpuFrame {
+    /// Draws the frame again.
+    pub(super) fn draw(&mut self) -> Result<FrameTime, Failure> {
+        let mesh = Mesh { vertices: &self.geometry.vertices, indices: &self.geometry.indices };
+        let device = &mut self.device;
+        FrameTime::measure(|| Ok(device.render(&mesh, &|_| {})?.times))
+    }
+}
+
+/// Renders the task. Returns the frame, too, which can be drawn again.
 pub(super) fn render(
     task: &RenderTask<'_>,
     order: FragmentOrder,
     (input, registry): (&Input, &Registry),
     redraw: &mut RedrawState,
-) -> Result<RenderResult, Failure> {
+) -> Result<(RenderResult, CpuFrame), Failure> {
     let RenderTask { request, view, scene, progress, variant, opaque, memory } = task;
     progress.set_message(format!("{}: compiling", request.description));
     let code = Code::of(variant, registry).map_err(|error| failure(error, |errors| input.failure(errors)))?;
@@ -89,7 +107,7 @@ pub(super) fn render(
             slices: device.slices(),
             loops: picture.loops,
         };
-        return Ok(RenderResult {
+        let result = RenderResult {
             stats,
             opaque: opaque.map(|opaque| opaque.pixels),
             device: CPU.to_owned(),
@@ -97,7 +115,8 @@ pub(super) fn render(
             target: "wgsl-native",
             plan: code.plan.clone(),
             frames: redraw.frames,
-        });
+        };
+        return Ok((result, CpuFrame { device, geometry }));
     }
 }
 

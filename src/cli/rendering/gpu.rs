@@ -9,22 +9,24 @@ use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen, supported_interloc
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, block_on};
 
+use super::mesh::Mesh;
 use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
-use crate::cli::attributes::{Geometry, geometry};
+use crate::cli::attributes::geometry;
 use crate::cli::input::Input;
 use crate::cli::output::Failure;
 use crate::cli::uniforms;
 use crate::cli::view::SceneView;
 
-/// Renders the task.
+/// Renders the task. Returns the frame, too, which can be drawn again.
 pub(super) fn render(
     task: &RenderTask<'_>,
     adapter: &wgpu::Adapter,
     (input, registry): (&Input, &Registry),
     redraw: &mut RedrawState,
-) -> Result<RenderResult, Failure> {
+) -> Result<(RenderResult, GpuFrame), Failure> {
     let renderer = GpuRenderer::new(task, adapter, input, registry)?;
     let opaque = task.opaque.map(|opaque| renderer.render_opaque(task, opaque, registry)).transpose()?;
     renderer.render(task, opaque, redraw)
@@ -35,6 +37,7 @@ pub(super) fn missing(adapter: &wgpu::Adapter, variant: &Variant, registry: &Reg
     let candidates = candidates(variant, registry).ok()?;
     runnable(candidates, adapter).err().map(|error| match error {
         Error::MissingFeatures(features) => format!("it lacks {features:?}"),
+        Error::Unsupported { what, .. } => format!("it does not support {what}"),
         other => other.to_string(),
     })
 }
@@ -68,7 +71,7 @@ fn runnable(
     for (target, shaders) in candidates {
         let missing = shaders.features() - adapter.features();
         let checked = match missing.is_empty() {
-            true => shaders.check().and_then(|()| shaders.check_interlock(supported_interlock(adapter))),
+            true => shaders.check().and_then(|()| check_interlock(&shaders, adapter)),
             false => Err(Error::MissingFeatures(missing)),
         };
         match checked {
@@ -77,6 +80,46 @@ fn runnable(
         }
     }
     Err(failure)
+}
+
+/// Checks whether the driver of an adapter has the interlock of the shaders.
+fn check_interlock(shaders: &Shaders, adapter: &wgpu::Adapter) -> Result<(), Error> {
+    shaders.check_interlock(supported_interlock(adapter)).map_err(|_| Error::Unsupported {
+        what: "fragment shader interlock, because the driver has no `VK_EXT_fragment_shader_interlock`".to_owned(),
+        help: "write `sync: interlock else spin_lock`, or choose another device".to_owned(),
+    })
+}
+
+/// A frame that can be drawn again: a renderer with the capacity for its fragments, and the geometry of its scene.
+#[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
+pub(crate) struct GpuFrame {
+    gpu: GpuRenderer,
+    renderer: Renderer,
+    mesh: Mesh,
+    size: (u32, u32),
+    /// The image; `None` until the frame is drawn again.
+    offscreen: Option<Offscreen>,
+}
+
+#[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
+impl GpuFrame {
+    /// Draws the frame again, and reads back its times alone.
+    pub(super) fn draw(&mut self) -> Result<FrameTime, Failure> {
+        let GpuFrame { gpu, renderer, mesh, size, offscreen } = self;
+        let Headless { device, queue, .. } = &gpu.headless;
+        let offscreen = match offscreen {
+            Some(offscreen) => offscreen,
+            none => none.insert(Offscreen::new(device, BLENDED, size.0, size.1)?),
+        };
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        FrameTime::measure(|| {
+            renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let times = renderer.pass_times(&mut encoder);
+            queue.submit([encoder.finish()]);
+            Ok(times.map(|pending| pending.wait(device)).transpose()?.unwrap_or_default())
+        })
+    }
 }
 
 /// A device, and the shaders for it.
@@ -106,7 +149,7 @@ impl GpuRenderer {
         task: &RenderTask<'_>,
         opaque: Option<OpaqueImage>,
         redraw: &mut RedrawState,
-    ) -> Result<RenderResult, Failure> {
+    ) -> Result<(RenderResult, GpuFrame), Failure> {
         let RenderTask { request, view, scene, progress, variant, opaque: opaque_scene, memory } = task;
         let external = external_textures(&self.shaders.plan, *opaque_scene)?;
         let (width, height) = view.size;
@@ -126,7 +169,7 @@ impl GpuRenderer {
         };
         let pipelines = block_on(device, Pipelines::new(device, &self.shaders, &settings))??;
         let uniforms = uniforms::values(request.uniforms, variant)?;
-        let stats = loop {
+        let (stats, renderer) = loop {
             let sizing =
                 redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
             let settings = Settings { sizing, slice: redraw.slice, ..settings.clone() };
@@ -147,21 +190,22 @@ impl GpuRenderer {
             redraw.rows = Some(height.div_ceil(slices));
             match self.frame(&mut renderer, scene, &mesh, view.size) {
                 Ok(FrameOutcome::PoolExhausted { needed }) => redraw.pool_size = Some(needed),
-                Ok(FrameOutcome::Complete(stats)) => break stats,
+                Ok(FrameOutcome::Complete(stats)) => break (stats, renderer),
                 // The slice has more fragments than a buffer or the budget allows.
                 Err(error) if is_too_large(&error) && redraw.halve() => {}
                 Err(error) => return Err(error.into()),
             }
         };
-        Ok(RenderResult {
+        let result = RenderResult {
             stats,
             opaque: opaque.map(|opaque| opaque.pixels),
             device: self.headless.info.name.clone(),
             backend: self.headless.info.backend.to_string(),
             target: self.target.name,
-            plan: self.shaders.plan,
+            plan: self.shaders.plan.clone(),
             frames: redraw.frames,
-        })
+        };
+        Ok((result, GpuFrame { gpu: self, renderer, mesh, size: (width, height), offscreen: None }))
     }
 
     /// Renders the opaque scene on the same device.
@@ -267,45 +311,4 @@ enum FrameOutcome {
         needed: u32,
     },
     Complete(FrameStats),
-}
-
-/// The scene's vertices and indices on the device.
-struct Mesh {
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    count: u32,
-}
-
-impl Mesh {
-    fn upload(device: &wgpu::Device, queue: &wgpu::Queue, geometry: &Geometry) -> Result<Self, Failure> {
-        let buffer = |label: &str, words: &[u32], usage: wgpu::BufferUsages| {
-            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-            let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
-            if size > limit {
-                return Err(Failure::Device(format!(
-                    "the scene's {label} need {size} bytes, and the device allows {limit}: use a smaller scene, or `--device cpu`"
-                )));
-            }
-            let usage = usage | wgpu::BufferUsages::COPY_DST;
-            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage,
-                mapped_at_creation: false,
-            });
-            queue.write_buffer(&buffer, 0, &bytes);
-            Ok(buffer)
-        };
-        Ok(Mesh {
-            vertices: buffer("vertices", &geometry.vertices, wgpu::BufferUsages::VERTEX)?,
-            indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
-            count: geometry.indices.len() as u32,
-        })
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.count, 0, 0..1);
-    }
 }

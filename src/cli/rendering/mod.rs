@@ -8,14 +8,22 @@ mod cpu;
 mod estimate;
 #[cfg(feature = "gpu")]
 mod gpu;
+#[cfg(feature = "gpu")]
+mod mesh;
 mod opaque;
 mod precision;
+mod prepared;
 mod request;
 mod result;
 mod selection;
 
+#[cfg(feature = "figures")]
+pub(crate) use prepared::FrameTime;
+pub(crate) use prepared::PreparedFrame;
 pub(crate) use request::RenderRequest;
 pub(crate) use result::RenderResult;
+#[cfg(feature = "figures")]
+pub(crate) use selection::select_for_figure;
 pub(crate) use selection::{DeviceSelection, select};
 
 use fragbuf::vocabulary::Capability;
@@ -41,6 +49,63 @@ pub(crate) fn render(
     scene: &SceneView,
     progress: &Progress,
 ) -> Result<RenderResult, Failure> {
+    let mut result = complete(request, input, (view, selection), scene, progress)?.result;
+    let uniforms = uniforms::values(request.uniforms, &result.plan.variant)?;
+    result.warn(request.description, &uniforms, &scene.scene);
+    if let Some(background) = result.opaque.take() {
+        blend_over(&mut result.stats.pixels, &background);
+    }
+    Ok(result)
+}
+
+/// Renders the scene as [`render`] does, without warnings and without the image of an opaque scene.
+#[cfg(feature = "figures")]
+pub(crate) fn render_quietly(
+    request: &RenderRequest<'_>,
+    input: &mut Input,
+    (view, selection): (&View, &mut DeviceSelection),
+    scene: &SceneView,
+    progress: &Progress,
+) -> Result<RenderResult, Failure> {
+    Ok(complete(request, input, (view, selection), scene, progress)?.result)
+}
+
+/// Renders the scene as [`render`] does, without warnings, and prepares the same frame without counters, to be drawn repeatedly.
+#[cfg(feature = "figures")]
+pub(crate) fn prepare(
+    request: &RenderRequest<'_>,
+    input: &mut Input,
+    (view, selection): (&View, &mut DeviceSelection),
+    scene: &SceneView,
+    progress: &Progress,
+) -> Result<(RenderResult, PreparedFrame), Failure> {
+    let registry = Registry::builtin();
+    let CompleteFrame { result, mut set, mut redraw } = complete(request, input, (view, selection), scene, progress)?;
+    set.extend(count_nothing_choice(&registry).map(|(axis, key)| (axis.to_owned(), key.to_owned())));
+    let memory = view.memory_beside(&[scene])?.without(request.held, "the other image")?;
+    let defaults = defaults(request, input, scene, &registry);
+    let variant = input.variant_with_defaults(&set, &defaults, &registry)?;
+    let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: None, memory };
+    let (_, frame) = draw(&task, &selection.device, (input, &registry), &mut redraw)?;
+    Ok((result, frame))
+}
+
+/// A rendering without overflow, with the choices and the state that led to it.
+#[cfg_attr(not(feature = "figures"), allow(dead_code, reason = "figures draw frames again"))]
+struct CompleteFrame {
+    result: RenderResult,
+    set: Vec<(String, String)>,
+    redraw: RedrawState,
+}
+
+/// Renders the scene with larger pools and more layers until no fragment is lost to overflow.
+fn complete(
+    request: &RenderRequest<'_>,
+    input: &mut Input,
+    (view, selection): (&View, &mut DeviceSelection),
+    scene: &SceneView,
+    progress: &Progress,
+) -> Result<CompleteFrame, Failure> {
     let registry = Registry::builtin();
     let scenes: Vec<&SceneView> = std::iter::once(scene).chain(request.opaque).collect();
     let memory = view.memory_beside(&scenes)?.without(request.held, "the other image")?;
@@ -53,11 +118,7 @@ pub(crate) fn render(
         // Later iterations set the layers themselves.
         let has_fixed_layers = *has_fixed_layers.get_or_insert_with(|| fixed_layers(&variant).is_some());
         let task = RenderTask { request, view, scene, progress, variant: &variant, opaque: opaque.as_ref(), memory };
-        let mut result = match &selection.device {
-            SelectedDevice::Cpu(order) => cpu::render(&task, *order, (input, &registry), &mut redraw)?,
-            #[cfg(feature = "gpu")]
-            SelectedDevice::Gpu(adapter) => gpu::render(&task, adapter, (input, &registry), &mut redraw)?,
-        };
+        let (result, _) = draw(&task, &selection.device, (input, &registry), &mut redraw)?;
         match result.more_layers().filter(|_| !has_fixed_layers) {
             Some((option, layers)) => {
                 if selection.leave_driver(layers, view) {
@@ -66,13 +127,27 @@ pub(crate) fn render(
                 }
                 set.push((option, layers.to_string()));
             }
-            None => {
-                result.warn(request.description, &uniforms::values(request.uniforms, &variant)?, &scene.scene);
-                if let Some(background) = result.opaque.take() {
-                    blend_over(&mut result.stats.pixels, &background);
-                }
-                return Ok(result);
-            }
+            None => return Ok(CompleteFrame { result, set, redraw }),
+        }
+    }
+}
+
+/// Draws a task on a device.
+fn draw(
+    task: &RenderTask<'_>,
+    device: &SelectedDevice,
+    (input, registry): (&Input, &Registry),
+    redraw: &mut RedrawState,
+) -> Result<(RenderResult, PreparedFrame), Failure> {
+    match device {
+        SelectedDevice::Cpu(order) => {
+            let (result, frame) = cpu::render(task, *order, (input, registry), redraw)?;
+            Ok((result, PreparedFrame::Cpu(Box::new(frame))))
+        }
+        #[cfg(feature = "gpu")]
+        SelectedDevice::Gpu(adapter) => {
+            let (result, frame) = gpu::render(task, adapter, (input, registry), redraw)?;
+            Ok((result, PreparedFrame::Gpu(Box::new(frame))))
         }
     }
 }
@@ -110,4 +185,12 @@ fn defaults<'a>(
 /// Returns the choice that counts every event.
 fn count_all_choice(registry: &Registry) -> Option<(&str, &str)> {
     registry.providers_of(Capability::CountsEvents).next().map(|row| (row.axis.as_str(), row.key.as_str()))
+}
+
+/// Returns the choice that counts nothing: the row of the same axis that needs no memory.
+#[cfg(feature = "figures")]
+fn count_nothing_choice(registry: &Registry) -> Option<(&str, &str)> {
+    let (axis, _) = count_all_choice(registry)?;
+    let row = registry.rows_of(axis).find(|row| row.resources.is_empty())?;
+    Some((axis, &row.key))
 }

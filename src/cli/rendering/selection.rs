@@ -10,6 +10,8 @@ use fragbuf_cpu::FragmentOrder;
 use super::RenderRequest;
 #[cfg(feature = "gpu")]
 use super::{estimate::Work, gpu, result::fixed_layers};
+#[cfg(feature = "figures")]
+use crate::cli::device::order_text;
 use crate::cli::device::{CPU, DeviceRequest};
 use crate::cli::input::Input;
 use crate::cli::output::{self, Failure};
@@ -60,7 +62,51 @@ pub(crate) fn select(
     Ok(selection)
 }
 
+/// Selects the device of a figure: that of `--device`. `auto` is the first adapter, so that the work is that of compiled shaders; without
+/// one, and with an order, it is the CPU device.
+#[cfg(feature = "figures")]
+pub(crate) fn select_for_figure(
+    device: &DeviceRequest,
+    order: Option<FragmentOrder>,
+) -> Result<DeviceSelection, Failure> {
+    let cpu = |reason: &str| DeviceSelection::cpu(order.unwrap_or_default(), reason.to_owned());
+    Ok(match (device, order) {
+        (DeviceRequest::Cpu, _) => cpu("selected with `--device`"),
+        (DeviceRequest::Auto, Some(_)) => cpu("the only device that interleaves fragments by a seed"),
+        (DeviceRequest::Named(name), _) => named(name, None)?,
+        (DeviceRequest::Auto, None) => match fragbuf_runtime::headless::adapters().into_iter().next() {
+            Some(adapter) => DeviceSelection {
+                device: SelectedDevice::Gpu(adapter),
+                reason: "the first adapter".to_owned(),
+                is_preferred_driver: false,
+            },
+            None => cpu("no adapter found"),
+        },
+    })
+}
+
 impl DeviceSelection {
+    /// Returns why the device cannot run a variant, as far as its features show it.
+    #[cfg(feature = "figures")]
+    pub(crate) fn missing(&self, variant: &Variant, registry: &Registry) -> Option<String> {
+        match &self.device {
+            SelectedDevice::Cpu(_) => None,
+            SelectedDevice::Gpu(adapter) => gpu::missing(adapter, variant, registry),
+        }
+    }
+
+    /// Returns the name of the device with its driver, and the order of fragments on the CPU device.
+    #[cfg(feature = "figures")]
+    pub(crate) fn description(&self) -> String {
+        match &self.device {
+            SelectedDevice::Cpu(order) => format!("{CPU} ({}), order {}", fragbuf::GENERATOR, order_text(*order)),
+            SelectedDevice::Gpu(adapter) => {
+                let info = adapter.get_info();
+                format!("{}, {}, {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()
+            }
+        }
+    }
+
     fn cpu(order: FragmentOrder, reason: String) -> Self {
         DeviceSelection {
             device: SelectedDevice::Cpu(order),

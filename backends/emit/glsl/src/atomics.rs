@@ -75,7 +75,7 @@ impl FunctionPrinter<'_, '_> {
 
     /// Prints an atomic store.
     pub fn atomic_store(&mut self, pointer: Handle<Expression>, value: Handle<Expression>) -> String {
-        self.atomic_zero(pointer);
+        let zero = self.atomic_zero(pointer);
         let (target, value) = (self.expression(pointer), self.expression(value));
         if self.is_plain() {
             return format!("{target} = {value}");
@@ -84,7 +84,9 @@ impl FunctionPrinter<'_, '_> {
             self.printer.requirements.extensions.insert(MEMORY_SCOPE);
             return format!("atomicStore({target}, {value}, {})", self.scope(pointer));
         }
-        format!("atomicExchange({target}, {value})")
+        // OpenGL has no atomic store. A coherent store of 32 bits is what drivers make of one; a wider store may be torn.
+        let is_wide = zero == "0ul";
+        if is_wide { format!("atomicExchange({target}, {value})") } else { format!("{target} = {value}") }
     }
 
     /// Prints a read-modify-write.

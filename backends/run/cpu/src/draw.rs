@@ -13,7 +13,6 @@ use crate::draw_call::DrawCall;
 use crate::fragment_stage::FragmentStage;
 use crate::fragments::{FragmentBatch, TileResults};
 use crate::interface::{ClipInterpolation, VertexOutputLayout, fragment_inputs, fragment_outputs};
-use crate::settings::FragmentOrder;
 use crate::tile::Bins;
 use crate::triangle::{Triangle, Vertex, fan};
 use crate::vertices;
@@ -57,10 +56,7 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
     let (inputs, rate) = fragment_inputs(draw.vertex.0, draw.fragment.0)?;
     let outputs = fragment_outputs(draw.fragment.0)?;
     let (numbers, count) = (draw.numbers(), draw.vertex_count());
-    let batch = match draw.order {
-        FragmentOrder::Submission => BATCH,
-        FragmentOrder::Shuffled(_) => numbers.len().max(1),
-    };
+    let batch = if is_shuffled(draw) { numbers.len().max(1) } else { BATCH };
     let results = TileResults::default();
     for instance in draw.arguments.instances.clone() {
         let mut words = vertices::run((draw.vertex.0, &draw.vertex.1), draw.vertices, count, instance)?;
@@ -109,7 +105,7 @@ fn run(batch: &FragmentBatch<'_>, done: &(dyn Fn() + Sync)) {
 }
 
 fn is_shuffled(draw: &DrawCall<'_>) -> bool {
-    matches!(draw.order, FragmentOrder::Shuffled(_))
+    draw.order.interleaving().is_some()
 }
 
 /// Checks the bytes of the triangles of a batch. Returns the number of entries of the lists of all tiles at which the batch is divided,

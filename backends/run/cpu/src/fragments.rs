@@ -12,7 +12,6 @@ use crate::draw_call::DrawCall;
 use crate::fragment_stage::{FragmentPosition, FragmentStage};
 use crate::interface::{FragmentOutputs, Rate};
 use crate::schedule::{PixelFragment, interleave};
-use crate::settings::FragmentOrder;
 use crate::tile::{Bin, Bins, CoveredPixel, SIDE, cover};
 use crate::triangle::{PIXEL_CENTRE, Triangle, sample_positions};
 use crate::view::View;
@@ -40,9 +39,9 @@ impl<'a> FragmentBatch<'a> {
     /// Runs the fragments of a tile, and its helper invocations outside of the frame.
     pub(crate) fn run(&self, bin: &Bin, machine: &mut Machine<'a>, view: &mut View<'_>) {
         let mut samples = 0;
-        match self.draw.order {
-            FragmentOrder::Shuffled(seed) => self.shuffled(bin, view, seed, &mut samples),
-            FragmentOrder::Submission => self.for_each_fragment(bin, |triangle, position| {
+        match self.draw.order.interleaving() {
+            Some(order) => self.interleaved(bin, view, order, &mut samples),
+            None => self.for_each_fragment(bin, |triangle, position| {
                 // A fragment that does not terminate takes seconds; the others would too.
                 if self.results.endless.load(Ordering::Relaxed) == 0 {
                     samples += u64::from(self.shade(machine, view, triangle, position));
@@ -155,7 +154,7 @@ impl<'a> FragmentBatch<'a> {
 
     /// Runs the fragments of each pixel with interleaved shaders: early tests precede all of them, late tests and blending
     /// follow.
-    fn shuffled(&self, bin: &Bin, view: &View<'_>, seed: u64, samples: &mut u64) {
+    fn interleaved(&self, bin: &Bin, view: &View<'_>, (seed, window): (u64, Option<u32>), samples: &mut u64) {
         let [x0, _, y0, _] = bin.rectangle;
         let mut pixels: Vec<Vec<PixelFragment<'a>>> = Vec::new();
         pixels.resize_with((SIDE * SIDE) as usize, Vec::new);
@@ -175,7 +174,7 @@ impl<'a> FragmentBatch<'a> {
             }
             let seed = seed ^ (u64::from(position.y) << 32 | u64::from(position.x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             let mut results: Vec<Option<Vec<u32>>> = vec![None; fragments.len()];
-            interleave(&self.stage, &fragments, view, seed, |number, machine, exit| {
+            interleave(&self.stage, &fragments, view, (seed, window), |number, machine, exit| {
                 self.record_exit(machine, exit);
                 results[number] = (exit == Exit::Ended).then(|| machine.result().to_vec());
             });

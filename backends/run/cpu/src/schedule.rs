@@ -16,21 +16,30 @@ pub(crate) type PixelFragment<'a> = (&'a Triangle, FragmentPosition);
 /// The most fragments of a pixel in flight, as on a GPU.
 const IN_FLIGHT: usize = 8;
 
-/// Runs all fragments; calls `ended` with the number, the machine and the exit of each.
+/// Runs all fragments; calls `ended` with the number, the machine and the exit of each. Without a window they begin in random order. With
+/// a window they begin in the order of submission, and those in flight are of at most so many consecutive triangles.
 pub(crate) fn interleave<'a>(
     stage: &FragmentStage<'a>,
     fragments: &[PixelFragment<'a>],
     view: &View<'_>,
-    seed: u64,
+    (seed, window): (u64, Option<u32>),
     mut ended: impl FnMut(usize, &mut Machine<'a>, Exit),
 ) {
     let mut rng = Rng::seeded(seed);
-    let mut waiting: Vec<usize> = (0..fragments.len()).collect();
+    // The next fragment of a window is the last one here.
+    let numbers = 0..fragments.len();
+    let mut waiting: Vec<usize> = if window.is_some() { numbers.rev().collect() } else { numbers.collect() };
     let mut flight: Vec<Invocation<'a>> = Vec::with_capacity(IN_FLIGHT);
     let mut spare: Vec<Machine<'a>> = Vec::new();
     loop {
         while flight.len() < IN_FLIGHT && !waiting.is_empty() {
-            let number = waiting.swap_remove(rng.below(waiting.len()));
+            let number = match window {
+                None => waiting.swap_remove(rng.below(waiting.len())),
+                Some(triangles) => match waiting.pop_if(|next| is_within(*next, triangles, &flight, fragments)) {
+                    Some(next) => next,
+                    None => break,
+                },
+            };
             let (triangle, position) = &fragments[number];
             let mut machine = spare.pop().unwrap_or_else(|| stage.machine());
             stage.begin(&mut machine, triangle, position);
@@ -52,6 +61,13 @@ pub(crate) fn interleave<'a>(
             }
         }
     }
+}
+
+/// Returns whether the triangle of a fragment is within the window that the oldest triangle in flight begins.
+fn is_within(next: usize, triangles: u32, flight: &[Invocation<'_>], fragments: &[PixelFragment<'_>]) -> bool {
+    let primitive = |number: usize| fragments.get(number).map_or(0, |(triangle, _)| triangle.primitive);
+    let oldest = flight.iter().map(|invocation| primitive(invocation.number)).min();
+    oldest.is_none_or(|oldest| primitive(next).saturating_sub(oldest) < triangles.max(1))
 }
 
 /// The invocation of a fragment in flight.

@@ -47,4 +47,23 @@ pub enum FragmentOrder {
     /// submission order, as on every device: early tests precede all shaders of the pixel, late tests and blending follow
     /// them.
     Shuffled(u64),
+    /// Interleaved by a seed, as a GPU that starts fragments in submission order and has those of some consecutive triangles in flight:
+    /// a fragment starts once every fragment of its pixel from a triangle that precedes its own by at least `triangles` has ended.
+    Window {
+        /// Selects the fragment that continues.
+        seed: u64,
+        /// The number of consecutive triangles whose fragments may overlap; 1 is the order of submission.
+        triangles: u32,
+    },
+}
+
+impl FragmentOrder {
+    /// Returns the seed and the window of an interleaved order; the window of all triangles is `None`.
+    pub(crate) fn interleaving(self) -> Option<(u64, Option<u32>)> {
+        match self {
+            FragmentOrder::Submission => None,
+            FragmentOrder::Shuffled(seed) => Some((seed, None)),
+            FragmentOrder::Window { seed, triangles } => Some((seed, Some(triangles))),
+        }
+    }
 }

@@ -95,6 +95,27 @@ fn repeated_passes_restore_keys_lost_to_races() {
     assert!(races > 100, "{races} pixels lost fragments in a single iteration");
 }
 
+/// Fragments of one triangle alone never overlap, so nothing is lost; a wider window loses more than a narrow one.
+#[test]
+fn a_window_limits_which_fragments_overlap() {
+    let once = repeated("1");
+    let triangles = stacked(14, 2);
+    let mut in_order = device(&once, FragmentOrder::Submission);
+    draw(&mut in_order, &triangles);
+    let expected = kept(&in_order.words("keys").unwrap());
+    let lost = |triangles_in_flight: u32| -> usize {
+        let of = |seed: u64| {
+            let mut racing = device(&once, FragmentOrder::Window { seed, triangles: triangles_in_flight });
+            draw(&mut racing, &triangles);
+            let kept = kept(&racing.words("keys").unwrap());
+            kept.iter().zip(&expected).filter(|(seen, right)| seen != right).count()
+        };
+        SEEDS.map(of).sum()
+    };
+    let counts = [1, 3, 1 << 20].map(lost);
+    assert!(counts[0] == 0 && 0 < counts[1] && counts[1] < counts[2], "{counts:?}");
+}
+
 const COUNT_RUNS: &str = "
 @fragment
 fn count_runs(inputs: FragmentInput) -> @location(0) vec4<f32> {

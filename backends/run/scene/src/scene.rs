@@ -67,6 +67,29 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Merges all objects into one, with the triangles in ascending order of the key of their centroids. Triangles of equal keys keep their
+    /// order. The ids and names of objects are lost.
+    pub fn sort_triangles(&mut self, key: impl Fn([f32; 3]) -> f32) {
+        let mut merged = Object { attributes: vec![Vec::new(); self.attributes.len()], ..Object::default() };
+        for object in std::mem::take(&mut self.objects) {
+            let first = merged.positions.len() as u32;
+            merged.triangles.extend(object.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+            merged.positions.extend(object.positions);
+            merged.normals.extend(object.normals);
+            merged.colors.extend(object.colors);
+            merged.attributes.iter_mut().zip(object.attributes).for_each(|(all, words)| all.extend(words));
+        }
+        let Object { positions, triangles, .. } = &mut merged;
+        let centroid = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|corner| positions.get(corner as usize).copied().unwrap_or_default());
+            std::array::from_fn(|axis| corners.iter().map(|corner| corner[axis]).sum::<f32>() / 3.0)
+        };
+        triangles.sort_by(|a, b| key(centroid(a)).total_cmp(&key(centroid(b))));
+        self.objects = vec![merged];
+    }
+}
+
 /// Returns the least and greatest coordinates of the triangles of objects; `None` if there are none.
 pub(crate) fn bounds<'a>(objects: impl IntoIterator<Item = &'a Object>) -> Option<([f32; 3], [f32; 3])> {
     let used = objects.into_iter().flat_map(Object::corners);

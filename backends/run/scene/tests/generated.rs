@@ -1,6 +1,6 @@
 //! Generated scenes, cameras and light.
 #![allow(missing_docs, reason = "tests are read, not documented")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use fragbuf_scene::{BUILTIN_SCENES, Camera, Error, Eye, Limits, Scene, light, open};
 
@@ -32,6 +32,51 @@ fn the_hairball_has_over_two_million_triangles() {
     assert!(made.triangles() > 2_000_000, "{}", made.triangles());
 }
 
+/// Layers cover the whole frame, and each is a plane within clip space.
+#[test]
+fn layers_are_planes_over_the_frame() {
+    let made = scene("layers,n=200");
+    assert_eq!((made.objects.len(), made.triangles()), (200, 400));
+    for object in &made.objects {
+        let [a, b, c, d] = object.positions[..] else { panic!("{object:?}") };
+        assert_eq!([a, b, c, d].map(|[x, y, _]| (x, y)), [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]);
+        assert!((a[2] + c[2] - b[2] - d[2]).abs() < 1.0e-6, "{object:?}");
+        assert!([a, b, c, d].iter().all(|[_, _, z]| (0.0..=1.0).contains(z)), "{object:?}");
+    }
+    // The order of depths differs between corners.
+    let order = |corner: usize| {
+        let mut order: Vec<usize> = (0..200).collect();
+        order.sort_by(|a, b| made.objects[*a].positions[corner][2].total_cmp(&made.objects[*b].positions[corner][2]));
+        order
+    };
+    assert_ne!(order(0), order(2));
+}
+
+/// Sorting keeps the triangles with their vertices, and orders them by the centroid.
+#[test]
+fn sorted_triangles_are_the_same_triangles() {
+    let made = scene("cubes");
+    let mut sorted = made.clone();
+    sorted.sort_triangles(|[_, y, z]| z - 2.0 * y);
+    let corners = |scene: &Scene| -> Vec<[([f32; 3], [f32; 4]); 3]> {
+        let of = |object: &fragbuf_scene::Object| {
+            let vertex = |corner: u32| (object.positions[corner as usize], object.colors[corner as usize]);
+            object.triangles.iter().map(|triangle| triangle.map(vertex)).collect::<Vec<_>>()
+        };
+        scene.objects.iter().flat_map(of).collect()
+    };
+    let (before, after) = (corners(&made), corners(&sorted));
+    assert!(made.objects.len() > 1 && sorted.objects.len() == 1 && before != after);
+    let text = |mut all: Vec<[([f32; 3], [f32; 4]); 3]>| {
+        all.sort_by_key(|triangle| format!("{triangle:?}"));
+        all
+    };
+    let keys: Vec<f32> =
+        after.iter().map(|corners| corners.iter().map(|([_, y, z], _)| z - 2.0 * y).sum::<f32>()).collect();
+    assert!(keys.windows(2).all(|pair| pair[0] <= pair[1] + 1.0e-4), "{keys:?}");
+    assert_eq!(text(before), text(after));
+}
+
 /// Every needle spans most of the depth of the scene, and their directions differ by a few degrees.
 #[test]
 fn needles_are_long_thin_and_nearly_parallel() {
@@ -61,7 +106,7 @@ fn unknown_names_list_the_known_ones() {
     };
     assert_eq!(
         error("builtin:bunny"),
-        "no scene `builtin:bunny`: the scenes are cubes, slabs, marbles, hairball, needles"
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
     let advice = "write a whole number from 1 to 65536, as `n=16`";

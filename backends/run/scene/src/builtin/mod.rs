@@ -2,6 +2,7 @@
 
 mod cubes;
 mod hairball;
+mod layers;
 mod marbles;
 mod needles;
 mod random;
@@ -23,7 +24,7 @@ pub struct BuiltinScene {
 }
 
 /// The registry rows of all generated scenes.
-pub const BUILTIN_SCENES: [Row; 5] = [cubes::ROW, slabs::ROW, marbles::ROW, hairball::ROW, needles::ROW];
+pub const BUILTIN_SCENES: [Row; 6] = [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW];
 
 impl BuiltinScene {
     /// Generates the scene. `Err`: it is larger than the limits.
@@ -42,7 +43,7 @@ impl FromStr for BuiltinScene {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 5] = BUILTIN_SCENES;
+        static ROWS: [Row; 6] = BUILTIN_SCENES;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {

@@ -16,6 +16,7 @@ const SURFACELESS: egl::Enum = 0x31dd;
 // Functions of OpenGL that glow lacks.
 type SampleMask = unsafe extern "system" fn(u32, u32);
 type ClearBuffer = unsafe extern "system" fn(u32, u32, u32, u32, *const c_void);
+type ClearTexture = unsafe extern "system" fn(u32, i32, u32, u32, *const c_void);
 type FramebufferParameter = unsafe extern "system" fn(u32, u32, i32);
 
 /// An OpenGL context, current on the thread that opened it.
@@ -26,6 +27,7 @@ pub struct Context {
     pub name: String,
     pub(crate) sample_mask: SampleMask,
     pub(crate) clear_buffer: ClearBuffer,
+    pub(crate) clear_texture: ClearTexture,
     pub(crate) framebuffer_parameter: FramebufferParameter,
     egl: Egl,
     display: egl::Display,
@@ -79,6 +81,7 @@ impl Context {
                 ),
                 sample_mask: transmute::<*const c_void, SampleMask>(function("glSampleMaski")?),
                 clear_buffer: transmute::<*const c_void, ClearBuffer>(function("glClearNamedBufferData")?),
+                clear_texture: transmute::<*const c_void, ClearTexture>(function("glClearTexImage")?),
                 framebuffer_parameter: transmute::<*const c_void, FramebufferParameter>(function(
                     "glFramebufferParameteri",
                 )?),

@@ -21,7 +21,9 @@ pub struct Frame<'h, 'c, 's> {
     loops: Vec<(usize, u64)>,
     /// The finished iterations of each loop in this frame.
     finished: BTreeMap<usize, u64>,
-    /// The samples that passed in the latest run of each pass: one number per object.
+    /// The passes whose samples are counted.
+    queried: BTreeSet<String>,
+    /// The samples that passed in the latest run of each of them: one number per object.
     samples: BTreeMap<String, Vec<u32>>,
 }
 
@@ -35,9 +37,10 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
             }
         }
         host.allocate()?;
-        host.upload(scene)?;
         let ends = host.plan.exchanges.clone();
-        let mut frame = Frame { host, scene, loops: Vec::new(), finished: BTreeMap::new(), samples: BTreeMap::new() };
+        let queried = steps.iter().filter_map(|step| queried(&step.action)).cloned().collect();
+        let mut frame =
+            Frame { host, scene, loops: Vec::new(), finished: BTreeMap::new(), queried, samples: BTreeMap::new() };
         let mut at = 0;
         while let Some(step) = steps.get(at) {
             let pairs = frame.exchanged_now(&step.exchanged);
@@ -82,7 +85,14 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
                 let (from, to) = (self.host.memory(from)?, self.host.memory(to)?);
                 to.copy_from(&self.host.context.gl, from, self.host.size);
             }
-            Action::Pass(pass) => self.pass(pass)?,
+            Action::Pass(pass) => {
+                let begin = self.host.pass_times.is_some().then(|| self.finished_at());
+                self.pass(pass)?;
+                if let Some(begin) = begin {
+                    let time = self.finished_at() - begin;
+                    self.host.pass_times.iter_mut().for_each(|times| times.push((pass.name.clone(), time)));
+                }
+            }
             Action::Loop { max_iterations, end } => {
                 self.loops.push((at, 0));
                 if self.value(max_iterations)? == 0 {
@@ -94,6 +104,13 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
             Action::Host { function, reads, sets } => self.host_step(function, reads, sets)?,
         }
         Ok(None)
+    }
+
+    /// Waits for the driver; returns the time.
+    fn finished_at(&self) -> std::time::Instant {
+        // SAFETY: the context is current.
+        unsafe { self.host.context.gl.finish() };
+        std::time::Instant::now()
     }
 
     fn end_of_iteration(&mut self, begin: usize, until: Option<&Until>) -> Result<Option<usize>, Error> {
@@ -208,9 +225,14 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
     /// Draws a pass and returns the samples that passed, per object.
     fn draw(&self, pass: &Pass) -> Result<Vec<u32>, Error> {
         let gl = &self.host.context.gl;
+        let is_queried = self.queried.contains(&pass.name);
         let draw = |first: u32, count: u32| {
             // SAFETY: the context is current, and the vertices are those of the bound layout.
             unsafe {
+                if !is_queried {
+                    gl.draw_arrays(glow::TRIANGLES, first as i32, count as i32);
+                    return Ok(0);
+                }
                 let query = gl.create_query().map_err(Error)?;
                 gl.begin_query(glow::SAMPLES_PASSED, query);
                 gl.draw_arrays(glow::TRIANGLES, first as i32, count as i32);
@@ -240,9 +262,21 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
     }
 }
 
+/// Returns the pass whose samples an action reads.
+fn queried(action: &Action) -> Option<&String> {
+    match action {
+        Action::LoopEnd { until: Some(Until::NoSamples(pass)), .. } => Some(pass),
+        Action::Pass(pass) => match &pass.objects {
+            Objects::VisibleIn(query) => Some(query),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 impl Host<'_> {
     /// Uploads the vertices of a scene, and its objects' boxes in the same layout.
-    fn upload(&self, scene: &Scene<'_>) -> Result<(), Error> {
+    pub(crate) fn upload(&self, scene: &Scene<'_>) -> Result<(), Error> {
         let stride = self.stride();
         let mut boxes = Vec::new();
         for corner in scene.objects.iter().flat_map(|object| BOX.map(|corner| box_corner(object, corner))) {

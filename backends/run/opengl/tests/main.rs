@@ -4,15 +4,16 @@
 #![allow(missing_docs, reason = "tests need no documentation")]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by a panic")]
 
-#[path = "../../../tests/oracle/cpu_image.rs"]
+#[path = "../../../../tests/oracle/cpu_image.rs"]
 mod cpu_image;
-#[path = "../../../tests/oracle/numbers.rs"]
+#[path = "../../../../tests/oracle/numbers.rs"]
 mod numbers;
 mod peeling;
-#[path = "../../../backends/run/cpu/tests/peeling_loop.rs"]
+#[path = "../../cpu/tests/peeling_loop.rs"]
 mod peeling_loop;
+mod peers;
 mod pixels;
-#[path = "../../../tests/oracle/reference.rs"]
+#[path = "../../../../tests/oracle/reference.rs"]
 mod reference;
-#[path = "../../../tests/oracle/scene.rs"]
+#[path = "../../../../tests/oracle/scene.rs"]
 mod scene;

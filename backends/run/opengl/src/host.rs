@@ -49,6 +49,9 @@ pub struct Host<'c> {
     pub(crate) size: [i32; 2],
     pub(crate) programs: BTreeMap<String, glow::Program>,
     pub(crate) output: Memory,
+    layout: glow::VertexArray,
+    /// Where the time of each pass is recorded, if it is measured. Each pass then waits for the one before it.
+    pub pass_times: Option<Vec<(String, std::time::Duration)>>,
     /// The vertices of the scene, and those of its boxes.
     pub(crate) vertices: [glow::Buffer; 2],
     memory: BTreeMap<String, Memory>,
@@ -81,14 +84,16 @@ impl<'c> Host<'c> {
         let programs = programs.collect::<Result<_, Error>>()?;
         let size = [width as i32, height as i32];
         let uniforms = plan.uniform_blocks.iter().find(|block| block.name == "uniforms");
-        // SAFETY: the context is current. The layout stays bound.
-        unsafe { gl.bind_vertex_array(Some(gl.create_vertex_array().map_err(Error)?)) };
+        // SAFETY: the context is current.
+        let layout = unsafe { gl.create_vertex_array() }.map_err(Error)?;
         // SAFETY: the context is current.
         let create = || unsafe { gl.create_named_buffer() }.map_err(Error);
         Ok(Host {
             context,
             size,
             programs,
+            layout,
+            pass_times: None,
             output: Memory::texture(gl, Format::OUTPUT, 1, size)?,
             vertices: [create()?, create()?],
             memory: BTreeMap::new(),
@@ -119,10 +124,18 @@ impl<'c> Host<'c> {
         Ok(())
     }
 
+    /// Draws a frame over a background, without reading it back. The vertices are those of the last call of [`Self::render`].
+    pub fn draw(&mut self, scene: &Scene<'_>, background: [f32; 4]) -> Result<(), Error> {
+        self.output.clear(self.context, 0, &background.as_slice().into());
+        // SAFETY: the context is current.
+        unsafe { self.context.gl.bind_vertex_array(Some(self.layout)) };
+        Frame::run(self, scene)
+    }
+
     /// Draws a frame over a background and reads the image back.
     pub fn render(&mut self, scene: &Scene<'_>, background: [f32; 4]) -> Result<Image, Error> {
-        self.output.clear(self.context, 0, &background.as_slice().into());
-        Frame::run(self, scene)?;
+        self.upload(scene)?;
+        self.draw(scene, background)?;
         let gl = &self.context.gl;
         // SAFETY: the context is current.
         let error = unsafe { gl.get_error() };

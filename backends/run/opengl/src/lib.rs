@@ -13,14 +13,18 @@ mod frame;
 mod host;
 mod manifest;
 mod memory;
+mod peer;
 mod program;
 mod state;
+mod timing;
 
 use std::fmt;
 
 pub use context::Context;
 pub use host::{Host, Image, Object, Scene};
 pub use manifest::VertexInput;
+pub use peer::{Description, Peer};
+pub use timing::{Comparison, compare};
 
 /// An error: a message for people.
 #[derive(Debug)]

@@ -1,0 +1,200 @@
+//! The rows of experiments: plain data. The runners of [`super::sweep`] and its siblings read them.
+//!
+//! `{x}` in a text stands for the value of the sweep.
+
+use fragbuf_cpu::FragmentOrder;
+use fragbuf_templates::PaperRow;
+
+use super::claim::Claim;
+
+/// An experiment of a paper.
+#[derive(Clone, Copy)]
+pub(super) struct Experiment {
+    /// The name on the command line, and that of its files.
+    pub(super) name: &'static str,
+    /// The paper and its figure.
+    pub(super) paper: &'static str,
+    /// What it shows.
+    pub(super) title: &'static str,
+    pub(super) kind: Kind,
+}
+
+/// How an experiment is run.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    /// Times of series of descriptions over a swept value.
+    Sweep(Sweep),
+    /// Images of variants, and where they differ from the first.
+    Images(Images),
+    /// Properties of techniques, computed from their plans, beside those that a paper states.
+    Properties(Properties),
+    /// What pixels hold after each object of a scene.
+    Steps(Steps),
+}
+
+/// Times of frames and passes.
+#[derive(Clone, Copy)]
+pub(super) struct Sweep {
+    pub(super) panels: &'static [Panel],
+    pub(super) charts: &'static [Chart],
+    /// The paper's statements.
+    pub(super) claims: &'static [Claim],
+}
+
+/// One scene, and the value that is swept over it.
+#[derive(Clone, Copy)]
+pub(super) struct Panel {
+    /// The name in the CSV file.
+    pub(super) name: &'static str,
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
+    pub(super) axis: Axis,
+    pub(super) side: Side,
+    /// The first series is the reference of the ratios.
+    pub(super) series: &'static [Series],
+}
+
+/// The swept value.
+#[derive(Clone, Copy)]
+pub(super) struct Axis {
+    /// Its symbol in sentences.
+    pub(super) symbol: &'static str,
+    pub(super) label: &'static str,
+    pub(super) values: &'static [u32],
+    /// The values of `--quick`.
+    pub(super) quick: &'static [u32],
+}
+
+/// The pixels along a side of the images.
+#[derive(Clone, Copy)]
+pub(super) enum Side {
+    /// The same for all points. `--size` and `--quick` replace it.
+    Fixed(u32),
+    /// The swept value.
+    Swept,
+}
+
+/// A description with its changes.
+#[derive(Clone, Copy)]
+pub(super) struct Series {
+    pub(super) label: &'static str,
+    pub(super) technique: &'static str,
+    pub(super) set: &'static [(&'static str, &'static str)],
+}
+
+impl Series {
+    pub(super) const fn new(
+        label: &'static str,
+        technique: &'static str,
+        set: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        Series { label, technique, set }
+    }
+}
+
+/// A chart of one panel.
+#[derive(Clone, Copy)]
+pub(super) struct Chart {
+    pub(super) panel: &'static str,
+    pub(super) title: &'static str,
+    pub(super) passes: Passes,
+}
+
+/// Passes whose times are added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Passes {
+    All,
+    /// The passes of these names.
+    Only(&'static [&'static str]),
+    /// All but the passes of these names.
+    Except(&'static [&'static str]),
+}
+
+impl Passes {
+    /// Returns whether a pass is among them.
+    pub(super) fn contain(self, pass: &str) -> bool {
+        match self {
+            Passes::All => true,
+            Passes::Only(names) => names.contains(&pass),
+            Passes::Except(names) => !names.contains(&pass),
+        }
+    }
+}
+
+/// Images of one scene.
+#[derive(Clone, Copy)]
+pub(super) struct Images {
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
+    /// The pixels along a side.
+    pub(super) side: u32,
+    /// The order of fragments on the CPU device, which `--device auto` selects.
+    pub(super) order: FragmentOrder,
+    /// The first is the reference.
+    pub(super) variants: &'static [Variant],
+    pub(super) claims: &'static [ImageClaim],
+}
+
+/// A description, and the order of the triangles that it renders.
+#[derive(Clone, Copy)]
+pub(super) struct Variant {
+    pub(super) series: Series,
+    pub(super) triangles: Triangles,
+}
+
+/// The order of triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Triangles {
+    /// That of the model.
+    AsModelled,
+    /// From front to back by the depth of their centroids.
+    ByCentroid,
+}
+
+/// A statement of a paper about the image of a variant.
+#[derive(Clone, Copy)]
+pub(super) struct ImageClaim {
+    pub(super) statement: &'static str,
+    /// The label of the variant.
+    pub(super) variant: &'static str,
+    pub(super) expected: Expected,
+}
+
+/// How an image differs from the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Expected {
+    /// In no pixel.
+    Equal,
+    /// In some pixels.
+    Different,
+    /// In fewer pixels than the image of another variant.
+    FewerThan(&'static str),
+}
+
+/// Properties of techniques.
+#[derive(Clone, Copy)]
+pub(super) struct Properties {
+    pub(super) rows: &'static [PaperRow],
+    /// The columns that are compared, each with what it states.
+    pub(super) compared: &'static [(&'static str, &'static str)],
+}
+
+/// The states of a row of pixels while a scene is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Steps {
+    /// The scene, whose objects are drawn one after the other.
+    pub(super) scene: &'static str,
+    pub(super) camera: &'static str,
+    pub(super) series: Series,
+    pub(super) k: u32,
+    /// The pixels along a side, and the row.
+    pub(super) side: u32,
+    pub(super) row: u32,
+}
+
+/// Replaces `{x}` by the value of a sweep.
+pub(super) fn at(text: &str, x: u32) -> String {
+    text.replace("{x}", &x.to_string())
+}

@@ -1,0 +1,26 @@
+//! The experiments: one file per row. A row names techniques and scenes as data; nothing here is code.
+
+mod b06_fig_3;
+mod c15_fig_1;
+mod growth;
+mod k15_fig_1;
+mod k15_fig_10;
+mod k15_fig_6;
+mod k15_fig_7;
+mod k15_fig_9_left;
+mod k15_table_1;
+
+use super::experiment::Experiment;
+
+/// All experiments, in the order of `figure --list`.
+pub(super) const EXPERIMENTS: [Experiment; 9] = [
+    k15_table_1::ROW,
+    k15_fig_1::ROW,
+    k15_fig_6::ROW,
+    k15_fig_7::ROW,
+    k15_fig_9_left::ROW,
+    k15_fig_10::ROW,
+    c15_fig_1::ROW,
+    b06_fig_3::ROW,
+    growth::ROW,
+];
