@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fragbuf_model::{Diagnostic, Diagnostics, Draft, SourceSpan, Variant, codes};
+use fragbuf_model::{Diagnostics, Draft, SourceSpan, Variant};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_templates::Registry;
 
@@ -101,7 +101,8 @@ pub fn variant(
 fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {
     match description {
         Description::Technique(key) => {
-            Ok((Draft::from_technique(key, &SourceSpan::new(key.as_str(), 1, 1)), Diagnostics::new()))
+            let span = SourceSpan::new(key.as_str(), 1, 1).with_length(key.chars().count() as u32);
+            Ok((Draft::from_technique(key, &span), Diagnostics::new()))
         }
         Description::Text { file, text } => {
             let parsed = parse(text, file);
@@ -111,7 +112,7 @@ fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics>
 }
 
 /// The source name of changes from outside in messages.
-const SET: &str = "--set";
+pub const SET: &str = "--set";
 
 /// The source name of `defaults` in messages.
 const DEFAULTS: &str = "chosen by the command";
@@ -121,13 +122,8 @@ fn change(draft: &mut Draft, set: &[(String, String)], defaults: &[(&str, &str)]
     let length = |name: &str, value: &str| name.chars().count() as u32 + 1 + value.chars().count() as u32;
     for (line, (name, value)) in (1..).zip(set) {
         let span = SourceSpan::new(SET, line, 1).with_length(length(name, value));
-        if let Err(expected) = draft.set(name, value, &span) {
-            diagnostics.push(Diagnostic::new(
-                codes::INVALID_OPTION,
-                &span,
-                format!("invalid value `{value}` for `{name}`"),
-                format!("give {expected}"),
-            ));
+        if let Err(error) = draft.set(name, value, &span) {
+            diagnostics.push(*error);
         }
     }
     for (line, (name, value)) in (1..).zip(defaults) {

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use fragbuf_codegen::validate_user_row;
-use fragbuf_model::{Alternative, Diagnostic, Diagnostics, Draft, codes};
+use fragbuf_model::{Alternative, Diagnostic, Diagnostics, Draft, codes, nearest_name};
 use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
@@ -63,6 +63,13 @@ fn read_row(
         sources.push((file.clone(), text.clone()));
     }
     let user_row = row(&text, path, &value.value, &file)?;
+    let known: Vec<&str> = registry.axes().iter().filter(|axis| axis.chosen).map(|axis| axis.key).collect();
+    if !known.contains(&user_row.row.axis.as_str()) {
+        let nearest = nearest_name(&user_row.row.axis, &known).map(|nearest| format!("did you mean `{nearest}`? "));
+        let help = format!("{}the axes are {}", nearest.unwrap_or_default(), known.join(", "));
+        let message = format!("there is no axis `{}`", user_row.row.axis);
+        return Err(Diagnostic::new(codes::UNKNOWN_AXIS, &user_row.spans.row, message, help).into());
+    }
     if user_row.row.axis != axis {
         let message = format!("`{path}` is a {}, not a {axis}", user_row.row.axis);
         let help = format!("write `{}: wgsl(\"{path}\");`, or change the first line of its row", user_row.row.axis);

@@ -109,7 +109,7 @@ fn attributes_that_are_missing_are_errors() {
             Some(1),
             format!(
                 "error: examples/heat.ply: the scene has no `haet: f32` for the fragments: did you mean `heat`? it has heat (f32 or u32), \
-                 {every}; {advice}\n"
+                 position (vec3), {every}; {advice}\n"
             )
         )
     );
@@ -124,13 +124,16 @@ fn attributes_that_are_missing_are_errors() {
     let model = std::fs::read_to_string(HEAT[2]).unwrap().replace("0.25 0.2\n", "0.25 nan\n");
     std::fs::write(&odd, model).unwrap();
     let odd = odd.to_str().unwrap();
-    let message =
-        format!("[invalid-attribute]: {odd}:12: a value of `heat`, NaN, has no finite `f32`: 0 is used (and 3 more)\n");
-    assert_eq!(refused("render", &[HEAT[0], "--scene", odd, "--strict"]), (Some(1), format!("error{message}")));
+    let message = |instead: &str| {
+        format!("[invalid-attribute]: {odd}:12: a value of `heat`, NaN, has no finite `f32`{instead} (and 3 more)\n")
+    };
+    let note = "note: `--strict` rejects the model; without it, these are warnings\n";
+    let rejected = format!("error{}{note}", message(""));
+    assert_eq!(refused("render", &[HEAT[0], "--scene", odd, "--strict"]), (Some(1), rejected));
     let out = folder.join("odd.png");
     let arguments = ["render", HEAT[0], "--scene", odd];
     let output = fragbuf(&[&arguments[..], &VIEW[..], &[out.to_str().unwrap()]].concat());
-    assert_eq!((output.status.code(), stderr(&output)), (Some(0), format!("warning{message}")));
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), format!("warning{}", message(": 0 is used"))));
     assert_eq!(pixel(&read(&out).2, 6, 0), [0, 0, 0, 255]);
 }
 

@@ -308,8 +308,9 @@ fn limits_of_several_buffers_in_a_shader_add_up() {
     let (near, far) = (folder("limits-near"), folder("limits-far"));
     let module = |key: &str, prefix: &str, out: &Path, others: usize| {
         let other = near.join("manifest.json");
+        let group = if prefix == "near" { "1" } else { "2" };
         let mut arguments =
-            vec!["generate", key, "--target", "wgsl", "--form", "module", "--prefix", prefix, "--group", "1"];
+            vec!["generate", key, "--target", "wgsl", "--form", "module", "--prefix", prefix, "--group", group];
         for _ in 0..others {
             arguments.extend(["--with", other.to_str().unwrap()]);
         }

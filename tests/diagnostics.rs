@@ -30,7 +30,10 @@ const CASES: &[(&str, &[Expected])] = &[
     ),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("invalid-option", 2, 30, "4096")]),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("invalid-option", 2, 30, "tries")]),
-    ("buffer B from kplus_array {\n    cull: early { x: 1 };\n}", &[("unknown-option", 2, 19, "remove the braces")]),
+    (
+        "buffer B from kplus_array {\n    cull: early { x: 1 };\n}",
+        &[("unknown-option", 2, 19, "has no options: remove it")],
+    ),
     ("buffer B from kplus_array {\n    ties: attribute { by: id };\n}", &[("invalid-option", 2, 27, "decides")]),
     ("buffer B from kplus_array {\n    ties: attribute { by: 1 };\n}", &[("invalid-option", 2, 27, "decides")]),
     (

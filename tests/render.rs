@@ -383,7 +383,7 @@ fn attribute_names_select_scene_data_and_arguments_set_uniforms() {
         out.to_str().unwrap(),
     ]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(stderr(&output).contains("warning") && stderr(&output).contains("uniforms"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the uniform `tint` is 0"), "{}", stderr(&output));
     assert!(read(&out).2.iter().all(|pixel| *pixel == [255; 4]), "only the background is visible");
 }
 
@@ -458,7 +458,7 @@ fn devices_are_listed() {
     assert!(String::from_utf8(output.stdout).unwrap().lines().any(|line| line.contains("Cpu")));
 }
 
-/// A model of which a part is missing is drawn with a default and a warning, and `--strict` rejects it with the same words.
+/// A model of which a part is missing is drawn with a default and a warning, and `--strict` rejects it, without the default.
 #[test]
 fn missing_parts_of_models_are_warnings_or_errors() {
     let folder = folder("missing_parts");
@@ -469,22 +469,24 @@ fn missing_parts_of_models_are_warnings_or_errors() {
     let arguments =
         ["render", "ab_array", "--device", "cpu", "--camera", "clip", "--shading", "unlit", "--size", "4x4"];
     let color = ["--color", "0,0,1,1", "--scene", model.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    // What is missing, and what replaces it.
     let messages = [
-        "[missing-file]: FILE:1: no file `none.mtl`: its materials have the default colour",
-        "[missing-material]: FILE:6: unknown material `a`: no `mtllib` defines any: the default colour is used",
-        "[degenerate-face]: FILE:7: a face with 2 vertices is skipped: it needs 3 or more",
-        "[invalid-normal]: FILE:8: no normal 1: the file has 0; it is computed (and 3 more)",
+        ("[missing-file]: FILE:1: no file `none.mtl`", "its materials have the default colour", ""),
+        ("[missing-material]: FILE:6: unknown material `a`: no `mtllib` defines any", "the default colour is used", ""),
+        ("[degenerate-face]: FILE:7: a face with 2 vertices, which needs 3 or more", "it is skipped", ""),
+        ("[invalid-normal]: FILE:8: no normal 1: the file has 0", "it is computed", " (and 3 more)"),
     ];
-    let lines = |kind: &str| {
-        let lines = messages.map(|message| format!("{kind}{message}\n").replace("FILE", model.to_str().unwrap()));
-        lines.concat()
-    };
+    let file = model.to_str().unwrap();
+    let warnings =
+        messages.map(|(missing, instead, more)| format!("warning{missing}: {instead}{more}\n").replace("FILE", file));
+    let errors = messages.map(|(missing, _, more)| format!("error{missing}{more}\n").replace("FILE", file));
+    let note = "note: `--strict` rejects the model; without it, these are warnings\n";
     let drawn = fragbuf(&[&arguments[..], &color].concat());
-    assert_eq!((drawn.status.code(), stderr(&drawn)), (Some(0), lines("warning")));
+    assert_eq!((drawn.status.code(), stderr(&drawn)), (Some(0), warnings.concat()));
     assert!(read(&out).2.iter().all(|pixel| *pixel == [0, 0, 255, 255]));
     std::fs::remove_file(&out).unwrap();
     let refused = fragbuf(&[&arguments[..], &color, &["--strict"]].concat());
-    assert_eq!((refused.status.code(), stderr(&refused)), (Some(1), lines("error")));
+    assert_eq!((refused.status.code(), stderr(&refused)), (Some(1), errors.concat() + note));
     assert!(!out.exists());
     // A model that is complete has no warnings.
     std::fs::write(&model, "v -1 -1 0.5\nv 1 -1 0.5\nv 1 1 0.5\nf 1 2 3\n").unwrap();

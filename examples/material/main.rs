@@ -4,6 +4,7 @@
 
 pub mod scene;
 
+use std::cell::RefCell;
 use std::error::Error;
 
 use fragbuf::{Form, Registry, Request, generate, parse, target};
@@ -158,8 +159,13 @@ fn pipeline(
 /// Renders a frame, and again with a larger pool as long as fragments do not fit.
 fn draw_frame(host: &Host, renderer: &mut Renderer, output: &Output<'_>) -> Result<(), Box<dyn Error>> {
     let (device, queue) = (&host.device, &host.queue);
+    // A pass without a pipeline.
+    let unknown = RefCell::new(None);
     let mut draw = |pass: &mut wgpu::RenderPass<'_>, call: &Call<'_>| {
-        let Some((_, pipeline)) = host.pipelines.iter().find(|(name, _)| *name == call.pass.name) else { return };
+        let Some((_, pipeline)) = host.pipelines.iter().find(|(name, _)| *name == call.pass.name) else {
+            unknown.replace(Some(call.pass.name.clone()));
+            return;
+        };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &host.scene, &[]);
         pass.set_vertex_buffer(0, host.vertices.slice(..));
@@ -172,6 +178,9 @@ fn draw_frame(host: &Host, renderer: &mut Renderer, output: &Output<'_>) -> Resu
             let next = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             queue.submit([std::mem::replace(&mut encoder, next).finish()]);
             frame = block_on(device, suspended.resume(renderer))??;
+        }
+        if let Some(name) = unknown.take() {
+            return Err(format!("no pipeline for the pass `{name}`").into());
         }
         let counters = renderer.counters(&mut encoder).ok_or("the technique counts no losses")?;
         queue.submit([encoder.finish()]);

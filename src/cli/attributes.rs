@@ -23,15 +23,43 @@ pub(crate) struct Geometry {
 /// A function that returns the words of one attribute of a vertex.
 type ReadWords = fn(object: &Object, id: u32, vertex: usize) -> [u32; 4];
 
-/// The data of every scene: its names, the formats that it can be read as, and the function that reads it.
-const SCENE_DATA: [(&[&str], &[Format], ReadWords); 4] = [
-    (&["color", "colour"], &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3], |object, _, vertex| {
-        bits(&object.colors, vertex)
-    }),
-    (&["alpha"], &[Format::F32], |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0]),
-    (&["normal"], &[Format::Octahedral, Format::Vec3], |object, _, vertex| bits(&object.normals, vertex)),
-    (&["id", "object"], &[Format::U32], |_, id, _| [id, 0, 0, 0]),
+/// Data of every scene.
+struct SceneData {
+    names: &'static [&'static str],
+    /// The formats that it can be read as.
+    formats: &'static [Format],
+    read: ReadWords,
+    /// Whether an attribute of the model with this name has precedence.
+    is_default: bool,
+}
+
+const SCENE_DATA: [SceneData; 4] = [
+    SceneData {
+        names: &["color", "colour"],
+        formats: &[Format::Rgba8, Format::Rgba16, Format::Vec4, Format::Vec3],
+        read: |object, _, vertex| bits(&object.colors, vertex),
+        is_default: false,
+    },
+    SceneData {
+        names: &["alpha"],
+        formats: &[Format::F32],
+        read: |object, _, vertex| [bits(&object.colors, vertex)[3], 0, 0, 0],
+        is_default: false,
+    },
+    SceneData {
+        names: &["normal"],
+        formats: &[Format::Octahedral, Format::Vec3],
+        read: |object, _, vertex| bits(&object.normals, vertex),
+        is_default: false,
+    },
+    SceneData { names: &["id", "object"], formats: &[Format::U32], read: |_, id, _| [id, 0, 0, 0], is_default: true },
 ];
+
+/// Returns the data of every scene with this name.
+fn scene_row(name: &str) -> Option<&'static SceneData> {
+    static ROWS: [SceneData; 4] = SCENE_DATA;
+    ROWS.iter().find(|row| row.names.contains(&name))
+}
 
 /// The attribute that the rasteriser computes.
 const DEPTH: &str = "depth";
@@ -77,7 +105,7 @@ pub(crate) fn model_attributes(
     }
     let mut found: Vec<ModelAttribute> = Vec::new();
     for (name, format) in attributes().filter(|(name, _)| *name != DEPTH) {
-        if value(name, format, given)?.is_some() || SCENE_DATA.iter().any(|(names, ..)| names.contains(&name)) {
+        if value(name, format, given)?.is_some() || scene_row(name).is_some_and(|row| !row.is_default) {
             continue;
         }
         let attribute = ModelAttribute { request: request(name, format), format };
@@ -99,7 +127,7 @@ pub(crate) fn missing(
     let format = attribute.map_or("", |attribute| attribute.format.keyword());
     let name = &request.name;
     let names = available.iter().map(|attribute| attribute.name.as_str());
-    let names: Vec<&str> = names.chain(SCENE_DATA.iter().flat_map(|(names, ..)| names.iter().copied())).collect();
+    let names: Vec<&str> = names.chain(SCENE_DATA.iter().flat_map(|row| row.names.iter().copied())).collect();
     let nearest = nearest_name(name, &names).filter(|nearest| !nearest.eq_ignore_ascii_case(name));
     let nearest = nearest.map_or(String::new(), |nearest| format!("did you mean `{nearest}`? "));
     let of_model: Vec<String> = available
@@ -164,18 +192,25 @@ pub(crate) fn geometry(
     Ok(Geometry { vertices, indices, objects, memory })
 }
 
+/// Checks that every attribute of the descriptions has a source.
+pub(crate) fn check_sources(variants: &[&Variant], scene: &Scene, given: &[(String, String)]) -> Result<(), Failure> {
+    let attributes = variants.iter().flat_map(|variant| &variant.attributes);
+    for attribute in attributes.filter(|attribute| attribute.name.value != DEPTH) {
+        source(&attribute.name.value, attribute.format.value, scene, given)?;
+    }
+    Ok(())
+}
+
 /// Returns the source of an attribute. A value of the command line has precedence.
 fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)]) -> Result<Source, Failure> {
     if let Some(value) = value(name, format, given)? {
         return Ok(Source::Value(value));
     }
-    if let Some((_, _, read)) =
-        SCENE_DATA.iter().find(|(names, formats, _)| names.contains(&name) && formats.contains(&format))
-    {
-        return Ok(Source::Scene(*read));
-    }
     let request = request(name, format);
     let index = scene.attributes.iter().position(|attribute| *attribute == request);
+    if let Some(row) = scene_row(name).filter(|row| row.formats.contains(&format) && index.is_none()) {
+        return Ok(Source::Scene(row.read));
+    }
     index.map(Source::Model).ok_or_else(|| {
         Failure::Input(format!(
             "the scene has no `{name}: {}` for the fragments: it has {}, and {DEPTH}; {}",
@@ -187,14 +222,14 @@ fn source(name: &str, format: Format, scene: &Scene, given: &[(String, String)])
 }
 
 /// Returns the advice to set an attribute on the command line.
-fn advice(AttributeRequest { name, components, is_integer }: &AttributeRequest) -> String {
+fn advice(AttributeRequest { name, components, is_integer, .. }: &AttributeRequest) -> String {
     let value = vec![if *is_integer { "1" } else { "0.5" }; *components].join(",");
     format!("`--attribute {name}={value}` sets a value for every vertex")
 }
 
 /// Returns the names and formats of the data of every scene.
 fn scene_data() -> String {
-    let one = |(names, formats, _): &(&[&str], &[Format], ReadWords)| {
+    let one = |SceneData { names, formats, .. }: &SceneData| {
         let formats: Vec<&str> = formats.iter().map(|format| format.keyword()).collect();
         format!("{} ({})", names.join(" or "), formats.join(", "))
     };
@@ -203,7 +238,12 @@ fn scene_data() -> String {
 
 /// Returns the attribute of a model for one of a description.
 fn request(name: &str, format: Format) -> AttributeRequest {
-    AttributeRequest { name: name.to_owned(), components: words(format), is_integer: format == Format::U32 }
+    AttributeRequest {
+        name: name.to_owned(),
+        components: words(format),
+        is_integer: format == Format::U32,
+        is_optional: scene_row(name).is_some(),
+    }
 }
 
 /// Returns the number of words of a format in a vertex.

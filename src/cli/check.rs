@@ -3,10 +3,8 @@
 //! Exit code 0: no failure found, or the check is not applicable. 1: a failure, with its schedule. 4: the search ended before
 //! every state was visited, so nothing is decided.
 
-use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 use fragbuf::{Form, Registry, Request, Target, source_file};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
@@ -15,6 +13,7 @@ use serde_json::{Value, json};
 use super::assignment::assignment;
 use super::input::Input;
 use super::output::{self, Failure};
+use super::progress_line::ProgressLine;
 use super::targets;
 
 /// The choice that counts events that are not losses too, so that every fragment is accounted for.
@@ -22,6 +21,9 @@ const COUNT_ALL: (&str, &str) = ("counters", "all");
 
 /// The checker runs whole programs.
 const PROGRAM: Request<'_> = Request { targets: &[], form: Form::Program, prefix: "", group: 0 };
+
+/// The numbers of kept fragments that can be checked.
+const ENTRIES: std::ops::RangeInclusive<i64> = 1..=7;
 
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "wgsl"])))]
@@ -45,7 +47,7 @@ pub(crate) struct Check {
     /// Number of workgroups of a compute stage [default: as many as the invocations fill]
     #[arg(long, value_name = "N", conflicts_with = "description", value_parser = clap::value_parser!(u32).range(1..=8))]
     workgroups: Option<u32>,
-    /// Change the description: axis=value, axis.option=value or k=8
+    /// Change the description: axis=value, axis.option=value, or k=2, which is the same as `--k 2`
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
     /// Target whose shaders are checked [default: the first that supports the description]
@@ -54,8 +56,8 @@ pub(crate) struct Check {
     /// Number of concurrent fragments or, in a WGSL file, invocations [default: 2 and 3]
     #[arg(long, alias = "invocations", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
     fragments: Option<u32>,
-    /// Number of entries that the pixel keeps [default: 1, 2 and 3]
-    #[arg(long, alias = "entries", value_name = "K", value_parser = clap::value_parser!(u32).range(1..=7))]
+    /// Number of entries that the pixel keeps, whatever number the description keeps [default: 1, 2 and 3]
+    #[arg(long, alias = "entries", value_name = "K", value_parser = clap::value_parser!(u32).range(ENTRIES))]
     k: Option<u32>,
     /// Memory model
     #[arg(long, value_enum, default_value_t = ModelArgument::Sc)]
@@ -104,11 +106,13 @@ impl Check {
             workgroups: self.workgroups,
         };
         let limits = self.limits();
+        let progress = ProgressLine::new(&format!("checking `{entry}` of {name} in every interleaving"));
         let report = check_shader(&shader, &limits).map_err(|error| match error {
             Error::Unable(text) | Error::NotApplicable(text) => Failure::Input(text),
             Error::Description(errors) => Failure::Description(errors, vec![(name.clone(), source.clone())]),
         })?;
-        self.print_report(&name, entry, &limits, &report)
+        drop(progress);
+        self.print_report((&name, entry), &limits, &report)
     }
 
     fn check_description(&self, description: &str) -> Result<ExitCode, Failure> {
@@ -116,23 +120,24 @@ impl Check {
         let mut input = Input::read(description, &registry)?;
         let variant = input.variant_with_defaults(&self.set, &[COUNT_ALL], &registry)?;
         let target = self.target(&variant)?;
-        let limits = self.limits();
-        let mut progress = ProgressLine::new();
+        let mut limits = self.limits();
+        limits.entries = self.entries(&variant, &limits)?;
+        let progress = ProgressLine::new(&format!("checking {description}"));
         let result = check_variant(&variant, target, &registry, &limits, &mut |message| progress.show(message));
-        progress.clear();
+        drop(progress);
         match result {
-            Ok(report) => self.print_report(description, target.name, &limits, &report),
+            Ok(report) => self.print_report((description, target.name), &limits, &report),
             Err(Error::NotApplicable(reason)) => self.print_not_applicable(description, target.name, &reason),
             Err(Error::Description(errors)) => Err(input.failure(errors)),
             Err(Error::Unable(text)) => Err(Failure::Input(text)),
         }
     }
 
-    fn print_report(&self, name: &str, on: &str, limits: &Limits, report: &Report) -> Result<ExitCode, Failure> {
+    fn print_report(&self, subject: (&str, &str), limits: &Limits, report: &Report) -> Result<ExitCode, Failure> {
         let text = if self.json {
-            output::json(&report_json(name, on, limits, report))
+            output::json(&report_json(subject, limits, report))
         } else {
-            report_text(name, on, limits, report)
+            report_text(subject, limits, report)
         };
         output::print(&text)?;
         Ok(ExitCode::from(match Verdict::of(limits, report) {
@@ -152,6 +157,29 @@ impl Check {
         };
         output::print(&text)?;
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// Returns the numbers of kept fragments to check: that of `--k` or `--set k=…`, or else those of `limits`.
+    fn entries(&self, variant: &fragbuf::Variant, limits: &Limits) -> Result<Vec<u32>, Failure> {
+        let set = self.set.iter().rev().find(|(name, _)| name == "k").map(|(_, value)| value.as_str());
+        match (self.k, set, variant.keep) {
+            (Some(_), _, None) => {
+                output::warn("`--k` has no effect: the description keeps all fragments");
+                Ok(limits.entries.clone())
+            }
+            (None, Some(_), Some(k)) if !ENTRIES.contains(&i64::from(k)) => Err(Failure::Usage(format!(
+                "`--set k={k}`: k from {} to {} can be checked in every interleaving: leave \
+                 it out to check k = {}",
+                ENTRIES.start(),
+                ENTRIES.end(),
+                listed(&limits.entries)
+            ))),
+            (Some(given), Some(set), Some(k)) if given != k => {
+                Err(Failure::Usage(format!("`--k {given}` and `--set k={set}` differ: give one of them")))
+            }
+            (None, Some(_), Some(k)) => Ok(vec![k]),
+            _ => Ok(limits.entries.clone()),
+        }
     }
 
     fn limits(&self) -> Limits {
@@ -239,9 +267,15 @@ fn model_name(model: Model) -> &'static str {
     }
 }
 
-fn report_text(name: &str, on: &str, limits: &Limits, report: &Report) -> String {
+/// Returns `1, 2, 3`.
+fn listed(numbers: &[u32]) -> String {
+    numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> String {
     let plural = if report.cases == 1 { "" } else { "s" };
-    let cases = format!("{} case{plural}, {} states", report.cases, report.states);
+    let k = if report.entries.is_empty() { String::new() } else { format!("k = {}; ", listed(&report.entries)) };
+    let cases = format!("{k}{} case{plural}, {} states", report.cases, report.states);
     let subject = format!("{name} on {on}, {}", model_name(limits.model));
     let unchecked = "the set of kept fragments is not checked: the storage provides neither keeps-all nor keeps-best, and has no `keeps` line";
     let unchecked = (!report.is_kept_set_checked).then_some(unchecked);
@@ -303,7 +337,7 @@ fn schedule_text(schedule: &Schedule) -> String {
     text
 }
 
-fn report_json(name: &str, on: &str, limits: &Limits, report: &Report) -> Value {
+fn report_json((name, on): (&str, &str), limits: &Limits, report: &Report) -> Value {
     let hazard = |(name, description): &(String, String)| json!({ "name": name, "description": description });
     json!({
         "description": name,
@@ -315,6 +349,7 @@ fn report_json(name: &str, on: &str, limits: &Limits, report: &Report) -> Value 
         },
         "exhaustive": report.is_exhaustive,
         "notes": report.notes,
+        "k": report.entries,
         "cases": report.cases,
         "states": report.states,
         "declared_hazard": report.is_declared,
@@ -341,33 +376,4 @@ fn schedule_json(schedule: &Schedule) -> Value {
             "second": step_json(&race.second),
         })),
     })
-}
-
-/// A progress line on stderr, shown from one second after its creation if stderr is a terminal.
-struct ProgressLine {
-    since: Instant,
-    last: Instant,
-    is_shown: bool,
-}
-
-impl ProgressLine {
-    fn new() -> Self {
-        ProgressLine { since: Instant::now(), last: Instant::now(), is_shown: false }
-    }
-
-    fn show(&mut self, message: &str) {
-        let is_due = self.since.elapsed() > Duration::from_secs(1) && self.last.elapsed() > Duration::from_millis(200);
-        if is_due && std::io::stderr().is_terminal() {
-            self.last = Instant::now();
-            self.is_shown = true;
-            // Ignore the error: there is no other stream to report it on.
-            let _ = write!(std::io::stderr(), "\r\x1b[K{message}");
-        }
-    }
-
-    fn clear(&self) {
-        if self.is_shown {
-            let _ = write!(std::io::stderr(), "\r\x1b[K");
-        }
-    }
 }

@@ -7,7 +7,7 @@ use fragbuf::{Registry, Variant};
 use serde_json::json;
 
 use super::assignment::{assignment, uniform};
-use super::attributes::model_attributes;
+use super::attributes::{check_sources, model_attributes};
 use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
@@ -58,6 +58,7 @@ impl Compare {
         let [mut first, mut second] = self.sides()?;
         let attributes = model_attributes(&[&first.variant, &second.variant], &view.attributes)?;
         let (scene, opaque) = view.scene_views(&attributes)?;
+        check_sources(&[&first.variant, &second.variant], &scene.scene, &view.attributes)?;
         let opaque = opaque.as_ref();
         let mut selection = {
             let ((first, first_input), (second, second_input)) = (first.request(opaque, 0), second.request(opaque, 0));
@@ -109,13 +110,14 @@ impl Compare {
     /// Reads both descriptions with their changes and uniforms.
     fn sides(&self) -> Result<[Side<'_>; 2], Failure> {
         let registry = Registry::builtin();
-        let side = |description, set: &[(String, String)]| {
-            let mut input = Input::read(description, &registry)?;
+        let side = |description, set: &[(String, String)], option| {
+            let mut input = Input::read(description, &registry)?.with_option_after(self.set.len(), option);
             let set = [&self.set, set].concat();
             let variant = input.variant(&set, &registry)?;
             Ok::<_, Failure>(Side { description, input, variant, set, uniforms: Vec::new() })
         };
-        let (mut first, mut second) = (side(&self.first, &self.set_first)?, side(&self.second, &self.set_second)?);
+        let mut first = side(&self.first, &self.set_first, "--set-first")?;
+        let mut second = side(&self.second, &self.set_second, "--set-second")?;
         let [shared_first, shared_second] = uniforms::shared(&self.uniforms, [&first.variant, &second.variant])?;
         first.uniforms = [&shared_first[..], &self.uniforms_first].concat();
         second.uniforms = [&shared_second[..], &self.uniforms_second].concat();

@@ -7,7 +7,7 @@ use fragbuf_cpu::FragmentOrder;
 /// The name of the CPU device.
 pub(crate) const CPU: &str = "cpu";
 
-/// The value of `--device`.
+/// The value of `--device`. Letters may be of either case.
 #[derive(Clone, Debug)]
 pub(crate) enum DeviceRequest {
     /// A GPU if there is one, else the CPU device or a software driver.
@@ -22,11 +22,11 @@ impl FromStr for DeviceRequest {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
+        match text.to_ascii_lowercase().as_str() {
             "" => Err("give `auto`, `cpu` or a part of an adapter's name, which `fragbuf devices` lists".to_owned()),
             "auto" => Ok(DeviceRequest::Auto),
             CPU => Ok(DeviceRequest::Cpu),
-            name => Ok(DeviceRequest::Named(name.to_owned())),
+            _ => Ok(DeviceRequest::Named(text.to_owned())),
         }
     }
 }

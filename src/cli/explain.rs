@@ -1,7 +1,7 @@
 //! `fragbuf explain`: prints the section of the guide about a diagnostic.
 
 use fragbuf::guide;
-use fragbuf_model::codes;
+use fragbuf_model::{codes, nearest_name};
 #[cfg(feature = "pictures")]
 use fragbuf_scene::WarningKind;
 
@@ -27,7 +27,11 @@ impl Explain {
         let name = inside.unwrap_or(given);
         let Some(section) = guide::explanation(name) else {
             let known: Vec<&str> = codes::ALL.iter().map(|code| code.name).chain(model_codes()).collect();
-            return Err(Failure::unknown("diagnostic", name, &known));
+            let help = match nearest_name(name, &known) {
+                Some(nearest) => format!("did you mean `{nearest}`?"),
+                None => "`fragbuf explain` lists the codes".to_owned(),
+            };
+            return Err(Failure::Usage(format!("no diagnostic `{name}`: {help}")));
         };
         output::print(&section)
     }

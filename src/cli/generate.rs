@@ -10,10 +10,11 @@ use std::thread;
 use fragbuf::{Form, Generation, Registry, Request, generate, manifest};
 
 use super::assignment::assignment;
+use super::earlier::EarlierFiles;
 use super::input::Input;
 use super::output::{self, Failure};
 use super::watch::watch;
-use super::{limits, stale, targets};
+use super::{limits, targets};
 
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["description", "all"])))]
@@ -44,7 +45,8 @@ pub(crate) struct Generate {
     /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Remove files of an earlier run from the output folder: those that its manifest lists and this run does not write
+    /// Remove files of earlier runs from the output folder, those for other targets, too: the files that its manifest lists and this run
+    /// does not write
     #[arg(long)]
     clean: bool,
     /// Generate again whenever the description, or a user file that it names, changes. Ctrl-C ends
@@ -108,19 +110,39 @@ impl Generate {
             return Err(Failure::Usage(NOTHING.to_owned()));
         }
         let others = self.with.iter().map(|path| limits::read(path)).collect::<Result<Vec<_>, _>>()?;
+        limits::check_names(form, &self.prefix, self.group, &others)?;
         for (folder, generation) in &folders {
             limits::warn(generation, self.group, &others);
+            let earlier = EarlierFiles::find(folder, generation);
             if !generation.plans.is_empty() {
-                let stale = stale::files(folder, generation);
-                let left: &[PathBuf] = if self.clean { &[] } else { &stale };
-                write(folder, generation, self.group, left)?;
-                stale::report(folder, &stale, self.clean)?;
+                self.write(folder, generation, &earlier)?;
+            }
+            match self.clean {
+                true => earlier.remove()?,
+                false => earlier.warn(&targets),
             }
             for (target, missing) in &generation.unsupported {
                 output::warn(&format!("nothing written for {} in {}: {missing}", target.name, folder.display()));
             }
         }
         Ok(())
+    }
+
+    /// Writes every file once, and the manifest, which also lists the files of earlier runs that stay.
+    fn write(&self, folder: &Path, generation: &Generation, earlier: &EarlierFiles) -> Result<(), Failure> {
+        let mut seen: Vec<&str> = Vec::new();
+        for file in &generation.files {
+            if !seen.contains(&file.path.as_str()) {
+                seen.push(&file.path);
+                write_file(&folder.join(&file.path), &file.bytes)?;
+            }
+        }
+        let mut manifest = manifest(generation, self.group);
+        manifest["prefix"] = self.prefix.as_str().into();
+        if !self.clean {
+            earlier.list_in(&mut manifest);
+        }
+        write_file(&folder.join("manifest.json"), output::json(&manifest).as_bytes())
     }
 }
 
@@ -156,22 +178,8 @@ fn prefix(text: &str) -> Result<String, String> {
     if starts_well && is_plain && !text.ends_with('_') && !text.contains("__") {
         Ok(text.to_owned())
     } else {
-        Err("letters, digits and single underscores, beginning with a letter and not ending in `_`".to_owned())
+        Err("write letters, digits and single underscores, beginning with a letter and not ending in `_`".to_owned())
     }
-}
-
-/// Writes every file once, and the manifest, which also lists the files that are left of earlier runs.
-fn write(folder: &Path, generation: &Generation, group: u32, left: &[PathBuf]) -> Result<(), Failure> {
-    let mut seen: Vec<&str> = Vec::new();
-    for file in &generation.files {
-        if !seen.contains(&file.path.as_str()) {
-            seen.push(&file.path);
-            write_file(&folder.join(&file.path), &file.bytes)?;
-        }
-    }
-    let mut manifest = manifest(generation, group);
-    stale::list(&mut manifest, folder, left);
-    write_file(&folder.join("manifest.json"), output::json(&manifest).as_bytes())
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

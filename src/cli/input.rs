@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use fragbuf::load::{Description, load};
-use fragbuf::{Diagnostic, Registry, Variant, source_file};
-use fragbuf_model::codes;
+use fragbuf::load::{Description, SET, load};
+use fragbuf::{Diagnostic, Diagnostics, Registry, Variant, source_file};
+use fragbuf_model::{SourceSpan, codes, nearest_name};
 
 use super::output::{self, Failure};
 
@@ -16,6 +16,8 @@ pub(crate) struct Input {
     files: Vec<PathBuf>,
     /// The warnings that are printed already: `render` loads a description once per redraw.
     warned: Vec<Diagnostic>,
+    /// The changes after the first of this number come from another option than `--set`.
+    other_option: Option<(usize, &'static str)>,
     /// Whether the caller's own shader may read attributes that the description does not.
     is_module: bool,
 }
@@ -23,10 +25,13 @@ pub(crate) struct Input {
 impl Input {
     /// Reads the technique of this key, or the file of this name.
     pub(crate) fn read(argument: &str, registry: &Registry) -> Result<Self, Failure> {
+        let path = Path::new(argument);
+        if registry.technique(argument).is_none() {
+            other_file(argument, path, registry)?;
+        }
         if !Input::is_file(argument, registry) {
             return Ok(Input::of(Description::Technique(argument.to_owned())));
         }
-        let path = Path::new(argument);
         let text = source_file::read(path).map_err(|error| Failure::source(path, &error))?;
         let description = Description::Text { file: argument.to_owned(), text };
         Ok(Input::of(description))
@@ -41,7 +46,19 @@ impl Input {
     }
 
     fn of(description: Description) -> Self {
-        Input { description, sources: Vec::new(), files: Vec::new(), warned: Vec::new(), is_module: false }
+        Input {
+            description,
+            sources: Vec::new(),
+            files: Vec::new(),
+            warned: Vec::new(),
+            other_option: None,
+            is_module: false,
+        }
+    }
+
+    /// Names the option of the changes after the first `count` in messages.
+    pub(crate) fn with_option_after(self, count: usize, option: &'static str) -> Self {
+        Input { other_option: Some((count, option)), ..self }
     }
 
     /// Prints no warning of attributes, which the caller's own shader may read.
@@ -67,7 +84,7 @@ impl Input {
         registry: &Registry,
     ) -> Result<Variant, Failure> {
         let loaded = load(&self.description, set, defaults, registry);
-        self.sources = loaded.all_sources();
+        self.sources = self.with_options(loaded.all_sources());
         if let Description::Text { .. } = &self.description {
             self.files = loaded.sources.iter().map(|(file, _)| PathBuf::from(file)).collect();
         }
@@ -82,12 +99,86 @@ impl Input {
             !(self.warned.contains(warning) || self.is_module && warning.code == codes::UNUSED_ATTRIBUTE)
         };
         let new: Vec<Diagnostic> = variant.warnings.iter().filter(is_printed).cloned().collect();
-        output::warnings(&new.iter().cloned().collect(), &self.sources);
+        output::warnings(&self.at_options(&new.iter().cloned().collect()), &self.sources);
         self.warned.extend(new);
     }
 
     /// Returns the failure for `diagnostics`, with the sources of this input.
-    pub(crate) fn failure(&self, diagnostics: fragbuf::Diagnostics) -> Failure {
-        Failure::Description(diagnostics, self.sources.clone())
+    pub(crate) fn failure(&self, diagnostics: Diagnostics) -> Failure {
+        Failure::Description(self.at_options(&diagnostics), self.sources.clone())
     }
+
+    /// Divides the source of the changes by the options that gave them.
+    fn with_options(&self, mut sources: Vec<(String, String)>) -> Vec<(String, String)> {
+        let Some((count, option)) = self.other_option else { return sources };
+        for index in 0..sources.len() {
+            let Some((_, text)) = sources.get_mut(index).filter(|(name, _)| name == SET) else { continue };
+            let end = text.split_inclusive('\n').take(count).map(str::len).sum();
+            let others = text.split_off(end);
+            sources.push((option.to_owned(), others));
+        }
+        sources
+    }
+
+    /// Moves spans in the changes to the options that gave them.
+    fn at_options(&self, diagnostics: &Diagnostics) -> Diagnostics {
+        let Some((count, option)) = self.other_option else { return diagnostics.clone() };
+        let moved = |span: &mut SourceSpan| {
+            let line = (span.line as usize).saturating_sub(count);
+            if &*span.file == SET && line > 0 {
+                (span.file, span.line) = (option.into(), line as u32);
+            }
+        };
+        let of_options = |diagnostic: &Diagnostic| {
+            let mut diagnostic = diagnostic.clone();
+            moved(&mut diagnostic.span);
+            diagnostic.labels.iter_mut().for_each(|label| moved(&mut label.span));
+            diagnostic
+        };
+        diagnostics.iter().map(of_options).collect()
+    }
+}
+
+/// Returns the failure for an argument that names a file of another kind, or none although it looks like the name of a file.
+fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    let extension = extension.as_deref().unwrap_or_default();
+    let usage = match extension {
+        "wgsl" => format!("`fragbuf check --wgsl {argument} --entry NAME` checks a shader"),
+        "obj" | "ply" | "gltf" | "glb" | "gz" => format!("give a model to `--scene {argument}`"),
+        "glsl" | "vert" | "frag" | "comp" | "hlsl" | "metal" | "spv" => "fragbuf reads shaders in WGSL only".to_owned(),
+        _ => String::new(),
+    };
+    if !usage.is_empty() {
+        return Err(Failure::Usage(format!("`{argument}` is no description in a .fragbuf file: {usage}")));
+    }
+    let looks_like_file = extension == "fragbuf" || argument.contains(['/', '\\', '.']);
+    if path.is_dir() || (looks_like_file && !path.exists()) {
+        return Err(Failure::Files(missing_description(argument, path, registry)));
+    }
+    Ok(())
+}
+
+/// Returns the message about a description that is not a file, with a file of nearly this name, if there is one.
+fn missing_description(argument: &str, path: &Path, registry: &Registry) -> String {
+    let folder = if path.is_dir() { Some(path) } else { path.parent() };
+    let folder = folder.map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
+    let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
+    let names = entries.into_iter().flatten().flatten().map(|entry| PathBuf::from(entry.file_name()));
+    let mut names: Vec<String> = names
+        .filter(|name| name.extension().is_some_and(|extension| extension == "fragbuf"))
+        .filter_map(|name| Some(name.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let whole = if name.ends_with(".fragbuf") { name.to_owned() } else { format!("{name}.fragbuf") };
+    let nearest = nearest_name(&whole, &names).filter(|_| !path.is_dir());
+    let technique = path.file_stem().and_then(|stem| registry.technique(stem.to_str()?)).filter(|_| !path.is_dir());
+    let help = match (technique, nearest.map(|nearest| path.with_file_name(nearest))) {
+        (Some(technique), _) => format!("give the key of the technique alone, `{}`", technique.key),
+        (None, Some(nearest)) => format!("did you mean `{}`?", nearest.display()),
+        (None, None) => "give a .fragbuf file, or the key of a technique, which `fragbuf list` lists".to_owned(),
+    };
+    let what = if path.is_dir() { "is a folder" } else { "does not exist" };
+    format!("the description `{argument}` {what}: {help}")
 }

@@ -1,7 +1,7 @@
 //! `fragbuf list`: lists techniques and axes, computed from the registry rows.
 
 use fragbuf::{Arrival, Form, Generation, Plan, Registry, Request, TARGETS, TIERS, Target, generate, tier};
-use fragbuf_templates::vocabulary::{Row, Technique};
+use fragbuf_templates::vocabulary::{Parameter, ParameterType, Row, Technique};
 use serde_json::{Map, Value, json};
 
 use super::input::Input;
@@ -21,7 +21,7 @@ pub(crate) struct List {
     /// Print Table 1 of the k⁺-buffer paper, with the computed values, as Markdown
     #[arg(long, conflicts_with_all = ["json", "wide", "markdown"])]
     table_1: bool,
-    /// Print the axes and their values as Markdown, the default value of each axis first
+    /// Print the axes with their values and options as Markdown, the default value of each axis first
     #[arg(long, conflicts_with_all = ["json", "wide", "markdown", "table_1"])]
     axes: bool,
 }
@@ -49,16 +49,35 @@ impl List {
 
 /// Returns the table of the axes on which descriptions choose, with a summary of each value.
 fn axes(registry: &Registry) -> String {
-    let mut text = String::from("| axis | value | |\n|---|---|---|\n");
-    for axis in registry.axes().iter().filter(|axis| axis.chosen) {
+    let chosen = || registry.axes().iter().filter(|axis| axis.chosen);
+    let without = chosen().filter(|axis| axis.default.is_none()).map(|axis| format!("`{}`", axis.key));
+    let without = without.collect::<Vec<_>>().join(", ");
+    let mut text = format!(
+        "The first value of an axis is its default, unless the technique or another choice gives one. The axis {without} has no default: \
+         a description without a technique must choose. Options are given in braces with their defaults: \
+         `sync: spin_lock {{ limit: 4096 }}`.\n\n| axis | value | | options |\n|---|---|---|---|\n"
+    );
+    for axis in chosen() {
         let mut rows: Vec<&Row> = registry.rows_of(axis.key).filter(|row| row.key != Registry::CLOSURE).collect();
         rows.sort_by_key(|row| axis.default != Some(row.key.as_str()));
         for (number, row) in rows.iter().enumerate() {
             let name = if number == 0 { axis.key } else { "" };
-            text.push_str(&format!("| {name} | `{}` | {} |\n", row.key, row.summary));
+            let options: Vec<String> = row.parameters.iter().map(option).collect();
+            text.push_str(&format!("| {name} | `{}` | {} | {} |\n", row.key, row.summary, options.join("; ")));
         }
     }
     text
+}
+
+/// Returns an option with its default, its range and what it does.
+fn option(parameter: &Parameter) -> String {
+    let (least, greatest) = parameter.range;
+    let range = match parameter.kind {
+        ParameterType::Number => format!(", from {least} to {greatest}"),
+        ParameterType::PowerOfTwo => format!(", a power of two from {least} to {greatest}"),
+        ParameterType::Attribute => ", an attribute".to_owned(),
+    };
+    format!("`{}: {}`{range}: {}", parameter.name, parameter.default, parameter.summary)
 }
 
 /// Returns a technique as JSON.

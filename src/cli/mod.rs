@@ -15,6 +15,7 @@ mod completions;
 mod device;
 #[cfg(feature = "pictures")]
 mod devices;
+mod earlier;
 mod explain;
 #[cfg(feature = "figures")]
 mod figure;
@@ -33,18 +34,19 @@ mod page;
 mod picture;
 #[cfg(feature = "pictures")]
 mod progress;
+mod progress_line;
 #[cfg(feature = "pictures")]
 mod render;
 #[cfg(feature = "pictures")]
 mod rendering;
 mod show;
-mod stale;
 #[cfg(feature = "pictures")]
 mod statistics;
 mod table_1;
 mod targets;
 #[cfg(feature = "pictures")]
 mod uniforms;
+mod usage;
 #[cfg(feature = "pictures")]
 mod view;
 mod watch;
@@ -103,7 +105,10 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+        let given: Vec<String> = std::env::args().collect();
+        usage::explained(error, &given).exit()
+    });
     output::set_messages(arguments.message_format, arguments.message_color);
     let result = match arguments.command {
         Command::List(list) => list.run(),

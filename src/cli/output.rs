@@ -131,9 +131,10 @@ impl Failure {
             #[cfg(feature = "pictures")]
             Failure::Model(warnings) => {
                 let line = |warning: &fragbuf_scene::Warning| {
-                    message_text("error", Some(warning.kind.code()), &warning.to_string())
+                    message_text("error", Some(warning.kind.code()), &warning.without_instead().to_string())
                 };
-                (warnings.iter().map(line).collect(), 1)
+                let note = message_text("note", None, "`--strict` rejects the model; without it, these are warnings");
+                (warnings.iter().map(line).chain([note]).collect(), 1)
             }
             #[cfg(feature = "pictures")]
             Failure::Device(text) => (message_text("error", None, &text), 3),

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use fragbuf::Registry;
 
 use super::assignment::{assignment, uniform};
-use super::attributes::model_attributes;
+use super::attributes::{check_sources, model_attributes};
 use super::input::Input;
 use super::output::{self, Failure};
 use super::picture;
 use super::progress::Progress;
 use super::rendering::{RenderRequest, render, select};
 use super::statistics::statistics;
+use super::uniforms;
 use super::view::{View, scenes};
 use super::watch::watch;
 
@@ -58,8 +59,11 @@ impl Render {
         let variant = input.variant(&self.set, &registry);
         files.extend_from_slice(input.files());
         let variant = variant?;
+        // Before the scene is loaded and a device is selected.
+        uniforms::values(&self.uniforms, &variant)?;
         let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
         files.extend([Some(&scene), opaque.as_ref()].into_iter().flatten().flat_map(|view| view.scene.files.clone()));
+        check_sources(&[&variant], &scene.scene, &view.attributes)?;
         let request = RenderRequest {
             description: &self.description,
             set: &self.set,

@@ -195,6 +195,14 @@ impl View {
                 "`--out -` and `--json` both write to stdout: give a file for one of them".to_owned(),
             ));
         }
+        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            let text = format!("{}: its folder {} does not exist", self.out.display(), folder.display());
+            return Err(Failure::Files(text));
+        }
+        if self.out.is_dir() {
+            return Err(Failure::Files(format!("{} is a folder: give a file to `--out`", self.out.display())));
+        }
         std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
     }
 }
@@ -246,10 +254,14 @@ pub(crate) fn scenes() -> String {
 
 /// Parses `WIDTHxHEIGHT`.
 fn size(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    sides
-        .filter(|(width, height)| *width > 0 && *height > 0)
-        .ok_or_else(|| "write WIDTHxHEIGHT in pixels, as 640x480".to_owned())
+    const FORM: &str = "write WIDTHxHEIGHT in pixels, as 640x480";
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or(FORM)?;
+    let side = |text: &str| match text.trim().parse::<u64>() {
+        Ok(0) => Err(format!("a side has 1 pixel or more: {FORM}")),
+        Ok(pixels) => u32::try_from(pixels).map_err(|_| format!("a side has at most {} pixels: {FORM}", u32::MAX)),
+        Err(_) => Err(FORM.to_owned()),
+    };
+    Ok((side(width)?, side(height)?))
 }
 
 /// Parses `red,green,blue,alpha`.

@@ -23,7 +23,8 @@ impl Display for Plan {
         for definition in self.selection.rows.iter().flat_map(|selected| &selected.row.defines) {
             writeln!(f, "  {:<10} {}", definition.symbol, definition.value)?;
         }
-        writeln!(f, "  geometry   {} passes", self.geometry_passes)?;
+        let plural = if self.geometry_passes == "1" { "pass" } else { "passes" };
+        writeln!(f, "  geometry   {} {plural}", self.geometry_passes)?;
         writeln!(f, "  soundness  {}", kebab_case(&self.soundness))?;
         let requires: Vec<&str> = self.requires.iter().map(|feature| feature.meaning()).collect();
         writeln!(f, "  requires   {}", if requires.is_empty() { "nothing".to_owned() } else { requires.join("; ") })?;

@@ -31,8 +31,8 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
     }
     extra_words::check(&attributes, &choices, &mut diagnostics);
     let criterion = draft.keep.as_ref().and_then(|keep| keep.criterion.as_ref());
-    // With a missing storage or an unknown choice, every capability would be reported as missing.
-    if diagnostics.is_empty() {
+    // With a missing storage, an unknown choice or a part with errors, every capability would be reported as missing.
+    if diagnostics.is_empty() && !draft.incomplete.hides_capabilities() {
         let given = description_values(&attributes, criterion, keep);
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }

@@ -28,6 +28,60 @@ pub struct Draft {
     pub helpers: Vec<UserFunction>,
     /// Names that no closure uses, in the order of the source.
     pub unused: Vec<Spanned<Unused>>,
+    /// The parts that the source has and the draft lacks, because they have errors.
+    pub incomplete: Incomplete,
+}
+
+/// Which parts of a draft lack something that the source has. The rules report no absence of a part that is incomplete, because the error
+/// in the source is its reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Incomplete {
+    /// The preset.
+    pub preset: bool,
+    /// The payload.
+    pub attributes: bool,
+    /// The uniforms.
+    pub uniforms: bool,
+    /// The number of kept fragments, or the criterion.
+    pub keep: bool,
+    /// The choices.
+    pub choices: bool,
+    /// The effect.
+    pub resolve: bool,
+    /// The helper functions.
+    pub helpers: bool,
+}
+
+impl Incomplete {
+    /// Every part: an item is not recognised.
+    pub const ALL: Incomplete = Incomplete {
+        preset: false,
+        attributes: true,
+        uniforms: true,
+        keep: true,
+        choices: true,
+        resolve: true,
+        helpers: true,
+    };
+
+    /// Returns the parts that are incomplete in either.
+    pub fn or(self, other: Incomplete) -> Incomplete {
+        Incomplete {
+            preset: self.preset || other.preset,
+            attributes: self.attributes || other.attributes,
+            uniforms: self.uniforms || other.uniforms,
+            keep: self.keep || other.keep,
+            choices: self.choices || other.choices,
+            resolve: self.resolve || other.resolve,
+            helpers: self.helpers || other.helpers,
+        }
+    }
+
+    /// Whether a capability, or a condition on the description, may be missing only because a part is incomplete. An effect with errors
+    /// counts as a closure.
+    pub fn hides_capabilities(self) -> bool {
+        self.preset || self.attributes || self.keep || self.choices
+    }
 }
 
 /// A name that no closure uses.
@@ -53,6 +107,7 @@ impl Draft {
             resolve: None,
             helpers: Vec::new(),
             unused: Vec::new(),
+            incomplete: Incomplete::default(),
         }
     }
 }

@@ -1,6 +1,23 @@
 //! Changes a draft: `--set name=value` overrides the description.
 
-use crate::{Alternative, Attribute, Choice, Draft, Format, Keep, KeepCount, OptionValue, SourceSpan, Spanned};
+use crate::{
+    Alternative, Attribute, Choice, Diagnostic, Draft, Format, Keep, KeepCount, OptionValue, SourceSpan, Spanned,
+    codes, nearest_name,
+};
+
+/// Names that users give to k.
+const NAMES_OF_K: [&str; 5] = ["keep", "K", "kept", "entries", "count"];
+
+/// Returns the error about a name that is no axis.
+fn unknown(name: &str, span: &SourceSpan, help: String) -> Box<Diagnostic> {
+    Box::new(Diagnostic::new(codes::UNKNOWN_AXIS, span, format!("unknown axis `{name}`"), help))
+}
+
+/// Returns the error about a value.
+fn invalid(name: &str, value: &str, span: &SourceSpan, help: String) -> Box<Diagnostic> {
+    let message = format!("invalid value `{value}` for `{name}`");
+    Box::new(Diagnostic::new(codes::INVALID_OPTION, span, message, help))
+}
 
 impl Draft {
     /// Creates a draft with only a preset; its name is the technique's key in UpperCamel.
@@ -26,47 +43,82 @@ impl Draft {
     }
 
     /// Sets `k`, an axis, an option as `axis.option`, or the format of an attribute as `fragment.attribute`; overrides the
-    /// draft. The rules check values of axes and options later. For `k` and formats, `Err` is the expected value.
-    pub fn set(&mut self, name: &str, value: &str, span: &SourceSpan) -> Result<(), String> {
+    /// draft. The rules check values of axes and options later. For `k` and formats, `Err` is the error in the name or the value.
+    pub fn set(&mut self, name: &str, value: &str, span: &SourceSpan) -> Result<(), Box<Diagnostic>> {
         if value.trim().is_empty() {
-            return Err("a value after the `=`".to_owned());
-        }
-        if name == "k" {
-            let count = match value {
-                "all" => KeepCount::All,
-                _ => KeepCount::AtMost(value.parse().map_err(|_| "a whole number, or `all`".to_owned())?),
-            };
-            let criterion = self.keep.take().and_then(|keep| keep.criterion);
-            self.keep = Some(Keep { count: Spanned::new(count, span.clone()), criterion });
-            return Ok(());
+            return Err(invalid(name, value, span, "give a value after the `=`".to_owned()));
         }
         match name.split_once('.') {
-            Some(("fragment", attribute)) => return self.set_format(attribute, value, span),
-            Some((axis, option)) => self.set_option(axis, option, value, span),
-            None => self.set_axis(name, value, span),
+            _ if name == "k" => self.set_k(value, span),
+            Some(("fragment", attribute)) => self.set_format(attribute, value, span),
+            Some(("uniform", uniform)) => {
+                Err(unknown("uniform", span, format!("`--uniform {uniform}={value}` sets the value of a uniform")))
+            }
+            Some((axis, option)) => {
+                self.set_option(axis, option, value, span);
+                Ok(())
+            }
+            None if NAMES_OF_K.contains(&name) => {
+                Err(unknown(name, span, format!("write `k={value}`: k is the number of fragments that a pixel keeps")))
+            }
+            None if name == "fragment" => {
+                Err(unknown(name, span, "give the format of one attribute: `fragment.name=format`".to_owned()))
+            }
+            None if value.starts_with("wgsl(") => {
+                let help =
+                    format!("write `{name}: {value};` in a .fragbuf file, because its path is relative to the file");
+                let message = format!("the user file {value} is not chosen in a description");
+                Err(Box::new(Diagnostic::new(codes::UNKNOWN_VALUE, span, message, help)))
+            }
+            None => {
+                self.set_axis(name, value, span);
+                Ok(())
+            }
         }
+    }
+
+    fn set_k(&mut self, value: &str, span: &SourceSpan) -> Result<(), Box<Diagnostic>> {
+        let count = match value {
+            "all" => Some(KeepCount::All),
+            number => number.parse().ok().map(KeepCount::AtMost),
+        };
+        let count = count.ok_or_else(|| invalid("k", value, span, "give a whole number, or `all`".to_owned()))?;
+        let criterion = self.keep.take().and_then(|keep| keep.criterion);
+        self.keep = Some(Keep { count: Spanned::new(count, span.clone()), criterion });
         Ok(())
     }
 
-    fn set_format(&mut self, name: &str, value: &str, span: &SourceSpan) -> Result<(), String> {
-        let format = Format::ALL.into_iter().find(|format| format.keyword() == value);
-        let format = format.ok_or_else(|| format!("a format: {}", Format::ALL.map(Format::keyword).join(", ")))?;
+    fn set_format(&mut self, name: &str, value: &str, span: &SourceSpan) -> Result<(), Box<Diagnostic>> {
         if self.attributes.is_empty() {
             self.attributes = self.papers_payload();
         }
-        let names: Vec<String> =
-            self.attributes.iter().map(|attribute| format!("`{}`", attribute.name.value)).collect();
         let has_closures = self.has_closures();
+        let names: Vec<String> = self.attributes.iter().map(|attribute| attribute.name.value.clone()).collect();
         let Some(attribute) = self.attributes.iter_mut().find(|attribute| attribute.name.value == name) else {
-            return Err(format!("the format of an existing attribute: {}", names.join(", ")));
+            let nearest =
+                nearest_name(name, &names).map_or(String::new(), |nearest| format!("did you mean `{nearest}`? "));
+            let help = format!("{nearest}the attributes are {}", names.join(", "));
+            let message = format!("no attribute `{name}` on a fragment");
+            return Err(Box::new(Diagnostic::new(codes::UNKNOWN_FIELD, span, message, help)));
+        };
+        let full_name = format!("fragment.{name}");
+        let formats = |is_valid: &dyn Fn(Format) -> bool| -> String {
+            Format::ALL
+                .into_iter()
+                .filter(|format| is_valid(*format))
+                .map(Format::keyword)
+                .collect::<Vec<_>>()
+                .join(", ")
         };
         let seen = attribute.format.value.wgsl_type();
+        let Some(format) = Format::ALL.into_iter().find(|format| format.keyword() == value) else {
+            let help = format!("give one of the formats {}", formats(&|_| true));
+            return Err(invalid(&full_name, value, span, help));
+        };
         if has_closures && format.wgsl_type() != seen {
-            let compatible = Format::ALL.into_iter().filter(|format| format.wgsl_type() == seen).map(Format::keyword);
-            return Err(format!(
-                "a format that closures read as {seen}: {}",
-                compatible.collect::<Vec<_>>().join(", ")
-            ));
+            let formats = formats(&|format| format.wgsl_type() == seen);
+            let help = format!("closures read it as {seen}: give one of the formats {formats}");
+            return Err(invalid(&full_name, value, span, help));
         }
         attribute.format = Spanned::new(format, span.clone());
         Ok(())

@@ -19,13 +19,17 @@ use crate::types::Type;
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let RawDescription { name, preset, items } = description;
     let environment = environment(&items, report);
-    let Items { attributes, uniforms, keep, choices, functions, .. } = items;
+    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, mut incomplete, .. } = items;
+    // An attribute of unknown format provides unknown capabilities.
+    incomplete.attributes |= !invalid_attributes.is_empty();
     let checked: Vec<(Role, Option<Function>)> =
         functions.into_iter().map(|raw| (raw.role.clone(), check::function(raw, &environment, report))).collect();
     let helpers: Vec<Option<&Function>> = helper_functions(&checked, &environment);
     reads::reject_recursion(&helpers, report);
     let keep = keep.map(|(count, _)| Keep { count, criterion: None });
     let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
+    incomplete.resolve |= checked.iter().any(|(role, function)| *role == Role::Resolve && function.is_none());
+    draft.incomplete = incomplete;
     draft.unused = unused(&checked, &environment, &helpers);
     for (role, function) in &checked {
         let Some(function) = function else { continue };
@@ -93,7 +97,7 @@ fn environment(items: &Items, report: &mut Report) -> Environment {
             helpers.push(signature(name, raw, report));
         }
     }
-    Environment { attributes, uniforms, helpers }
+    Environment { attributes, uniforms, helpers, incomplete: items.incomplete }
 }
 
 fn signature(name: &str, raw: &RawFunction, report: &mut Report) -> Signature {

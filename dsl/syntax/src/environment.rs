@@ -2,7 +2,7 @@
 //!
 //! Input: none; these types are plain data. The type checker and the WGSL printer read them.
 
-use fragbuf_model::SourceSpan;
+use fragbuf_model::{Incomplete, SourceSpan};
 
 use crate::types::Type;
 
@@ -12,6 +12,8 @@ pub(crate) struct Environment {
     pub attributes: Vec<(String, Type)>,
     pub uniforms: Vec<(String, Type)>,
     pub helpers: Vec<Signature>,
+    /// The lists that lack names with errors.
+    pub incomplete: Incomplete,
 }
 
 /// The signature of a helper function.

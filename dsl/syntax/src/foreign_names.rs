@@ -3,6 +3,9 @@
 //! Input: an unknown name, and where it is written. Output: the help of the error, if another language has the name. Names that the
 //! language has with other letters, such as `vec3` for `Vec3`, are left to the nearest name.
 
+use crate::foreign_functions::{self, Given};
+use crate::types::Type;
+
 /// Returns what a closure writes instead of a type.
 pub(crate) fn rust_type(name: &str) -> Option<String> {
     if let Some(size) = vector_size(name) {
@@ -59,30 +62,49 @@ pub(crate) fn uniform_type(name: &str) -> Option<String> {
     }
 }
 
-/// Returns what a closure writes instead of a function.
-pub(crate) fn function(name: &str) -> Option<String> {
+/// Returns what a closure writes instead of a call of a function.
+pub(crate) fn function(name: &str, given: &[Given]) -> Option<String> {
     if let Some(size) = vector_size(name) {
-        return Some(format!("write `vec{size}(…)`"));
+        let size = size.to_digit(10).and_then(|size| u8::try_from(size).ok()).unwrap_or(4);
+        return Some(foreign_functions::vector(size, given).unwrap_or_else(|| format!("write `vec{size}(…)`")));
     }
+    let operand = match given {
+        [only] => only.source.as_str(),
+        _ => "x",
+    };
     let cast = match number(name) {
-        Some(Number::Float) => Some("f32"),
-        Some(Number::Signed) => Some("i32"),
-        Some(Number::Unsigned) => Some("u32"),
-        Some(Number::Bool) => return Some("compare: `x != 0`".to_owned()),
+        Some(Number::Float) => "f32",
+        Some(Number::Signed) => "i32",
+        Some(Number::Unsigned) => "u32",
+        Some(Number::Bool) => {
+            let zero = if matches!(given, [Given { ty: Type::F32, .. }]) { "0.0" } else { "0" };
+            return Some(format!("compare: `({operand} != {zero})`"));
+        }
         Some(Number::Vector) => {
             return Some("components of vectors are `f32`: use one variable per component".to_owned());
         }
         Some(Number::Matrix) => return Some("matrices are not supported: use one vector per column".to_owned()),
-        Some(Number::Texture) | None => None,
+        Some(Number::Texture) => return Some(TEXTURES.to_owned()),
+        None if DERIVATIVES.contains(&name) => {
+            return Some("closures have no derivatives: store what the derivative is for in an attribute".to_owned());
+        }
+        None if matches!(name, "any" | "all") => {
+            let operator = if name == "any" { "||" } else { "&&" };
+            return Some(format!("combine comparisons of components: `v.x > 0.5 {operator} v.y > 0.5`"));
+        }
+        None if name.starts_with("tex2D") || name.starts_with("image") => return Some(TEXTURES.to_owned()),
+        None => return foreign_functions::help(name, given),
     };
-    if let Some(ty) = cast {
-        return Some(format!("convert with `x as {ty}`"));
+    Some(format!("convert: `({operand} as {cast})`"))
+}
+
+/// Returns what a closure writes instead of a constructor with the type of its components, `vec3<f32>(…)`.
+pub(crate) fn generic_constructor(name: &str) -> Option<&'static str> {
+    match vector_size(name)? {
+        '2' => Some("write `vec2(…)` without the type in `<…>`, or `Vec2::splat(…)` for equal components"),
+        '3' => Some("write `vec3(…)` without the type in `<…>`, or `Vec3::splat(…)` for equal components"),
+        _ => Some("write `vec4(…)` without the type in `<…>`, or `Vec4::splat(…)` for equal components"),
     }
-    if name.starts_with("texture") || name.starts_with("tex2D") || name.starts_with("image") {
-        return Some(TEXTURES.to_owned());
-    }
-    let expression = EXPRESSIONS.iter().find(|(names, _)| names.contains(&name)).map(|(_, expression)| *expression)?;
-    Some(format!("write `{expression}`"))
 }
 
 /// Returns what a closure writes instead of a value.
@@ -98,6 +120,8 @@ pub(crate) fn swizzle(name: &str) -> Option<String> {
         name.chars().map(component).collect()
     })
 }
+
+const DERIVATIVES: [&str; 8] = ["dFdx", "dFdy", "fwidth", "ddx", "ddy", "dpdx", "dpdy", "ddx_fine"];
 
 const TEXTURES: &str = "closures do not read textures: store the value in an attribute";
 
@@ -143,35 +167,6 @@ fn vector_size(name: &str) -> Option<char> {
     let is_vector = is_numbered(name, &["float", "half", "vec", "Vec", "f32x", "min16float"]);
     name.chars().next_back().filter(|_| is_vector)
 }
-
-/// Functions of shading languages, and the equivalent Rust expressions.
-const EXPRESSIONS: &[(&[&str], &str)] = &[
-    (&["mix", "lerp"], "a + (b - a) * t` for numbers, or `a.lerp(b, t)` for vectors: `t: f32"),
-    (&["select"], "if condition { b } else { a }` for WGSL's `select(a, b, condition)"),
-    (&["saturate"], "x.clamp(0.0, 1.0)"),
-    (&["smoothstep"], "{ let t = ((x - a) / (b - a)).clamp(0.0, 1.0); t * t * (3.0 - 2.0 * t) }"),
-    (&["step"], "if x < edge { 0.0 } else { 1.0 }"),
-    (&["frac", "fract"], "x - x.floor()"),
-    (&["sign"], "x.signum()`, which is never 0 for an `f32`; or `if x == 0.0 { 0.0 } else { x.signum() }"),
-    (&["inversesqrt", "inverseSqrt", "rsqrt"], "x.sqrt().recip()"),
-    (&["rcp"], "x.recip()"),
-    (&["pow"], "x.powf(y)"),
-    (&["log"], "x.ln()"),
-    (&["fma", "mad"], "a.mul_add(b, c)"),
-    (&["radians"], "x.to_radians()"),
-    (&["degrees"], "x.to_degrees()"),
-    (&["mod"], "x - y * (x / y).floor()"),
-    (&["fmod"], "x % y"),
-    (&["round", "roundEven"], "x.round_ties_even()"),
-    (&["bitCount", "countbits", "countOneBits"], "x.count_ones()"),
-    (&["reversebits", "bitfieldReverse", "reverseBits"], "x.reverse_bits()"),
-    (&["firstbitlow", "findLSB", "firstTrailingBit", "countTrailingZeros"], "x.trailing_zeros()"),
-    (&["firstbithigh", "findMSB", "firstLeadingBit"], "31 - x.leading_zeros()"),
-    (&["countLeadingZeros"], "x.leading_zeros()"),
-    (&["floatBitsToUint", "asuint"], "x.to_bits()"),
-    (&["uintBitsToFloat", "asfloat"], "f32::from_bits(x)"),
-    (&["floatBitsToInt", "asint"], "x.to_bits() as i32"),
-];
 
 /// Values of shading languages, and how a description has them.
 const VALUES: &[(&[&str], &str)] = &[

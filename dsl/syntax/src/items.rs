@@ -3,7 +3,7 @@
 //! Input: items from the grammar or the builder, one at a time. Output: [`Items`] without duplicates; function bodies are
 //! not type-checked.
 
-use fragbuf_model::{Attribute, Choice, Diagnostic, KeepCount, SourceSpan, Spanned, Uniform, codes};
+use fragbuf_model::{Attribute, Choice, Diagnostic, Incomplete, KeepCount, SourceSpan, Spanned, Uniform, codes};
 
 use crate::declarations::{self, Declaration};
 use crate::raw_function::{FunctionTokens, RawFunction, Role};
@@ -32,6 +32,8 @@ pub(crate) struct Items {
     pub functions: Vec<RawFunction>,
     /// The tokens of the same functions, including those that do not parse.
     pub function_tokens: Vec<FunctionTokens>,
+    /// The parts with errors that are not in this list.
+    pub incomplete: Incomplete,
     fragment_block: Option<SourceSpan>,
     uniform_block: Option<SourceSpan>,
     constraints: usize,

@@ -19,6 +19,7 @@ mod declarations;
 mod draft;
 mod environment;
 mod fold;
+mod foreign_functions;
 mod foreign_names;
 mod grammar;
 mod infer;

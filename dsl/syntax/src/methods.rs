@@ -62,6 +62,11 @@ pub(crate) fn is_method(name: &str) -> bool {
     METHODS.iter().any(|row| row.name == name)
 }
 
+/// Returns the types that have a method of this name.
+pub(crate) fn receivers(name: &str) -> impl Iterator<Item = Type> {
+    METHODS.iter().filter(move |row| row.name == name).flat_map(|row| row.on.iter().copied())
+}
+
 /// Returns the names of the methods of this type, in the order of the table.
 pub(crate) fn names_on(receiver: Type) -> impl Iterator<Item = &'static str> {
     METHODS.iter().filter(move |row| row.on.contains(&receiver)).map(|row| row.name)

@@ -3,7 +3,7 @@
 //! Input: source or tokens. Output: [`Parsed`]. The steps run one after another: lexer, limits, grammar, then type check
 //! and lowering in [`crate::draft`].
 
-use fragbuf_model::{Diagnostics, Draft, SourceSpan, Variant, check, codes};
+use fragbuf_model::{Diagnostics, Draft, SourceSpan, Variant, check};
 use fragbuf_templates::Registry;
 use proc_macro2::{Span, TokenStream};
 
@@ -29,10 +29,7 @@ impl Parsed {
         match check(draft, registry) {
             Ok(variant) => diagnostics.into_result(variant),
             Err(more) => {
-                // An attribute of unknown format provides unknown capabilities, so their absence is not reported.
-                let unknown = diagnostics.iter().any(|found| found.code == codes::UNKNOWN_FORMAT);
-                let follows = |code| unknown && (code == codes::MISSING_CAPABILITY || code == codes::MISSING_DEPTH);
-                more.iter().filter(|found| !follows(found.code)).for_each(|found| diagnostics.push(found.clone()));
+                diagnostics.extend(more);
                 // There is at least one diagnostic, so the second check never runs.
                 diagnostics.into_result(()).and_then(|()| check(draft, registry))
             }

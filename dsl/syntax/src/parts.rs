@@ -3,7 +3,7 @@
 //! Input: [`Parts`], plain data with a span for each part. Output: the same [`Parsed`] as from the source of the same
 //! description: all front ends share the rules, the type checker and the lowering.
 
-use fragbuf_model::{Choice, Format, KeepCount, SourceSpan, Spanned, UniformType};
+use fragbuf_model::{Choice, Format, Incomplete, KeepCount, SourceSpan, Spanned, UniformType};
 use proc_macro2::{Span, TokenStream};
 
 use crate::captured_tokens::CapturedTokens;
@@ -67,7 +67,9 @@ pub fn assemble(parts: &Parts) -> Parsed {
     let mut assembly = Assembly { items: Items::default(), attributes: Vec::new(), uniforms: Vec::new() };
     for (part, tokens) in parts.items.iter().zip(tokens) {
         // An error is reported already; the other parts are still added.
-        let _: Result<(), Stop> = assembly.add(part, tokens, &mut report);
+        if assembly.add(part, tokens, &mut report).is_err() {
+            assembly.items.incomplete = assembly.items.incomplete.or(incomplete(part));
+        }
     }
     let Assembly { mut items, attributes, uniforms } = assembly;
     items.add_attributes(attributes, &parts.name.span, &mut report);
@@ -81,6 +83,20 @@ fn captured(part: &Part) -> Option<&CapturedTokens> {
         Part::Constraint(function) | Part::Resolve(function, _) | Part::Helper(function) => Some(function),
         Part::Keep(_, criterion) => criterion.as_ref(),
         Part::Attribute(..) | Part::Uniform(..) | Part::Choice(_) => None,
+    }
+}
+
+/// Returns the part of a draft that is incomplete without this part.
+fn incomplete(part: &Part) -> Incomplete {
+    let none = Incomplete::default();
+    match part {
+        Part::Attribute(..) => Incomplete { attributes: true, ..none },
+        Part::Uniform(..) => Incomplete { uniforms: true, ..none },
+        Part::Keep(..) => Incomplete { keep: true, ..none },
+        Part::Constraint(_) => none,
+        Part::Choice(_) => Incomplete { choices: true, ..none },
+        Part::Resolve(..) => Incomplete { resolve: true, ..none },
+        Part::Helper(_) => Incomplete { helpers: true, ..none },
     }
 }
 

@@ -37,6 +37,7 @@ use self::selection::SelectedDevice;
 use super::input::Input;
 use super::output::Failure;
 use super::progress::Progress;
+use super::uniforms;
 use super::view::{SceneView, View};
 
 /// Renders the scene through the description `input`, on the device that [`select`] returned, or on the CPU device if a software driver
@@ -49,7 +50,8 @@ pub(crate) fn render(
     progress: &Progress,
 ) -> Result<RenderResult, Failure> {
     let mut result = complete(request, input, (view, selection), scene, progress)?.result;
-    result.warn(request.description, &scene.scene);
+    let uniforms = uniforms::values(request.uniforms, &result.plan.variant)?;
+    result.warn(request.description, &uniforms, &scene.scene);
     if let Some(background) = result.opaque.take() {
         blend_over(&mut result.stats.pixels, &background);
     }

@@ -2,7 +2,7 @@
 
 use fragbuf::Plan;
 use fragbuf::vocabulary::Capability;
-use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime};
+use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime, Value};
 use fragbuf_scene::Scene;
 
 use crate::cli::output::warn;
@@ -65,14 +65,14 @@ impl RenderResult {
         self.plan.selection.provides().contains(&Capability::CountsEvents)
     }
 
-    /// Prints a warning for everything that the image lacks.
-    pub(super) fn warn(&self, description: &str, scene: &Scene) {
+    /// Prints a warning for everything that the image lacks. `uniforms` are those that the command line sets.
+    pub(super) fn warn(&self, description: &str, uniforms: &[(String, Value)], scene: &Scene) {
         let warn = |text: &str| warn(&format!("{description}: {text}"));
         if self.stats.pixels.iter().all(|[_, _, _, alpha]| *alpha == 0.0) {
             let mut colors = scene.objects.iter().flat_map(|object| &object.colors);
-            warn(match colors.all(|[_, _, _, alpha]| *alpha == 0.0) {
-                true => "the image is empty, because all colours of the scene have the alpha 0",
-                false => "the image is empty: check the camera, the `where` constraints and the uniforms (default 0)",
+            warn(&match colors.all(|[_, _, _, alpha]| *alpha == 0.0) {
+                true => "the image is empty, because all colours of the scene have the alpha 0".to_owned(),
+                false => format!("the image is empty: {}", self.reasons_of_empty(uniforms)),
             });
         }
         if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_external()) {
@@ -96,6 +96,27 @@ impl RenderResult {
                 ));
             }
         }
+    }
+}
+
+impl RenderResult {
+    /// Returns what to check if the image is empty: the camera, and what the description has of constraints and uniforms that are 0.
+    fn reasons_of_empty(&self, uniforms: &[(String, Value)]) -> String {
+        let variant = &self.plan.variant;
+        let is_set = |name: &str| uniforms.iter().any(|(other, value)| other == name && !value.is_zero());
+        let zero: Vec<String> = variant
+            .uniforms
+            .iter()
+            .filter(|uniform| !is_set(&uniform.name.value))
+            .map(|uniform| format!("`{}`", uniform.name.value))
+            .collect();
+        let constraints = if variant.constraints.is_empty() { "" } else { " and the `where` constraints" };
+        let uniforms = match zero.as_slice() {
+            [] => String::new(),
+            [one] => format!("; the uniform {one} is 0 unless `--uniform` sets it"),
+            several => format!("; the uniforms {} are 0 unless `--uniform` sets them", several.join(", ")),
+        };
+        format!("check the camera{constraints}{uniforms}")
     }
 }
 

@@ -7,6 +7,7 @@ use naga::SourceLocation;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use crate::Workgroup;
+use crate::rejection::explained;
 
 /// A pass that naga accepts. Only [`check`] constructs it.
 #[derive(Clone, Debug)]
@@ -120,8 +121,12 @@ fn user_file_error(
     line: &SourceSpan,
 ) -> Diagnostics {
     let span = location.and_then(|location| narrowed(pass, location, line)).unwrap_or_else(|| line.clone());
-    let help = "in scope are the file's own names, the functions of contracts, and the accessors of the row's buffers: \
-                `x_load`, `x_store` if the pass writes, `x_atomic_…` if the pass has `x atomic`";
+    let (message, fix) = explained(message, &pass.text);
+    let separator = if fix.ends_with('?') { "" } else { ";" };
+    let help = format!(
+        "{fix}{separator} in scope are the file's own names, the functions of contracts, and the accessors of the row's buffers: `x_load`, `x_store` \
+         if the pass writes, `x_atomic_…` if the pass has `x atomic`"
+    );
     Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into()
 }
 

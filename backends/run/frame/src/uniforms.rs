@@ -24,6 +24,19 @@ pub enum Value {
 }
 
 impl Value {
+    /// Whether every component is 0.
+    pub fn is_zero(self) -> bool {
+        let are_zero = |components: &[f32]| components.iter().all(|component| *component == 0.0);
+        match self {
+            Value::F32(value) => value == 0.0,
+            Value::U32(value) => value == 0,
+            Value::I32(value) => value == 0,
+            Value::Vec2(value) => are_zero(&value),
+            Value::Vec3(value) => are_zero(&value),
+            Value::Vec4(value) => are_zero(&value),
+        }
+    }
+
     fn kind(self) -> UniformType {
         match self {
             Value::F32(_) => UniformType::F32,

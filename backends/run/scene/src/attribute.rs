@@ -5,7 +5,7 @@
 
 use crate::error::FilePosition;
 use crate::text::beginning;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// The greatest number of components of an attribute.
 pub(crate) const MAX_COMPONENTS: usize = 4;
@@ -22,6 +22,8 @@ pub struct AttributeRequest {
     pub components: usize,
     /// Whether its words are unsigned integers. If not, they are the bits of finite `f32` numbers.
     pub is_integer: bool,
+    /// Whether a model without it is valid. Then the scene does not list it.
+    pub is_optional: bool,
 }
 
 /// An attribute that the vertices of a model have.
@@ -50,7 +52,7 @@ impl AttributeRequest {
         let name = beginning(&self.name, MAX_NAME);
         if !value.is_finite() || (!self.is_integer && !(value as f32).is_finite()) {
             warnings.add(WarningKind::InvalidAttribute, name, || {
-                (position(), format!("a value of `{name}`, {value}, has no finite `f32`: 0 is used"))
+                (position(), Message::new(format!("a value of `{name}`, {value}, has no finite `f32`"), "0 is used"))
             });
             return 0;
         }
@@ -61,11 +63,8 @@ impl AttributeRequest {
         let word = value.round() as u32;
         if f64::from(word) != value {
             warnings.add(WarningKind::OutOfRange, name, || {
-                let message = format!(
-                    "a value of `{name}`, {value}, is not a whole number from 0 to {}: {word} is used",
-                    u32::MAX
-                );
-                (position(), message)
+                let text = format!("a value of `{name}`, {value}, is not a whole number from 0 to {}", u32::MAX);
+                (position(), Message::new(text, format!("{word} is used")))
             });
         }
         word

@@ -1,7 +1,7 @@
 //! The range of the colours of a model's vertices. The formats have numbers from 0 to 1; some tools write numbers from 0 to 255.
 
 use crate::error::FilePosition;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// A number above this means that the numbers are from 0 to 255.
 const BYTES: f32 = 2.0;
@@ -61,7 +61,7 @@ impl ColorRange {
             *channels = [r * color, g * color, b * color, a * alpha].map(|channel| channel.clamp(0.0, 1.0));
         }
         let change = if color.min(alpha) < 1.0 { "all are divided by 255" } else { "it is clamped" };
-        let message = format!("a colour of a vertex, {value}, is not from 0 to 1: {change}");
+        let message = Message::new(format!("a colour of a vertex, {value}, is not from 0 to 1"), change);
         warnings.add(WarningKind::OutOfRange, "colours", || (position, message));
     }
 }

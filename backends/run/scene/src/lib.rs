@@ -11,6 +11,7 @@ mod camera;
 mod color_range;
 mod error;
 mod file;
+mod foreign;
 mod gltf;
 mod limits;
 mod load;

@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, FileError};
 use crate::file::{beside, read};
 use crate::limits::Budget;
-use crate::warnings::{FileWarnings, WarningKind, Warnings};
-use crate::{AttributeRequest, BuiltinScene, Limits, Scene, Warning, gltf, normals, obj, placement, ply, text};
+use crate::warnings::{FileWarnings, Message, WarningKind, Warnings};
+use crate::{
+    AttributeRequest, BuiltinScene, Limits, Scene, Warning, foreign, gltf, normals, obj, placement, ply, text,
+};
 
 /// Opens the scene `name`. `color` is the colour of parts for which the model gives none: linear, straight alpha.
 pub fn open(name: &str, color: [f32; 4], limits: &Limits) -> Result<Scene, Error> {
     open_with(name, color, &[], limits)
 }
 
-/// Opens a scene like [`open`], with attributes of its vertices. `Err`: it does not have one of them; generated scenes have none.
+/// Opens a scene like [`open`], with attributes of its vertices. `Err`: it does not have one of them, which is not optional; generated scenes have none.
 pub fn open_with(
     name: &str,
     color: [f32; 4],
@@ -45,31 +47,35 @@ pub fn load_with(
     let plain = name.strip_suffix(".gz").unwrap_or(&name);
     let extension = Path::new(plain).extension().map(|extension| extension.to_string_lossy().into_owned());
     let extension = extension.as_deref().filter(|extension| EXTENSIONS.contains(extension));
-    let Some(extension) = extension else {
+    // What cannot be opened is the same error for every extension.
+    let is_regular = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+    let Some(extension) = extension.or(Some("").filter(|_| !is_regular)) else {
         return Err(
             FileError::whole("unknown extension: use .obj, .ply, .gltf or .glb, optionally with .gz").in_file(&file)
         );
     };
     let (budget, warnings) = (Budget::with_attributes(limits, attributes), Warnings::default());
     let bytes = read(path, &budget)?;
-    let objects = match extension {
+    foreign::check(&bytes, extension).map_err(|error| error.in_file(&file))?;
+    let (objects, attributes) = match extension {
         "obj" => {
             let folder = path.parent().unwrap_or(Path::new(""));
             let libraries =
                 |statement: &str, line: usize| libraries(folder, (statement, line), warnings.in_file(&file), &budget);
             none_of(attributes).map_err(|error| error.in_file(&file))?;
             let model = obj::Model { bytes: &bytes, file: &file, libraries: &libraries, warnings: &warnings };
-            obj::parse(&model, color, &budget)?
+            (obj::parse(&model, color, &budget)?, Vec::new())
         }
         "ply" => {
-            let objects = ply::parse(&bytes, (color, attributes), (&budget, warnings.in_file(&file)));
+            let bytes = text::without_mark(&bytes);
+            let objects = ply::parse(bytes, (color, attributes), (&budget, warnings.in_file(&file)));
             objects.map_err(|error| error.in_file(&file))?
         }
         _ => gltf::parse(&bytes, path, (color, attributes), (&budget, warnings.in_file(&file)))?,
     };
     drop(bytes);
     let mut scene = placement::place(objects);
-    scene.attributes = attributes.to_vec();
+    scene.attributes = attributes;
     scene.warnings = warnings.into_list();
     scene.files = budget.files();
     if scene.triangles() == 0 {
@@ -79,9 +85,9 @@ pub fn load_with(
     Ok(scene)
 }
 
-/// Checks that no attribute is requested of a scene that has none.
+/// Checks that no attribute is required of a scene that has none.
 fn none_of(attributes: &[AttributeRequest]) -> Result<(), FileError> {
-    match attributes.first() {
+    match attributes.iter().find(|request| !request.is_optional) {
         Some(request) => Err(FileError::MissingAttribute(request.clone(), Vec::new())),
         None => Ok(()),
     }
@@ -131,7 +137,7 @@ fn libraries(
             None => {
                 let name = text::without_comment(rest);
                 warnings.line(WarningKind::MissingFile, name, line, || {
-                    format!("no file {}: its materials have the default colour", text::quoted(name))
+                    Message::new(format!("no file {}", text::quoted(name)), "its materials have the default colour")
                 });
                 break;
             }

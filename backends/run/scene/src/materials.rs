@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use crate::error::FileError;
 use crate::limits::Budget;
 use crate::text::{lines, number, quoted, without_comment};
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,12 +77,12 @@ impl Materials {
                         material.alpha = alpha;
                     } else if (material.alpha - alpha).abs() > 1.0e-3 {
                         warnings.line(WarningKind::OutOfRange, "Tr", line, || {
-                            format!("`Tr` contradicts `d`, so the opacity is {}", material.alpha)
+                            Message::new("`Tr` contradicts `d`", format!("the opacity is {}", material.alpha))
                         });
                     }
                 }
                 _ if TEXTURES.contains(&keyword) => warnings.line(WarningKind::NotRead, keyword, line, || {
-                    format!("textures are not read: {} has no effect", quoted(keyword))
+                    Message::new("textures are not read", format!("{} has no effect", quoted(keyword)))
                 }),
                 _ => {}
             }
@@ -183,7 +183,8 @@ impl Values<'_> {
             return Err(FileError::line(self.line, format!("expected {N} numbers, found {found}")));
         }
         if found > N {
-            let message = || format!("{} has {found} values, and {N} are used", quoted(self.keyword));
+            let text = || format!("{} has {found} values, and takes {N}", quoted(self.keyword));
+            let message = || Message::new(text(), format!("the first {N} are used"));
             self.warnings.line(WarningKind::OutOfRange, self.keyword, self.line, message);
         }
         let mut values = [0.0; N];
@@ -192,7 +193,8 @@ impl Values<'_> {
             let clamped = exact.clamp(0.0, 1.0);
             // A tool that writes 1.000001 has rounded.
             if (exact - clamped).abs() > ROUNDED {
-                let message = || format!("{exact} is not from 0 to 1: {clamped} is used");
+                let text = || format!("{exact} is not from 0 to 1");
+                let message = || Message::new(text(), format!("{clamped} is used"));
                 self.warnings.line(WarningKind::OutOfRange, self.keyword, self.line, message);
             }
             *value = clamped as f32;

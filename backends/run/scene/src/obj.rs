@@ -13,7 +13,7 @@ use crate::materials::{Material, Materials, single_spaces};
 use crate::model::{ModelObject, normal};
 use crate::polygon::Triangulator;
 use crate::text::{lines, number, numbers, quoted};
-use crate::warnings::{FileWarnings, WarningKind, Warnings};
+use crate::warnings::{FileWarnings, Message, WarningKind, Warnings};
 
 /// Statements without effect on the triangles.
 const IGNORED: [&str; 20] = [
@@ -173,7 +173,8 @@ impl<'a> Reader<'a> {
             _ => None,
         };
         found.unwrap_or_else(|| {
-            let message = || format!("a normal {} is not three finite numbers: it is computed", quoted(words.trim()));
+            let text = || format!("a normal {} is not three finite numbers", quoted(words.trim()));
+            let message = || Message::new(text(), "it is computed");
             self.warnings.line(WarningKind::InvalidNormal, "vn", line, message);
             [0.0; 3]
         })
@@ -207,7 +208,7 @@ impl<'a> Reader<'a> {
         self.material = self.materials.find(name);
         if self.material.is_none() {
             // The message lists materials, so it is made for the first only.
-            let message = || format!("{}: the default colour is used", self.materials.unknown(name));
+            let message = || Message::new(self.materials.unknown(name), "the default colour is used");
             self.warnings.line(WarningKind::MissingMaterial, "", line, message);
         }
         let material = self.material.and_then(|index| self.materials.get(index));
@@ -224,7 +225,8 @@ impl<'a> Reader<'a> {
     fn face(&mut self, words: &str, line: usize) -> Result<(), FileError> {
         let count = words.split_whitespace().count();
         if count < 3 {
-            let message = || format!("a face with {count} vertices is skipped: it needs 3 or more");
+            let text = || format!("a face with {count} vertices, which needs 3 or more");
+            let message = || Message::new(text(), "it is skipped");
             self.warnings.line(WarningKind::DegenerateFace, "", line, message);
             return Ok(());
         }
@@ -259,7 +261,8 @@ impl<'a> Reader<'a> {
         let normal = normal.and_then(|number| {
             let found = index(number, (self.defined.1, self.normals.len()));
             if found.is_none() {
-                let message = || format!("no normal {number}: the file has {}; it is computed", self.normals.len());
+                let text = || format!("no normal {number}: the file has {}", self.normals.len());
+                let message = || Message::new(text(), "it is computed");
                 self.warnings.line(WarningKind::InvalidNormal, "f", line, message);
             }
             found

@@ -18,8 +18,10 @@ pub struct Warning {
     pub file: String,
     /// The position of the first occurrence in the file.
     pub position: FilePosition,
-    /// The message.
+    /// What is missing, malformed or not read.
     pub message: String,
+    /// What is used in place of it; empty: the message says so, or nothing is.
+    pub instead: String,
     /// The number of further occurrences.
     pub more: u64,
 }
@@ -85,9 +87,37 @@ impl WarningKind {
     }
 }
 
+impl Warning {
+    /// Returns the warning for a caller that rejects the model: nothing is used in place of the part.
+    pub fn without_instead(&self) -> Warning {
+        Warning { instead: String::new(), ..self.clone() }
+    }
+}
+
+/// The message of a warning.
+pub(crate) struct Message {
+    text: String,
+    instead: String,
+}
+
+impl Message {
+    /// Returns a message about a part, and what is used in place of it.
+    pub(crate) fn new(text: impl Into<String>, instead: impl Into<String>) -> Self {
+        Message { text: text.into(), instead: instead.into() }
+    }
+}
+
+impl From<String> for Message {
+    fn from(text: String) -> Self {
+        Message::new(text, "")
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        located(f, &self.file, self.position, &self.message)?;
+        let separator = if self.instead.is_empty() { "" } else { ": " };
+        let message = format!("{}{separator}{}", self.message, self.instead);
+        located(f, &self.file, self.position, &message)?;
         match self.more {
             0 => Ok(()),
             more => write!(f, " (and {more} more)"),
@@ -131,7 +161,12 @@ impl<'a> FileWarnings<'a> {
     }
 
     /// Adds a warning with the position and the message that `found` returns, or counts it if there is one of this kind about the same subject.
-    pub(crate) fn add(self, kind: WarningKind, subject: &str, found: impl FnOnce() -> (FilePosition, String)) {
+    pub(crate) fn add<M: Into<Message>>(
+        self,
+        kind: WarningKind,
+        subject: &str,
+        found: impl FnOnce() -> (FilePosition, M),
+    ) {
         let subject = beginning(subject, MAX_SUBJECT);
         let mut list = self.warnings.list.borrow_mut();
         let is_full = list.len() >= MAX_WARNINGS;
@@ -142,14 +177,21 @@ impl<'a> FileWarnings<'a> {
             Some((_, warning)) => warning.more = warning.more.saturating_add(1),
             None => {
                 let (position, message) = found();
-                let warning = Warning { kind, file: self.file.to_owned(), position, message, more: 0 };
+                let Message { text: message, instead } = message.into();
+                let warning = Warning { kind, file: self.file.to_owned(), position, message, instead, more: 0 };
                 list.push((subject.to_owned(), warning));
             }
         }
     }
 
     /// Adds a warning about a line, or counts it.
-    pub(crate) fn line(self, kind: WarningKind, subject: &str, line: usize, message: impl FnOnce() -> String) {
+    pub(crate) fn line<M: Into<Message>>(
+        self,
+        kind: WarningKind,
+        subject: &str,
+        line: usize,
+        message: impl FnOnce() -> M,
+    ) {
         self.add(kind, subject, || (FilePosition::Line(line), message()));
     }
 }

@@ -7,7 +7,7 @@ use fragbuf_scene::{AttributeRequest, Error, Limits, Scene, load_with, open_with
 use tempfile::TempDir;
 
 fn request(name: &str, components: usize, is_integer: bool) -> AttributeRequest {
-    AttributeRequest { name: name.to_owned(), components, is_integer }
+    AttributeRequest { name: name.to_owned(), components, is_integer, is_optional: false }
 }
 
 fn loaded_within(name: &str, bytes: &[u8], requests: &[AttributeRequest], memory: u64) -> Result<Scene, Error> {
@@ -96,22 +96,41 @@ fn a_binary_ply_has_attributes() {
         let scene = loaded("m.ply", &model, &[request("heat", 1, true)]).unwrap();
         assert_eq!(scene.objects[0].attributes, [[1, 515, 65_535]]);
         // A list is not an attribute.
-        assert_eq!(available("m.ply", &model, request("heats", 1, false)), [("heat".to_owned(), 1)]);
+        let expected = [("heat".to_owned(), 1), ("position".to_owned(), 3)];
+        assert_eq!(available("m.ply", &model, request("heats", 1, false)), expected);
     }
 }
 
 #[test]
 fn the_components_of_a_ply_have_endings() {
-    for endings in [["x", "y"], ["0", "1"], ["r", "g"], ["X", "Y"]] {
+    for endings in [["_x", "_y"], ["_0", "_1"], ["_r", "_g"], ["_X", "_Y"], ["x", "y"], ["0", "1"], ["R", "G"]] {
         let [first, second] = endings;
-        let properties = format!("property float flow_{second}\nproperty float flow_{first}\n");
+        let properties = format!("property float flow{second}\nproperty float flow{first}\n");
         let model = ply(&properties, ["2 1", "4 3", "6 5", "8 7"]);
         let values = floats("m.ply", &model, request("flow", 2, false)).0;
         assert_eq!(values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], "{endings:?}");
     }
     let model = ply("property float flow_x\nproperty float flow_y\nproperty uchar red\n", ["0 0 0"; 4]);
     let found = available("m.ply", &model, request("flow", 3, false));
-    assert_eq!(found, [("flow_x".to_owned(), 1), ("flow".to_owned(), 2), ("flow_y".to_owned(), 1)]);
+    let expected = [("flow_x", 1), ("flow", 2), ("flow_y", 1), ("position", 3)];
+    assert_eq!(found, expected.map(|(name, components)| (name.to_owned(), components)));
+}
+
+/// Some names have other properties, and an optional attribute is of those that the model has.
+#[test]
+fn usual_names_of_a_ply_are_attributes() {
+    for [u, v] in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
+        let model = ply(&format!("property float {u}\nproperty float {v}\n"), ["1 2", "3 4", "5 6", "7 8"]);
+        let (values, _) = floats("m.ply", &model, request("uv", 2, false));
+        assert_eq!(values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], "{u}");
+    }
+    let model = ply("property int id\n", ["4"; 4]);
+    let optional = |name: &str| AttributeRequest { is_optional: true, ..request(name, 1, true) };
+    let scene = loaded("m.ply", &model, &[optional("id"), optional("object")]).unwrap();
+    assert_eq!(scene.attributes, [optional("id")]);
+    assert_eq!(scene.objects[0].attributes, [[4; 4]]);
+    let scene = loaded("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &[optional("id")]).unwrap();
+    assert_eq!(scene.attributes, []);
 }
 
 #[test]
@@ -124,8 +143,9 @@ fn values_that_have_no_word_are_replaced() {
     let model = ply("property double heat\n", ["-1", "2.5", "4294967296", "4294967295"]);
     let scene = loaded("m.ply", &model, &[request("heat", 1, true)]).unwrap();
     assert_eq!(scene.objects[0].attributes, [[0, 3, u32::MAX, u32::MAX]]);
-    let warnings: Vec<String> = scene.warnings.iter().map(|warning| warning.message.clone()).collect();
-    assert_eq!(warnings, ["a value of `heat`, -1, is not a whole number from 0 to 4294967295: 0 is used"]);
+    let warnings: Vec<(&str, &str)> =
+        scene.warnings.iter().map(|warning| (warning.message.as_str(), warning.instead.as_str())).collect();
+    assert_eq!(warnings, [("a value of `heat`, -1, is not a whole number from 0 to 4294967295", "0 is used")]);
     assert_eq!((scene.warnings[0].kind.code(), scene.warnings[0].more), ("out-of-range", 2));
 }
 
@@ -245,7 +265,7 @@ fn scenes_without_attributes_say_so() {
     let model = ply(&format!("property float {long}\n{many}"), ["0"; 4]);
     let error = loaded("m.ply", &model, &[heat]).unwrap_err();
     let Error::MissingAttribute { available, .. } = error else { panic!("{error}") };
-    assert_eq!((available.len(), available[0].name.len()), (1, 60));
+    assert_eq!((available.len(), available[0].name.len()), (2, 60));
 }
 
 #[test]

@@ -109,8 +109,9 @@ fn unknown_names_list_the_known_ones() {
         "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
-    assert_eq!(error("builtin:slabs,n=0"), "`n=0`: `n` must be from 1 to 65536");
-    assert_eq!(error("builtin:slabs,n"), "`n`: `n` must be from 1 to 65536");
+    let advice = "write a whole number from 1 to 65536, as `n=16`";
+    assert_eq!(error("builtin:slabs,n=0"), format!("`builtin:slabs`: `n` has `0`: {advice}"));
+    assert_eq!(error("builtin:slabs,n"), format!("`builtin:slabs`: `n` has no value: {advice}"));
     assert_eq!(error("builtin:cubes,n=3"), "`builtin:cubes` has no `n`: it has no parameters");
 }
 

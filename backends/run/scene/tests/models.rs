@@ -326,7 +326,11 @@ fn ply_errors_have_lines() {
         ("ply\nformat asci 1.0\n".to_owned(), 2, "unknown format `asci`"),
         ("ply\nformat ascii 1.0\nelement vertex many\n".to_owned(), 3, "`many` is not a count"),
         ("ply\nformat ascii 1.0\nproperty float x\n".to_owned(), 3, "a property before the first element"),
-        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".to_owned(), 4, "unknown type `half`"),
+        (
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n".to_owned(),
+            4,
+            "unknown type `half`: the types are char, uchar, short, ushort, int, uint, float and double",
+        ),
         ("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n".to_owned(), 3, "no `x`"),
         ("ply\nend_header\n".to_owned(), 2, "no `format`"),
         ("ply\nformat ascii 1.0\nelement face 0\nend_header\n".to_owned(), 3, "no list `vertex_indices`"),

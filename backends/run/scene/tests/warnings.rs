@@ -104,7 +104,7 @@ fn unknown_statements_and_degenerate_faces_are_skipped() {
         warnings,
         [
             "[unknown-statement] m.obj:1: unknown statement `vw` (and 1 more)",
-            "[degenerate-face] m.obj:8: a face with 2 vertices is skipped: it needs 3 or more (and 2 more)",
+            "[degenerate-face] m.obj:8: a face with 2 vertices, which needs 3 or more: it is skipped (and 2 more)",
             "[unknown-statement] m.obj:12: unknown statement `xyz`",
             "[not-read] m.obj:13: lines and points are not read (and 1 more)",
             "[not-read] m.obj:15: curves and surfaces are not read (and 1 more)",
@@ -120,7 +120,7 @@ fn normals_that_are_missing_or_not_finite_are_computed() {
     for (text, warning) in [
         (
             "f 1//1 2//1 3//7 4//-1\n",
-            "[invalid-normal] m.obj:5: no normal 1: the file has 0; it is computed (and 3 more)",
+            "[invalid-normal] m.obj:5: no normal 1: the file has 0: it is computed (and 3 more)",
         ),
         (
             "vn nan nan nan\nf 1//1 2//1 3//1 4//1\n",
@@ -167,12 +167,12 @@ fn odd_materials_are_read_as_others_read_them() {
     assert_eq!(read("newmtl m\nKd 1 0 0\nd 0\n"), ([1.0, 0.0, 0.0, 0.0], none()));
     assert_eq!(read("newmtl m\nKd 1 0 0\nTr 0.75\n"), ([1.0, 0.0, 0.0, 0.25], none()));
     for (library, color, warning) in [
-        ("newmtl m\nKd 1 0 0 1\n", RED, "[out-of-range] a.mtl:2: `Kd` has 4 values, and 3 are used"),
+        ("newmtl m\nKd 1 0 0 1\n", RED, "[out-of-range] a.mtl:2: `Kd` has 4 values, and takes 3: the first 3 are used"),
         ("newmtl m\nKd 2 0 0\n", RED, "[out-of-range] a.mtl:2: 2 is not from 0 to 1: 1 is used"),
         (
             "newmtl m\nKd 1 0 0\nTr 1\nd 1\nTr 1\n",
             RED,
-            "[out-of-range] a.mtl:5: `Tr` contradicts `d`, so the opacity is 1",
+            "[out-of-range] a.mtl:5: `Tr` contradicts `d`: the opacity is 1",
         ),
         (
             "Kd 0 1 0\nnewmtl m\nKd 1 0 0\n",
@@ -271,7 +271,7 @@ fn odd_values_of_a_ply_are_replaced() {
     };
     let faces = "element face 3\nproperty list uchar int vertex_indices\nend_header\n";
     let body = |values: &str| format!("0 0 0 {values}\n1 0 0 {values}\n0 1 0 {values}\n2 0 1\n3 0 1 2\n0\n");
-    let skipped = "a face with 2 vertices is skipped: it needs 3 or more (and 1 more)";
+    let skipped = "a face with 2 vertices, which needs 3 or more: it is skipped (and 1 more)";
     let (scene, warnings) = loaded(&[("m.ply", &format!("{}{faces}{}", vertices(""), body("")))]);
     assert_eq!((scene.triangles(), warnings), (1, vec![format!("[degenerate-face] m.ply:13: {skipped}")]));
     let properties = "property float nx\nproperty float ny\nproperty float nz\n";
@@ -443,5 +443,8 @@ fn warnings_are_few() {
     let (_, warnings) = loaded(&[("m.obj", &format!("{QUAD}{unknown}f 1 2\nf 1 2 3\n"))]);
     assert_eq!(warnings.len(), 25);
     assert_eq!(warnings[0], "[unknown-statement] m.obj:5: unknown statement `keyword0` (and 976 more)");
-    assert_eq!(warnings[24], "[degenerate-face] m.obj:1005: a face with 2 vertices is skipped: it needs 3 or more");
+    assert_eq!(
+        warnings[24],
+        "[degenerate-face] m.obj:1005: a face with 2 vertices, which needs 3 or more: it is skipped"
+    );
 }

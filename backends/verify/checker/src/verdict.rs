@@ -58,6 +58,8 @@ impl Default for Limits {
 /// What a check found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
+    /// The numbers of kept fragments that were checked; empty where there is no such number.
+    pub entries: Vec<u32>,
     /// Cases that were checked.
     pub cases: usize,
     /// States that were visited, or steps of random schedules.
@@ -97,6 +99,7 @@ impl Report {
     /// Returns the report of no cases.
     pub(crate) fn new(limits: &Limits) -> Self {
         Report {
+            entries: Vec::new(),
             cases: 0,
             states: 0,
             is_exhaustive: limits.random_schedules.is_none(),
@@ -209,9 +212,17 @@ fn check_all(
         true => limits.entries.iter().copied().filter(|k| *k <= capacity).map(Some).collect(),
         false => vec![None],
     };
+    if entries.is_empty() {
+        let given: Vec<String> = limits.entries.iter().map(u32::to_string).collect();
+        return Err(format!(
+            "k = {} is more than the {capacity} fragments that the description keeps: check a k up to {capacity}",
+            given.join(", ")
+        ));
+    }
     for &count in &limits.fragments {
         for &k in &entries {
             for case in cases(subject, &candidates, (count, k), options.may_time_out)? {
+                report.entries.extend(k.filter(|k| !report.entries.contains(k)));
                 let k = k.map_or(String::new(), |k| format!("k = {k}, "));
                 let case = Case { description: format!("{k}{}", case.description), ..case };
                 progress(&case.description);

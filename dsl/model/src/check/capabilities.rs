@@ -130,7 +130,7 @@ impl Context<'_> {
         let unsatisfied = combination.iter().find(|row| !rules.is_satisfied(row));
         let also = unsatisfied.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
         let storage = name(combination[index]);
-        let others = self.fixes(combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
+        let others = self.fixes(index, combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
         Diagnostic::new(
             codes::KEEP_MISMATCH,
             keep,
@@ -147,7 +147,7 @@ impl Context<'_> {
     /// Reports a capability that `combination[index]` requires and no row provides.
     fn missing(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
-        let help = match self.fixes(combination) {
+        let help = match self.fixes(index, combination) {
             Some(fixes) => format!("choose {fixes}"),
             None => self.more_changes(index, capability, combination),
         };
@@ -167,6 +167,9 @@ impl Context<'_> {
     fn more_changes(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> String {
         let is_chosen = |row: &&Row| self.registry.axis(&row.axis).is_some_and(|axis| axis.chosen);
         let rows = self.registry.rows().iter().filter(is_chosen).filter(|row| row.may_provide(capability));
+        let mut rows: Vec<&Row> = rows.collect();
+        rows.sort_by_key(|row| (self.extent_of_change(&row.axis), !row.provides.contains(&capability)));
+        let rows = rows.into_iter();
         let providers: Vec<String> = rows.map(|row| provider(row, capability)).collect();
         let meaning = capability.meaning();
         match providers.is_empty() {
@@ -178,10 +181,20 @@ impl Context<'_> {
         }
     }
 
+    /// Returns how much of a description another value on an axis changes: 0 a detail of the implementation, 1 the technique, because the
+    /// axis has no default, 2 the effect, and thus the image.
+    fn extent_of_change(&self, axis: &str) -> u32 {
+        let has_default = self.registry.axis(axis).is_some_and(|axis| axis.default.is_some());
+        match axis == Registry::CLOSURE_AXIS {
+            true => 2,
+            false => u32::from(!has_default),
+        }
+    }
+
     /// Reports a condition of `combination[index]` that the description does not meet.
     fn unmet(&self, index: usize, condition: &Condition, combination: &Combination<'_>) -> Diagnostic {
         let row = name(combination[index]);
-        let or_else = self.fixes(combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
+        let or_else = self.fixes(index, combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
         Diagnostic::new(
             codes::MISSING_CAPABILITY,
             &self.choices[index].span,
@@ -190,11 +203,15 @@ impl Context<'_> {
         )
     }
 
-    /// Returns the rows that make the combination legal if one of them replaces the row of its axis.
-    fn fixes(&self, combination: &Combination<'_>) -> Option<String> {
+    /// Returns the rows that make the combination legal if one of them replaces the row of its axis, those that change the least first.
+    /// The error is about the row `at_fault`.
+    fn fixes(&self, at_fault: usize, combination: &Combination<'_>) -> Option<String> {
         let mut fixes = Vec::new();
-        for (index, chosen) in self.choices.iter().enumerate() {
-            for row in self.registry.rows_of(&chosen.axis).filter(|row| row.key != Registry::CLOSURE) {
+        let mut indices: Vec<usize> = (0..self.choices.len()).collect();
+        indices.sort_by_key(|index| (self.extent_of_change(&self.choices[*index].axis), *index != at_fault));
+        for index in indices {
+            let axis = &self.choices[index].axis;
+            for row in self.registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
                 let mut other = combination.clone();
                 other[index] = row;
                 if Rules::new(&other, self.given).is_legal() {

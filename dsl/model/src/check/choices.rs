@@ -7,7 +7,9 @@ use fragbuf_templates::vocabulary::{Axis, Parameter, ParameterType, Row, Techniq
 
 use super::suggestion::{listed, suggestion};
 use crate::variant::{AxisChoice, SelectedRow};
-use crate::{Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, SourceSpan, Spanned, codes};
+use crate::{
+    Alternative, Attribute, Choice, Diagnostic, Diagnostics, Draft, OptionValue, Spanned, codes, nearest_name,
+};
 
 /// Returns the preset that the draft names.
 pub(super) fn technique<'a>(
@@ -55,7 +57,7 @@ pub(super) fn resolve(
                 given_choice(choice, attributes, registry, diagnostics)
             }
             Some(choice) => default_choice(axis, draft, technique, &choices, registry, diagnostics)
-                .map(|chosen| with_options(chosen, choice, attributes, diagnostics)),
+                .map(|chosen| with_options(chosen, choice, attributes, registry, diagnostics)),
             None => default_choice(axis, draft, technique, &choices, registry, diagnostics),
         };
         choices.extend(chosen);
@@ -73,7 +75,7 @@ fn check_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics)
                 codes::UNKNOWN_AXIS,
                 &axis.span,
                 format!("unknown axis `{}`", axis.value),
-                suggestion(&axis.value, &known, "the axes are"),
+                unknown_axis(&axis.value, choice, &known, registry),
             ));
         }
         if let Some(first) = draft.choices[..index].iter().find(|other| other.axis == *axis) {
@@ -88,6 +90,27 @@ fn check_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics)
             );
         }
     }
+}
+
+/// Returns the help for an unknown axis: the axis that has an option of this name, or the nearest name.
+fn unknown_axis(name: &str, choice: &Choice, known: &[&str], registry: &Registry) -> String {
+    let value = choice.alternatives.first().map_or("…", |alternative| alternative.value.value.as_str());
+    // `--set` gives choices without a position in a description.
+    let is_set = choice.alternatives.first().is_some_and(|first| first.value.span == choice.axis.span);
+    if name == "k" {
+        return format!("write `keep {value};`");
+    }
+    match registry.rows().iter().find(|row| known.contains(&&*row.axis) && has_option(row, name)) {
+        Some(row) if is_set => {
+            format!("it is an option of `{}: {}`: write `{}.{name}={value}`", row.axis, row.key, row.axis)
+        }
+        Some(row) => format!("it is an option: write `{}: {} {{ {name}: {value} }}`", row.axis, row.key),
+        None => suggestion(name, known, "the axes are"),
+    }
+}
+
+fn has_option(row: &Row, name: &str) -> bool {
+    row.parameters.iter().any(|parameter| parameter.name == name)
 }
 
 /// Reports an effect that is given both as a closure and by name.
@@ -110,6 +133,7 @@ fn with_options(
     mut chosen: AxisChoice,
     choice: &Choice,
     attributes: &[Attribute],
+    registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) -> AxisChoice {
     let options = choice.alternatives.iter().flat_map(|alternative| &alternative.options);
@@ -120,7 +144,7 @@ fn with_options(
         let is_known = chosen.alternatives.iter().any(has_option);
         for (index, selected) in chosen.alternatives.iter_mut().enumerate() {
             if has_option(selected) || (!is_known && index == 0) {
-                selected.options.extend(option_number(&selected.row, attributes, name, value, diagnostics));
+                selected.options.extend(option_number(&selected.row, attributes, (name, value), registry, diagnostics));
             }
         }
     }
@@ -152,7 +176,8 @@ fn default_choice(
     registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) -> Option<AxisChoice> {
-    let closure = draft.resolve.as_ref().filter(|_| axis.key == Registry::CLOSURE_AXIS);
+    let has_closure = draft.resolve.is_some() || draft.incomplete.resolve;
+    let closure = Some(Registry::CLOSURE).filter(|_| has_closure && axis.key == Registry::CLOSURE_AXIS);
     let preset = technique.and_then(|t| t.choices.iter().find(|(name, _)| *name == axis.key)).map(|(_, value)| *value);
     let suggested = earlier
         .iter()
@@ -160,11 +185,18 @@ fn default_choice(
         .flat_map(|selected| &selected.row.defaults)
         .find(|(name, _)| *name == axis.key)
         .map(|(_, value)| value.as_ref());
-    let value = closure.map(|_| Registry::CLOSURE).or(preset).or(suggested).or(axis.default);
+    let value = closure.or(preset).or(suggested).or(axis.default);
     let span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
     let rows: Option<Vec<&Row>> =
         value.and_then(|value| value.split(" else ").map(|value| registry.row(axis.key, value)).collect());
     let Some(rows) = rows else {
+        // A misspelt name of the axis is reported.
+        let known: Vec<&str> = registry.axes().iter().map(|axis| axis.key).collect();
+        let is_misspelt = |name: &str| registry.axis(name).is_none() && nearest_name(name, &known) == Some(axis.key);
+        let has_choice = draft.choices.iter().any(|choice| is_misspelt(&choice.axis.value));
+        if draft.incomplete.preset || draft.incomplete.choices || has_choice {
+            return None;
+        }
         let known: Vec<&str> = registry.rows_of(axis.key).map(|row| row.key.as_str()).collect();
         diagnostics.push(Diagnostic::new(
             codes::MISSING_STORAGE,
@@ -217,7 +249,7 @@ fn selected_row(
     let options = alternative
         .options
         .iter()
-        .filter_map(|(name, value)| option_number(row, attributes, name, value, diagnostics))
+        .filter_map(|(name, value)| option_number(row, attributes, (name, value), registry, diagnostics))
         .collect();
     Some(SelectedRow { row: Arc::new(row.clone()), options })
 }
@@ -226,21 +258,24 @@ fn selected_row(
 fn option_number(
     row: &Row,
     attributes: &[Attribute],
-    name: &Spanned<String>,
-    value: &Spanned<OptionValue>,
+    (name, value): (&Spanned<String>, &Spanned<OptionValue>),
+    registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) -> Option<(String, u32)> {
     let Some(parameter) = row.parameters.iter().find(|parameter| parameter.name == name.value) else {
         let known: Vec<&str> = row.parameters.iter().map(|parameter| &*parameter.name).collect();
-        let help = if known.is_empty() {
-            format!("`{}` has no options: remove the braces", row.key)
-        } else {
-            suggestion(&name.value, &known, &format!("the options of `{}` are", row.key))
+        let other = registry.rows_of(&row.axis).find(|other| has_option(other, &name.value));
+        let help = match other {
+            Some(other) if nearest_name(&name.value, &known).is_none() => {
+                format!("choose `{}: {}`, which has this option", other.axis, other.key)
+            }
+            _ if known.is_empty() => format!("`{}: {}` has no options: remove it", row.axis, row.key),
+            _ => suggestion(&name.value, &known, &format!("the options of `{}` are", row.key)),
         };
         diagnostics.push(Diagnostic::new(
             codes::UNKNOWN_OPTION,
             &name.span,
-            format!("`{}` has no option `{}`", row.key, name.value),
+            format!("`{}: {}` has no option `{}`", row.axis, row.key, name.value),
             help,
         ));
         return None;
@@ -258,7 +293,7 @@ fn option_number(
         _ => None,
     };
     if number.is_none() {
-        diagnostics.push(invalid_option(parameter, attributes, &value.span));
+        diagnostics.push(invalid_option(parameter, attributes, value));
     }
     number.map(|number| (name.value.clone(), number))
 }
@@ -267,7 +302,7 @@ fn in_range(parameter: &Parameter, number: u32) -> bool {
     (parameter.range.0..=parameter.range.1).contains(&number)
 }
 
-fn invalid_option(parameter: &Parameter, attributes: &[Attribute], span: &SourceSpan) -> Diagnostic {
+fn invalid_option(parameter: &Parameter, attributes: &[Attribute], value: &Spanned<OptionValue>) -> Diagnostic {
     let (least, greatest) = parameter.range;
     let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.value.as_str()).collect();
     let expected = match parameter.kind {
@@ -275,10 +310,15 @@ fn invalid_option(parameter: &Parameter, attributes: &[Attribute], span: &Source
         ParameterType::PowerOfTwo => format!("a power of two from {least} to {greatest}"),
         ParameterType::Attribute => format!("an attribute of the payload: {}", listed(&names)),
     };
-    Diagnostic::new(
-        codes::INVALID_OPTION,
-        span,
-        format!("`{}` must be {expected}", parameter.name),
-        format!("{}; default: {}", parameter.summary, parameter.default),
-    )
+    let nearest = match (&value.value, parameter.kind) {
+        (OptionValue::Name(name), ParameterType::Attribute) => nearest_name(name, &names),
+        _ => None,
+    };
+    let help = match (nearest, parameter.kind) {
+        (Some(nearest), _) => format!("did you mean `{nearest}`?"),
+        (None, ParameterType::Attribute) => parameter.summary.to_string(),
+        _ => format!("{}; default: {}", parameter.summary, parameter.default),
+    };
+    let message = format!("`{}` must be {expected}", parameter.name);
+    Diagnostic::new(codes::INVALID_OPTION, &value.span, message, help)
 }

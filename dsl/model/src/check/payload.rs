@@ -18,6 +18,7 @@ pub(super) fn attributes(draft: &Draft, diagnostics: &mut Diagnostics) -> Vec<At
             "write `depth: f32`; a second depth of another format needs another name",
         )),
         Some(_) => {}
+        None if draft.incomplete.attributes => {}
         None => diagnostics.push(Diagnostic::new(
             codes::MISSING_DEPTH,
             &draft.attributes[0].name.span,

@@ -7,8 +7,10 @@ use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
+use super::given::given;
 use super::mismatch::quoted;
 use super::written_types::segments;
+use crate::foreign_functions::{self, Given};
 use crate::methods::{self, Spelling};
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
@@ -49,9 +51,25 @@ impl Checker<'_, '_, '_> {
     }
 
     fn vector(&mut self, size: u8, arguments: &Arguments, span: SourceSpan) -> Expr {
-        self.require_count(&format!("vec{size}"), usize::from(size), arguments.len(), &span);
-        let components = arguments.iter().map(|argument| self.value(argument, Type::F32)).collect();
-        Expr::new(Kind::Vector(components), Type::Vector(size), span)
+        if usize::from(size) == arguments.len() {
+            let components = arguments.iter().map(|argument| self.value(argument, Type::F32)).collect();
+            return Expr::new(Kind::Vector(components), Type::Vector(size), span);
+        }
+        // Other languages construct a vector from others.
+        let given: Vec<Given> = arguments.iter().map(|argument| self.given(argument)).collect();
+        let (message, help) = argument_count(&format!("vec{size}"), usize::from(size), arguments.len());
+        let help = foreign_functions::vector(size, &given).unwrap_or(help);
+        self.report.error(codes::ARGUMENT_COUNT, &span, message, help);
+        Expr::new(Kind::Error, Type::Vector(size), span)
+    }
+
+    /// Checks an argument of a call that is not of the language.
+    fn given(&mut self, argument: &syn::Expr) -> Given {
+        let checked = self.expr(argument, None);
+        let ty = self.inference.resolve_or_default(checked.ty);
+        let is_literal =
+            matches!(self.inference.resolve(checked.ty), Type::Unknown(_)) && matches!(argument, syn::Expr::Lit(_));
+        given(argument, ty, is_literal)
     }
 
     fn helper_call(&mut self, name: &str, arguments: &Arguments, span: SourceSpan, name_span: &SourceSpan) -> Expr {
@@ -101,9 +119,9 @@ impl Checker<'_, '_, '_> {
             }
             (Some(ty), _) if !arguments.is_empty() && has_method(ty, name) => {
                 let mut arguments = arguments.iter();
-                let receiver = arguments.next().map(|first| self.value(first, ty));
-                let receiver = receiver.unwrap_or_else(|| Expr::error(span.clone()));
-                self.method(receiver, ty, name, &arguments.collect::<Vec<_>>(), span, name_span)
+                let Some(first) = arguments.next() else { return Expr::error(span) };
+                let receiver = self.value(first, ty);
+                self.method((receiver, first), ty, name, &arguments.collect::<Vec<_>>(), span, name_span)
             }
             _ => self.unknown_function(&format!("{owner}::{name}"), arguments, span, name_span),
         }
@@ -117,19 +135,17 @@ impl Checker<'_, '_, '_> {
         name_span: &SourceSpan,
     ) -> Expr {
         // The arguments are checked for errors all the same.
-        for argument in arguments {
-            self.expr(argument, None);
+        let given: Vec<Given> = arguments.iter().map(|argument| self.given(argument)).collect();
+        let foreign = foreign_names::function(name, &given);
+        if self.environment.incomplete.helpers {
+            return self.without_declaration(span);
         }
         let mut existing: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
         existing.extend(["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"]);
-        let help = match (foreign_names::function(name), nearest_name(name, &existing)) {
+        let help = match (foreign, nearest_name(name, &existing)) {
             _ if self.lookup(name).is_some() => format!("`{name}` is a variable: remove `(…)`"),
             (Some(instead), _) => instead,
             (None, Some(nearest)) => format!("did you mean `{nearest}`?"),
-            (None, None) if methods::is_method(name) => {
-                let others = ["b", "c", "d"].get(..arguments.len().saturating_sub(1)).unwrap_or(&["…"]);
-                format!("it is a method: write `a.{name}({})`", others.join(", "))
-            }
             (None, None) => format!("declare it in the buffer: `fn {}(x: f32) -> f32 {{ … }}`", last_segment(name)),
         };
         self.report.error(codes::UNKNOWN_NAME, name_span, format!("cannot find function `{name}`"), help);
@@ -155,13 +171,13 @@ impl Checker<'_, '_, '_> {
             }
             Type::Fragments => self.list_method(&name, arguments.len(), span, &name_span),
             Type::Unknown(_) => self.unknown_receiver(&receiver, &name, span, &name_span),
-            ty => self.method(receiver, ty, &name, &arguments, span, &name_span),
+            ty => self.method((receiver, &call.receiver), ty, &name, &arguments, span, &name_span),
         }
     }
 
     fn method(
         &mut self,
-        receiver: Expr,
+        (receiver, source): (Expr, &syn::Expr),
         ty: Type,
         name: &str,
         arguments: &[&syn::Expr],
@@ -173,10 +189,9 @@ impl Checker<'_, '_, '_> {
             return Expr::new(Kind::Components(Box::new(receiver), name.to_string()), Type::Vector(size), span);
         }
         let Some(row) = methods::find(ty, name) else {
-            self.unknown_method(ty, name, name_span);
-            for argument in arguments {
-                self.expr(argument, None);
-            }
+            let rest: Vec<Given> = arguments.iter().map(|argument| self.given(argument)).collect();
+            let all = [&[given(source, ty, false)], rest.as_slice()].concat();
+            self.unknown_method(ty, name, &all, name_span);
             return Expr::error(span);
         };
         self.require_count(name, row.parameters.len(), arguments.len(), &span);
@@ -187,14 +202,19 @@ impl Checker<'_, '_, '_> {
         Expr::new(Kind::Method(row.wgsl, all), row.result.on(ty), span)
     }
 
-    fn unknown_method(&mut self, ty: Type, name: &str, name_span: &SourceSpan) {
+    /// Reports a method that `ty` does not have; `given` are the receiver and the arguments.
+    fn unknown_method(&mut self, ty: Type, name: &str, given: &[Given], name_span: &SourceSpan) {
         let of = quoted(ty.rust());
         if let Some((why, help)) = methods::unsupported(ty, name) {
             self.report.error(codes::METHOD_DIFFERS, name_span, format!("`{name}` of {of} {why}"), help);
             return;
         }
         let existing: Vec<&str> = methods::names_on(ty).collect();
-        let help = match foreign_names::function(name) {
+        let instead = match methods::is_method(name) {
+            true => foreign_functions::of_components(name, given),
+            false => foreign_names::function(name, given),
+        };
+        let help = match instead {
             _ if existing.is_empty() => format!("{of} has no methods: use operators or fields"),
             Some(instead) => instead,
             None => unknown_name::help(name, &existing),
@@ -230,8 +250,10 @@ impl Checker<'_, '_, '_> {
     /// Reports a method call on a number of unknown type, as Rust does.
     fn unknown_receiver(&mut self, receiver: &Expr, name: &str, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let is_integer = self.inference.is_integer(receiver.ty);
-        let suffix = if is_integer { "u32" } else { "f32" };
+        let has_integers = methods::find(Type::U32, name).is_some();
+        let suffix = if is_integer && has_integers { "u32" } else { "f32" };
         let help = match receiver.kind {
+            Kind::Integer(value) if !has_integers => format!("write `{value}.0_f32.{name}(…)`"),
             Kind::Float(value) => format!("write `{value:?}_{suffix}.{name}(…)`"),
             Kind::Integer(value) => format!("write `{value}_{suffix}.{name}(…)`"),
             _ => format!("give the variable its type: `let x: {suffix} = …;`"),

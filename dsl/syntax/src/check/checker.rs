@@ -33,6 +33,8 @@ pub(super) struct Checker<'e, 'r, 'p> {
     pub negated: Vec<(Type, SourceSpan)>,
     /// The variables of `let`s.
     pub lets: Vec<VariableId>,
+    /// Whether the function uses a name whose declaration has an error.
+    pub lacks_declaration: bool,
 }
 
 /// An integer literal.
@@ -60,6 +62,7 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             integers: Vec::new(),
             negated: Vec::new(),
             lets: Vec::new(),
+            lacks_declaration: false,
         }
     }
 
@@ -131,6 +134,12 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
         help: impl Into<String>,
     ) -> Expr {
         self.report.error(codes::UNSUPPORTED, &span, message, help);
+        Expr::error(span)
+    }
+
+    /// Returns the expression for a name that may be declared in an item with errors, which are reported there.
+    pub(super) fn without_declaration(&mut self, span: SourceSpan) -> Expr {
+        self.lacks_declaration = true;
         Expr::error(span)
     }
 

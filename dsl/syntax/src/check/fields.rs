@@ -9,7 +9,7 @@ use super::checker::Checker;
 use super::mismatch::quoted;
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
-use crate::{foreign_names, unknown_name};
+use crate::{foreign_names, methods, unknown_name};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -30,8 +30,9 @@ impl Checker<'_, '_, '_> {
             other => {
                 let message = format!("no field `{name}` on {}", quoted(self.inference.name(other)));
                 let help = match other {
-                    Type::Fragments => "select a fragment: `fragments[i].depth`, or `for f in fragments`",
-                    _ => "only fragments, uniforms and vectors have fields",
+                    Type::Fragments => "select a fragment: `fragments[i].depth`, or `for f in fragments`".to_owned(),
+                    other if methods::find(other, &name).is_some() => format!("it is a method: write `.{name}(…)`"),
+                    _ => "only fragments, uniforms and vectors have fields".to_owned(),
                 };
                 self.report.error(codes::UNKNOWN_FIELD, &name_span, message, help);
                 Expr::error(span)
@@ -41,6 +42,9 @@ impl Checker<'_, '_, '_> {
 
     fn attribute(&mut self, base: Expr, name: String, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let Some((_, ty)) = self.environment.attributes.iter().find(|(other, _)| *other == name) else {
+            if self.environment.incomplete.attributes {
+                return self.without_declaration(span);
+            }
             let existing: Vec<&str> = self.environment.attributes.iter().map(|(name, _)| name.as_str()).collect();
             let help = unknown_name::help(&name, &existing);
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("no attribute `{name}` on a fragment"), help);
@@ -52,6 +56,9 @@ impl Checker<'_, '_, '_> {
 
     fn uniform(&mut self, name: String, span: SourceSpan, name_span: &SourceSpan) -> Expr {
         let Some((_, ty)) = self.environment.uniforms.iter().find(|(other, _)| *other == name) else {
+            if self.environment.incomplete.uniforms {
+                return self.without_declaration(span);
+            }
             let existing: Vec<&str> = self.environment.uniforms.iter().map(|(name, _)| name.as_str()).collect();
             let help = match existing.is_empty() {
                 true => format!("declare it: `uniform {{ {name}: f32 }}`"),

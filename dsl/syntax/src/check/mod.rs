@@ -10,6 +10,7 @@ mod calls;
 mod checker;
 mod expressions;
 mod fields;
+mod given;
 mod literals;
 mod loops;
 mod mismatch;
@@ -30,7 +31,7 @@ use checker::Checker;
 
 pub(crate) use written_types::written_type;
 
-/// Checks one function; returns `None` if it has an error.
+/// Checks one function; returns `None` if it has an error, or uses a name whose declaration has one.
 pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut Report) -> Option<Function> {
     let before = report.count();
     let (expected, result) = signature(&raw, environment);
@@ -40,14 +41,15 @@ pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut
     let body = checker.body(&raw.body);
     checker.check_numbers();
     let unused = checker.unused();
-    let Checker { inference, variables, uses, .. } = checker;
+    let Checker { inference, variables, uses, lacks_declaration, .. } = checker;
     let name = raw.role.wgsl_name();
     let (span, rust) = (raw.span, raw.rust);
     let function = Function { name, span, rust, parameters, variables, result, body, uses, unused, inference };
-    if report.count() == before {
+    let is_complete = report.count() == before && !lacks_declaration;
+    if is_complete {
         fold::reject_overflow(&function, report);
     }
-    (report.count() == before).then_some(function)
+    (is_complete && report.count() == before).then_some(function)
 }
 
 /// Returns the types of the parameters and of the result.

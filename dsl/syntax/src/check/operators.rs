@@ -65,7 +65,7 @@ impl Checker<'_, '_, '_> {
                 Expr::new(Kind::Not(Box::new(inner)), ty, span)
             }
             _ => {
-                let help = "use the value itself: all values are copied";
+                let help = "use the value itself: all values are copied; for a power, write `x.powf(2.0)`";
                 self.unsupported(span, "references are not supported", help)
             }
         }
@@ -96,7 +96,10 @@ impl Checker<'_, '_, '_> {
         let ty = self.inference.resolve_or_default(ty);
         if matches!(ty, Type::U32 | Type::Usize) {
             let message = format!("cannot apply unary operator `-` to `{}`", ty.rust());
-            let help = "convert it: `-(x as i32)`, or subtract: `a.wrapping_sub(b)`";
+            let help = match ty {
+                Type::Usize => "count from the end: `fragments[fragments.len() - 1]`",
+                _ => "convert it: `-(x as i32)`, or subtract: `a.wrapping_sub(b)`",
+            };
             self.report.error(codes::TYPE_MISMATCH, span, message, help);
         }
     }
@@ -159,7 +162,7 @@ impl Checker<'_, '_, '_> {
         let (a, b) = (self.inference.resolve(left.ty), self.inference.resolve(right.ty));
         let comparison = !operator.is_arithmetic() && !operator.is_shift() && !operator.is_bitwise();
         let (span, help) = match (a, b) {
-            (Type::Vector(_), Type::Vector(_)) if comparison => {
+            (Type::Vector(_), _) | (_, Type::Vector(_)) if comparison => {
                 (span, "compare components, `a.x < b.x`, or lengths".to_string())
             }
             (Type::Vector(_), _) if self.inference.is_integer(b) && operator.is_arithmetic() => {
@@ -167,6 +170,16 @@ impl Checker<'_, '_, '_> {
             }
             (_, Type::Vector(_)) if self.inference.is_integer(a) && operator.is_arithmetic() => {
                 (&left.span, fix(&self.inference, left, Type::F32))
+            }
+            (Type::Vector(n), Type::Vector(m)) if operator.is_arithmetic() && n > m => {
+                (&left.span, fix(&self.inference, left, b))
+            }
+            (Type::Vector(_), Type::Vector(_)) if operator.is_arithmetic() => {
+                (&right.span, fix(&self.inference, right, a))
+            }
+            // Only an assignment has this: `number += vector`.
+            (_, Type::Vector(size)) if operator.is_arithmetic() && self.inference.is_float(a) => {
+                (span, format!("use a component, `.x`, or declare a vector: `let mut … = Vec{size}::ZERO;`"))
             }
             _ if self.is_number(a) && self.is_number(b) && !operator.is_shift() && !operator.is_bitwise() => {
                 // Point to the integer, which is the operand to convert.
@@ -176,6 +189,7 @@ impl Checker<'_, '_, '_> {
                     (&left.span, fix(&self.inference, left, b))
                 }
             }
+            (Type::F32, _) if operator == Operator::BitXor => (span, "for a power, write `x.powf(2.0)`".to_string()),
             _ if operator.is_bitwise() || operator.is_shift() => {
                 (span, "this operator applies to integers: `x.to_bits()`, or `x as u32`".to_string())
             }
@@ -206,6 +220,7 @@ impl Checker<'_, '_, '_> {
         let message = format!("cannot cast {} as `{}`", quoted(self.inference.name(source)), target.rust());
         let help = match (source, target) {
             (Type::Bool, Type::F32) => "write `if … { 1.0 } else { 0.0 }`".to_string(),
+            (_, Type::Bool) if self.inference.is_float(source) => "compare it: `x != 0.0`".to_string(),
             (_, Type::Bool) => "compare it: `x != 0`".to_string(),
             _ => fix(&self.inference, &inner, target),
         };

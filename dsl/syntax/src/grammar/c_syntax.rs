@@ -30,6 +30,27 @@ fn pattern(tokens: &[TokenTree]) -> Option<&'static str> {
         matches!(tokens.first(), Some(TokenTree::Punct(punct)) if punct.as_char() == character && punct.spacing() == Spacing::Joint)
             && is_punct(tokens.get(1), character)
     };
+    let generic =
+        ident(0).filter(|_| is_punct(tokens.get(1), '<') && ident(2).is_some() && is_punct(tokens.get(3), '>'));
+    if let Some(help) = generic.and_then(|name| foreign_names::generic_constructor(&name)) {
+        return Some(help);
+    }
+    match ident(0).as_deref() {
+        Some("and") => return Some("write `&&`"),
+        Some("or") => return Some("write `||`"),
+        Some("not") => return Some("write `!`"),
+        _ => {}
+    }
+    // `.5` after an operator.
+    let is_operator =
+        ['<', '>', '=', '+', '-', '*', '/', ','].iter().any(|operator| is_punct(tokens.first(), *operator));
+    if is_operator && is_punct(tokens.get(1), '.') && matches!(tokens.get(2), Some(TokenTree::Literal(_))) {
+        return Some("write a digit before the point: `0.5`");
+    }
+    // A keyword of Rust.
+    if ident(0).as_deref() == Some("mod") && parentheses {
+        return Some("write `x - y * (x / y).floor()` for `mod(x, y)`");
+    }
     if ident(0).as_deref() == Some("for") && parentheses {
         return Some("write `for i in 0..4 { … }`");
     }

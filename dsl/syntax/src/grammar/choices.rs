@@ -9,29 +9,51 @@ use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spa
 use proc_macro2::{Delimiter, Group, TokenTree};
 
 use super::cursor::Cursor;
-use super::recovery::end_of_item;
+use super::recovery::end_of_item_or;
 use crate::names;
 use crate::report::{FIRST, Report, Stop};
 
-const SHAPE: &str = "sync: interlock else spin_lock { limit: 4096 };";
+/// The form of a value.
+const VALUE_HELP: &str = "a value is a name, and its options are in braces: `sync: spin_lock { limit: 4096 };`";
 
-const OPTION_HELP: &str = "write `{ limit: 4096, order: front }`";
+/// The form of options.
+const OPTION_HELP: &str = "write each option as `name: value`, and separate them by commas";
 
 /// Parses `axis: value else value;`.
 pub(super) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
-    let axis = identifier(cursor, "an axis", report)?;
+    let axis = identifier(cursor, "an axis", VALUE_HELP, report)?;
     reject_items(&axis, report)?;
     cursor.take_punct(':');
     let mut alternatives: Vec<Alternative> = Vec::new();
     loop {
-        alternatives.push(alternative(cursor, report)?);
+        alternatives.push(alternative(&axis.value, cursor, report)?);
         if !cursor.take_keyword("else") {
             break;
         }
     }
     let choice = without_duplicates(Choice { axis, alternatives }, report);
-    end_of_item(cursor, SHAPE, report)?;
+    end_of_item_or(cursor, &help_after(&choice, cursor), report)?;
     Ok(choice)
+}
+
+/// Returns the help for what follows a choice in place of its `;`.
+fn help_after(choice: &Choice, cursor: &Cursor) -> String {
+    let last = choice.alternatives.last().map_or("", |alternative| alternative.value.value.as_str());
+    match (cursor.peek(), cursor.peek_second()) {
+        (Some(TokenTree::Group(group)), _) if group.delimiter() == Delimiter::Parenthesis => {
+            let is_file = group.stream().into_iter().all(|token| matches!(token, TokenTree::Literal(_)));
+            match is_file {
+                true => format!("a user file is WGSL: `{}: wgsl(\"file.wgsl\");`", choice.axis.value),
+                false => "options are in braces: `{ … }`".to_owned(),
+            }
+        }
+        (Some(TokenTree::Punct(punct)), Some(TokenTree::Ident(next))) => match punct.as_char() {
+            '-' => format!("names have `_` in place of `-`: `{last}_{next}`"),
+            ',' | '|' | '/' => format!("alternatives are separated by `else`: `{last} else {next}`"),
+            _ => "end the item with `;`".to_owned(),
+        },
+        _ => "end the item with `;`".to_owned(),
+    }
 }
 
 /// Returns a choice that a builder made, after the same checks of its names.
@@ -107,10 +129,25 @@ fn not_an_axis(name: &str) -> Option<&'static str> {
     }
 }
 
-fn alternative(cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
+/// Returns the help for a token that is no value.
+fn help_for_value(axis: &str, cursor: &Cursor) -> String {
+    let Some(TokenTree::Literal(literal)) = cursor.peek() else { return VALUE_HELP.to_owned() };
+    let text = literal.to_string();
+    match text.strip_prefix('"').and_then(|text| text.strip_suffix('"')) {
+        Some(path) if path.ends_with(".wgsl") => format!("write `{axis}: wgsl({text});`"),
+        Some(name) => format!("write the name without quotes: `{axis}: {name};`"),
+        None if axis == "k" => format!("write `keep {text};`"),
+        None => VALUE_HELP.to_owned(),
+    }
+}
+
+fn alternative(axis: &str, cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
     let value = match user_file(cursor, report)? {
         Some(file) => file,
-        None => identifier(cursor, "a value", report)?,
+        None => {
+            let help = help_for_value(axis, cursor);
+            identifier(cursor, "a value", &help, report)?
+        }
     };
     let options = match cursor.take_braces() {
         Some(group) => options(&group, report),
@@ -148,14 +185,14 @@ fn is_relative(path: &str) -> bool {
     is_plain && !Path::new(path).is_absolute() && !path.starts_with('/')
 }
 
-fn identifier(cursor: &mut Cursor, what: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
+fn identifier(cursor: &mut Cursor, what: &str, help: &str, report: &mut Report) -> Result<Spanned<String>, Stop> {
     match cursor.peek() {
         Some(TokenTree::Ident(name)) => {
             let name = names::written(name, report);
             cursor.take();
             Ok(names::identifier(&name, report))
         }
-        _ => Err(cursor.expected(what, format!("write `{SHAPE}`"), report)),
+        _ => Err(cursor.expected(what, help, report)),
     }
 }
 
@@ -174,9 +211,14 @@ fn options(group: &Group, report: &mut Report) -> Options {
 }
 
 fn option(cursor: &mut Cursor, report: &mut Report) -> Result<(Spanned<String>, Spanned<OptionValue>), Stop> {
-    let name = identifier(cursor, "an option", report)?;
+    let name = identifier(cursor, "an option", OPTION_HELP, report)?;
     if !cursor.take_punct(':') {
-        return Err(cursor.expected("`:`", OPTION_HELP, report));
+        let value = if cursor.at_punct('=') { cursor.peek_second() } else { cursor.peek() };
+        let help = match value {
+            Some(value @ (TokenTree::Literal(_) | TokenTree::Ident(_))) => format!("write `{}: {value}`", name.value),
+            _ => OPTION_HELP.to_owned(),
+        };
+        return Err(cursor.expected("`:`", help, report));
     }
     let span = cursor.source_span(report);
     let value = match cursor.peek() {
@@ -185,6 +227,9 @@ fn option(cursor: &mut Cursor, report: &mut Report) -> Result<(Spanned<String>, 
             let name = names::written(name, report);
             cursor.take();
             OptionValue::Name(names::identifier(&name, report).value)
+        }
+        _ if cursor.at_punct('-') => {
+            return Err(cursor.expected("a number or a name", "numbers of options are 0 or more", report));
         }
         _ => return Err(cursor.expected("a number or a name", OPTION_HELP, report)),
     };

@@ -24,6 +24,7 @@ pub(super) fn closure(
 ) -> Result<RawFunction, Stop> {
     let span = cursor.source_span(report);
     require_closure(cursor, &role, report)?;
+    reject_bare_let(cursor, report)?;
     let tokens = closure_tokens(cursor);
     let end = cursor.span();
     let closed = cursor.take_punct(';');
@@ -73,6 +74,19 @@ fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<
     Err(cursor.expected("a closure", help, report))
 }
 
+/// Rejects statements without braces: `|f| let x = …; …`. Moves to the next item.
+fn reject_bare_let(cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
+    let after = cursor.after_parameters();
+    if !matches!(after, Some(TokenTree::Ident(keyword)) if keyword == "let") {
+        return Ok(());
+    }
+    let span = after.map_or_else(Span::call_site, TokenTree::span);
+    let help = "enclose statements in braces: `|f| { let x = …; … }`";
+    report.error(codes::UNEXPECTED_TOKEN, &report.at(span), "expected an expression, found `let`", help);
+    while !cursor.is_done() && cursor.take().is_some() && !starts_item(cursor) {}
+    Err(Stop)
+}
+
 /// Parses a closure; returns it, and whether its body is a block.
 fn parse_closure(
     tokens: &TokenStream,
@@ -88,7 +102,12 @@ fn parse_closure(
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) => Some(*ty),
     };
-    let parameters = parsed.inputs.into_iter().filter_map(|pattern| parameter(pattern, report)).collect();
+    let count = parsed.inputs.len();
+    let parameters: Vec<_> = parsed.inputs.into_iter().filter_map(|pattern| parameter(pattern, report)).collect();
+    if parameters.len() < count {
+        // The names of a pattern are not known.
+        return Err(Stop);
+    }
     let rust = token_limits::spaced(tokens);
     let name_span = span.clone();
     Ok((RawFunction { role, name_span, span, rust, parameters, output, body: *parsed.body }, is_block))
@@ -220,6 +239,8 @@ fn syntax_help(message: &str) -> &'static str {
         "end the statement with `;`"
     } else if message.contains("unexpected end of input") {
         "add the missing code before this position"
+    } else if message.contains("expected `:`") {
+        "give each parameter its type, after its name: `x: f32`"
     } else {
         "functions use Rust syntax: check this token and the one before it"
     }

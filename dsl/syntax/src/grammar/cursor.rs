@@ -38,6 +38,19 @@ impl Cursor {
         self.tokens.get(self.next + 1)
     }
 
+    /// Returns the second token after the next without taking it.
+    pub(super) fn peek_third(&self) -> Option<&TokenTree> {
+        self.tokens.get(self.next + 2)
+    }
+
+    /// Returns the token after the second `|`, if a closure begins here.
+    pub(super) fn after_parameters(&self) -> Option<&TokenTree> {
+        let rest = self.tokens.get(self.next..)?;
+        let mut bars = rest.iter().enumerate().filter(|(_, token)| is_punct(Some(token), '|'));
+        bars.next()?;
+        rest.get(bars.next()?.0 + 1)
+    }
+
     /// Returns the number of tokens taken.
     pub(super) fn position(&self) -> usize {
         self.next

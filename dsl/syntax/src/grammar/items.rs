@@ -2,8 +2,8 @@
 //!
 //! Input: the tokens inside the buffer's braces. Output: [`Items`], whose closures are not type-checked.
 
-use fragbuf_model::{SourceSpan, codes, nearest_name};
-use proc_macro2::TokenTree;
+use fragbuf_model::{Incomplete, SourceSpan, codes, nearest_name};
+use proc_macro2::{Delimiter, TokenTree};
 
 use super::cursor::{Cursor, is_punct};
 use super::recovery::{end_of_item, recover, starts_item};
@@ -15,6 +15,26 @@ use crate::report::{Report, Stop};
 /// The keywords that start an item.
 const KEYWORDS: [&str; 6] = ["fragment", "uniform", "keep", "where", "resolve", "fn"];
 
+/// Words that users write for items, and how the language has them.
+const SYNONYMS: &[(&[&str], &str)] = &[
+    (
+        &["criterion", "least", "order", "priority", "sort_by"],
+        "the criterion follows `keep`: `keep 8 least |f| f.depth;`",
+    ),
+    (&["constraint", "filter", "if", "require", "discard"], "write `where |f| f.depth > 0.5;`"),
+    (&["effect", "shade", "color", "output", "composite", "blend"], "the effect is `resolve |fragments| { … }`"),
+    (&["attributes", "attribute", "in", "struct"], "write `fragment { color: rgba8, depth: f32 }`"),
+    (&["parameters", "params", "constants", "cbuffer"], "write `uniform { cut: f32 }`"),
+    (&["function", "def", "func", "void"], "write `fn name(x: f32) -> f32 { … }`"),
+];
+
+/// Whether a function of another language is next: `float name(…) { … }`.
+fn is_c_function(cursor: &Cursor) -> bool {
+    let is_parenthesis =
+        |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis);
+    matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) && cursor.peek_third().is_some_and(is_parenthesis)
+}
+
 /// Parses all items.
 pub(super) fn items(cursor: &mut Cursor, report: &mut Report) -> Items {
     let mut items = Items::default();
@@ -22,12 +42,33 @@ pub(super) fn items(cursor: &mut Cursor, report: &mut Report) -> Items {
         if cursor.take_punct(';') {
             continue;
         }
-        let before = cursor.position();
+        let (before, part) = (cursor.position(), part_of_item(cursor));
         if item(&mut items, cursor, report).is_err() {
+            items.incomplete = items.incomplete.or(part);
             recover(cursor, before);
         }
     }
     items
+}
+
+/// Returns the part of the description that the next item gives. An unknown item with braces may be a block, and others a choice.
+fn part_of_item(cursor: &Cursor) -> Incomplete {
+    let none = Incomplete::default();
+    let Some(TokenTree::Ident(keyword)) = cursor.peek() else { return Incomplete::ALL };
+    match nearest_name(&keyword.to_string(), &KEYWORDS) {
+        Some("resolve") => Incomplete { resolve: true, ..none },
+        _ if is_punct(cursor.peek_second(), ':') => Incomplete { choices: true, ..none },
+        Some("fragment") => Incomplete { attributes: true, ..none },
+        Some("uniform") => Incomplete { uniforms: true, ..none },
+        Some("keep") => Incomplete { keep: true, ..none },
+        Some("where") => none,
+        Some("fn") => Incomplete { helpers: true, ..none },
+        _ if is_c_function(cursor) => Incomplete { helpers: true, ..none },
+        _ if matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
+            Incomplete { attributes: true, uniforms: true, ..none }
+        }
+        _ => Incomplete { keep: true, choices: true, ..none },
+    }
 }
 
 fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
@@ -43,16 +84,21 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
     }
     match keyword.as_str() {
         "fragment" | "uniform" if !matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
+            items.incomplete = items.incomplete.or(part_of_item(cursor));
             without_braces(&keyword, cursor, report);
         }
         "fragment" => {
             cursor.take();
+            let errors = report.count();
             let rows = blocks::declarations(cursor, "fragment { color: rgba8, depth: f32 }", report)?;
+            items.incomplete.attributes |= report.count() > errors;
             items.add_attributes(rows, &span, report);
         }
         "uniform" => {
             cursor.take();
+            let errors = report.count();
             let rows = blocks::declarations(cursor, "uniform { cut: f32 }", report)?;
+            items.incomplete.uniforms |= report.count() > errors;
             items.add_uniforms(rows, &span, report);
         }
         "keep" => keep(items, cursor, span, report)?,
@@ -101,7 +147,18 @@ fn keep(items: &mut Items, cursor: &mut Cursor, span: SourceSpan, report: &mut R
         if cursor.at_keyword("greatest") || cursor.at_keyword("most") {
             return Err(cursor.expected("`least`", "negate the value instead: `keep 8 least |f| -f.depth;`", report));
         }
-        end_of_item(cursor, "keep 8;` or, to choose by a value, `keep 8 least |f| …;", report)?;
+        let is_least = |word: &TokenTree| nearest_name(&word.to_string(), &["least"]).is_some();
+        if matches!(cursor.peek(), Some(word @ TokenTree::Ident(_)) if is_least(word)) {
+            return Err(cursor.expected("`least` or `;`", "did you mean `least`?", report));
+        }
+        if cursor.at_punct('|') {
+            return Err(cursor.expected(
+                "`least`",
+                "write `least` before the criterion: `keep 8 least |f| …;`",
+                report,
+            ));
+        }
+        end_of_item(cursor, report)?;
         None
     };
     items.add_keep(count, criterion, span, report);
@@ -117,15 +174,19 @@ fn unknown_item(cursor: &Cursor, keyword: Option<&str>, report: &mut Report) -> 
         Some("buffer") => "buffers cannot be nested".to_string(),
         _ => format!("expected an item, found {}", cursor.describe()),
     };
-    let help = match keyword.and_then(|keyword| nearest_name(keyword, &KEYWORDS)) {
+    let synonym = keyword.and_then(|keyword| SYNONYMS.iter().find(|(words, _)| words.contains(&keyword)));
+    let help = match (keyword.and_then(|keyword| nearest_name(keyword, &KEYWORDS)), synonym) {
+        _ if cursor.at_punct(',') => "remove it: items are not separated by commas".to_string(),
+        _ if is_c_function(cursor) => "write a function as in Rust: `fn name(x: f32) -> f32 { … }`".to_string(),
         _ if matches!(keyword, Some("pub" | "unsafe" | "const" | "async" | "extern")) => {
             "helper functions start with `fn`: remove this keyword".to_string()
         }
-        Some(nearest) => format!("did you mean `{nearest}`?"),
-        None if is_punct(cursor.peek_second(), '=') || matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) => {
+        (Some(nearest), _) => format!("did you mean `{nearest}`?"),
+        (None, Some((_, help))) => (*help).to_string(),
+        _ if is_punct(cursor.peek_second(), '=') || matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) => {
             format!("a choice has a colon: `{}: …;`", keyword.unwrap_or("axis"))
         }
-        None => "items start with `fragment`, `uniform`, `keep`, `where`, `resolve`, `fn`, or `axis:`".to_string(),
+        _ => "items start with `fragment`, `uniform`, `keep`, `where`, `resolve`, `fn`, or `axis:`".to_string(),
     };
     report.error(codes::UNEXPECTED_TOKEN, &cursor.source_span(report), message, help);
     Stop

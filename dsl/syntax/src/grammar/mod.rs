@@ -15,12 +15,12 @@ mod recovery;
 pub(crate) use choices::from_builder as choice_from_builder;
 pub(crate) use closures::{whole_closure, whole_helper};
 
-use fragbuf_model::{Diagnostic, SourceSpan, Spanned, codes};
-use proc_macro2::{Group, TokenStream};
+use fragbuf_model::{Diagnostic, SourceSpan, Spanned, codes, nearest_name};
+use proc_macro2::{Group, TokenStream, TokenTree};
 
 use crate::items::RawDescription;
 use crate::names;
-use crate::report::{FIRST, Report};
+use crate::report::{FIRST, Report, Stop};
 use cursor::Cursor;
 
 /// Parses a whole description: `buffer Name from preset { … }`.
@@ -31,8 +31,12 @@ pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<Ra
     cursor.take_keyword("buffer");
     let name = name_of_buffer(&mut cursor, report);
     let preset = preset(&mut cursor, report);
+    let errors = report.count();
     let body = body(&mut cursor, report)?;
-    let items = items::items(&mut Cursor::inside(&body), report);
+    let is_header_invalid = preset.is_err() || report.count() > errors;
+    let mut items = items::items(&mut Cursor::inside(&body), report);
+    items.incomplete.preset = is_header_invalid;
+    let preset = preset.unwrap_or_default();
     after_buffer(&cursor, &start, report);
     Some(RawDescription { name, preset, items })
 }
@@ -44,6 +48,20 @@ fn find_buffer(cursor: &mut Cursor, report: &mut Report) -> Option<()> {
         return Some(());
     }
     let (span, found) = (cursor.source_span(report), cursor.describe());
+    if let Some(TokenTree::Ident(keyword)) = cursor.peek()
+        && matches!(cursor.peek_second(), Some(TokenTree::Ident(_)))
+        && nearest_name(&keyword.to_string(), &["buffer"]).is_some()
+    {
+        // The rest is checked as if the keyword were right.
+        report.error(
+            codes::MISSING_BUFFER,
+            &span,
+            format!("expected `buffer`, found {found}"),
+            "did you mean `buffer`?",
+        );
+        cursor.take();
+        return Some(());
+    }
     while !cursor.is_done() && !cursor.at_keyword("buffer") {
         cursor.take();
     }
@@ -67,19 +85,62 @@ fn name_of_buffer(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
     names::buffer(&name, report)
 }
 
-fn preset(cursor: &mut Cursor, report: &mut Report) -> Option<Spanned<String>> {
-    if !cursor.take_keyword("from") {
-        return None;
+/// Parses `from technique`. `Err`: it has an error and is not known.
+fn preset(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<String>>, Stop> {
+    if !cursor.take_keyword("from") && !without_from(cursor, report) {
+        return Ok(None);
     }
     let span = cursor.source_span(report);
     match cursor.take_identifier() {
-        Some(name) => Some(Spanned::new(name.to_string(), span)),
+        Some(name) => Ok(Some(Spanned::new(hyphenated(name.to_string(), cursor, report), span))),
         None => {
+            if let Some(TokenTree::Literal(quoted)) = cursor.peek() {
+                let name = quoted.to_string().trim_matches('"').to_owned();
+                let message = format!("expected a technique name after `from`, found {}", cursor.describe());
+                let help = format!("write the name without quotes: `from {name}`");
+                report.error(codes::UNEXPECTED_TOKEN, &span, message, help);
+                cursor.take();
+                return Ok(Some(Spanned::new(name, span)));
+            }
             let message = format!("expected a technique name after `from`, found {}", cursor.describe());
             report.error(codes::UNEXPECTED_TOKEN, &span, message, "for example `from kplus_array`");
-            None
+            Err(Stop)
         }
     }
+}
+
+/// Takes the rest of a name that is written with `-` in place of `_`, which is an error, and returns the whole name.
+fn hyphenated(mut name: String, cursor: &mut Cursor, report: &mut Report) -> String {
+    let span = cursor.source_span(report);
+    while cursor.at_punct('-') && matches!(cursor.peek_second(), Some(TokenTree::Ident(_))) {
+        cursor.take();
+        name.extend(cursor.take_identifier().map(|part| format!("_{part}")));
+    }
+    if name.contains('_') && cursor.source_span(report) != span {
+        let help = format!("names have `_` in place of `-`: write `from {name}`");
+        report.error(codes::UNEXPECTED_TOKEN, &span, "expected `{`, found `-`", help);
+    }
+    name
+}
+
+/// Reports a technique without `from`, or after another word. Moves to the technique, and returns whether there is one.
+fn without_from(cursor: &mut Cursor, report: &mut Report) -> bool {
+    let (span, found) = (cursor.source_span(report), cursor.describe());
+    let Some(TokenTree::Ident(word)) = cursor.peek() else { return false };
+    let word = word.to_string();
+    let technique = match cursor.peek_second() {
+        Some(TokenTree::Ident(technique)) => Some(technique.to_string()),
+        _ => None,
+    };
+    let help = match &technique {
+        Some(_) if nearest_name(&word, &["from"]).is_some() => "did you mean `from`?".to_owned(),
+        technique => format!("write `from {}`", technique.as_ref().unwrap_or(&word)),
+    };
+    if technique.is_some() {
+        cursor.take();
+    }
+    report.error(codes::UNEXPECTED_TOKEN, &span, format!("expected `from` or `{{`, found {found}"), help);
+    true
 }
 
 fn body(cursor: &mut Cursor, report: &mut Report) -> Option<Group> {

@@ -8,11 +8,16 @@ use super::cursor::{Cursor, is_punct};
 use crate::report::{Report, Stop};
 
 /// Takes the `;` after an item. If it is missing and the next item starts here, parsing continues there.
-pub(super) fn end_of_item(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<(), Stop> {
+pub(super) fn end_of_item(cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
+    end_of_item_or(cursor, "end the item with `;`", report)
+}
+
+/// Takes the `;` after an item like [`end_of_item`], with the help for what is there instead.
+pub(super) fn end_of_item_or(cursor: &mut Cursor, help: &str, report: &mut Report) -> Result<(), Stop> {
     if cursor.take_punct(';') {
         return Ok(());
     }
-    cursor.expected("`;`", format!("end the item with `;`: `{shape}`"), report);
+    cursor.expected("`;`", help, report);
     if starts_item(cursor) { Ok(()) } else { Err(Stop) }
 }
 

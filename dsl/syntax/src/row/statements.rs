@@ -48,6 +48,8 @@ pub(super) struct Statements {
     pub(super) user_row: UserRow,
     /// The buffers that lines declare, including those with errors.
     pub(super) declared: Vec<String>,
+    /// Whether a line is no statement: it may declare anything.
+    has_unknown_line: bool,
     /// The buffers that lines refer to.
     pub(super) used: Vec<Spanned<String>>,
     /// The statements and names that a row may give only once, with the span of each.
@@ -67,6 +69,7 @@ impl Statements {
         Statements {
             user_row,
             declared: Vec::new(),
+            has_unknown_line: false,
             used: Vec::new(),
             given: Vec::new(),
             reader: Reader { diagnostics, item_spans: Vec::new() },
@@ -75,7 +78,8 @@ impl Statements {
 
     /// Returns the row, or every error.
     pub(super) fn finish(mut self) -> Result<UserRow, Diagnostics> {
-        for used in self.used.iter().filter(|used| !self.declared.contains(&used.value)) {
+        let is_missing = |used: &&Spanned<String>| !self.has_unknown_line && !self.declared.contains(&used.value);
+        for used in self.used.iter().filter(is_missing) {
             let message = format!("cannot find buffer `{}` in this row", used.value);
             let help = match self.declared.as_slice() {
                 [] => format!("declare it: `//: buffer {}[pixel < pixels]: word`", used.value),
@@ -124,6 +128,7 @@ impl Statements {
             // The first line of a row without an axis: `axis` reported it.
             _ if row.axis.is_empty() && line.span() == self.user_row.spans.row => return Err(Stop),
             unknown => {
+                self.has_unknown_line = true;
                 let message = format!("expected a statement, found `{unknown}`");
                 return self.reader.stop(
                     codes::INVALID_ROW,

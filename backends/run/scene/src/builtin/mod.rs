@@ -52,15 +52,21 @@ impl FromStr for BuiltinScene {
         };
         let mut values: Vec<u32> = row.parameters.iter().map(|parameter| parameter.default).collect();
         for part in parts {
-            let (key, value) = part.split_once('=').unwrap_or((part, ""));
+            let (key, value) =
+                part.split_once('=').map_or((part.trim(), None), |(key, value)| (key.trim(), Some(value)));
             let position = row.parameters.iter().position(|parameter| parameter.name == key);
             let Some((index, parameter)) = position.and_then(|index| Some((index, row.parameters.get(index)?))) else {
                 return Err(Error::Unknown(format!("`builtin:{name}` has no `{key}`: {}", parameter_list(row))));
             };
             let (least, greatest) = parameter.range;
-            let value = value.parse().ok().filter(|value| (least..=greatest).contains(value));
-            let value =
-                value.ok_or_else(|| Error::Unknown(format!("`{part}`: `{key}` must be from {least} to {greatest}")))?;
+            let parsed = value.and_then(|value| value.trim().parse().ok());
+            let Some(value) = parsed.filter(|value| (least..=greatest).contains(value)) else {
+                let given = value.map_or("no value".to_owned(), |value| format!("`{value}`"));
+                let default = parameter.default;
+                return Err(Error::Unknown(format!(
+                    "`builtin:{name}`: `{key}` has {given}: write a whole number from {least} to {greatest}, as `{key}={default}`"
+                )));
+            };
             if let Some(slot) = values.get_mut(index) {
                 *slot = value;
             }

@@ -12,7 +12,7 @@ use super::accessor::{Elements, Types};
 use super::primitive::Reader;
 use crate::attribute::{AttributeRequest, AvailableAttribute};
 use crate::error::FileError;
-use crate::warnings::WarningKind;
+use crate::warnings::{Message, WarningKind};
 
 /// The greatest number of attributes of a model that an error lists.
 const MAX_LISTED: usize = 256;
@@ -42,8 +42,8 @@ impl Values<'_> {
     }
 }
 
-/// Checks that a primitive of the model has each requested attribute.
-pub(super) fn check(root: &Root, attributes: &[AttributeRequest]) -> Result<(), FileError> {
+/// Returns the requests without those that are optional and that no primitive of the model has. `Err`: no primitive has one of the others.
+pub(super) fn existing(root: &Root, attributes: &[AttributeRequest]) -> Result<Vec<AttributeRequest>, FileError> {
     let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let is_missing = |request: &&AttributeRequest| {
         !primitives().filter_map(|primitive| find(primitive, request)).any(|(semantic, accessor)| {
@@ -51,7 +51,9 @@ pub(super) fn check(root: &Root, attributes: &[AttributeRequest]) -> Result<(), 
             matches!(dimensions, Some(Checked::Valid(found)) if allowed(request, &semantic).contains(found))
         })
     };
-    let Some(request) = attributes.iter().find(is_missing) else { return Ok(()) };
+    let Some(request) = attributes.iter().find(|request| !request.is_optional && is_missing(request)) else {
+        return Ok(attributes.iter().filter(|request| !is_missing(request)).cloned().collect());
+    };
     let mut available = Vec::new();
     for (semantic, accessor) in primitives().flat_map(|primitive| &primitive.attributes).take(MAX_LISTED) {
         let Checked::Valid(semantic) = semantic else { continue };
@@ -81,7 +83,8 @@ impl<'a> Reader<'a> {
             let accessor = found.and_then(|(semantic, _)| Some((primitive.get(&semantic)?, semantic)));
             let Some((accessor, semantic)) = accessor else {
                 let name = &request.name;
-                let message = || format!("primitive {number} of mesh {mesh} has no `{name}`: 0 is used");
+                let text = || format!("primitive {number} of mesh {mesh} has no `{name}`");
+                let message = || Message::new(text(), "0 is used");
                 self.warnings
                     .add(WarningKind::MissingAttribute, name, || (self.text.position("meshes", mesh), message()));
                 return Ok(Values { request, elements: None });

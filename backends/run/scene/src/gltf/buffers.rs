@@ -10,6 +10,7 @@ use super::locate::Text;
 use crate::error::{Error, FileError};
 use crate::file;
 use crate::limits::Budget;
+use crate::text::quoted;
 
 /// Returns the bytes of every buffer. `blob` is the binary chunk of a GLB, which is the first buffer.
 pub(super) fn read(
@@ -38,10 +39,21 @@ pub(super) fn read(
                     budget.take(length, 1, &format!("buffer {index}")).map_err(|error| error.in_file(&file))?;
                     data_of(data).map_err(error_at)?
                 }
+                None if uri.contains("://") => {
+                    let message =
+                        format!("{} is not downloaded: save it beside the model, and name that file", quoted(uri));
+                    return Err(error_at(message));
+                }
                 None => {
                     let name = String::from_utf8(percent_decoded(uri));
                     let name = name.map_err(|_| error_at("its URI is not UTF-8 after decoding".to_owned()))?;
-                    file::read(&file::beside(folder, &name).map_err(located)?, budget)?
+                    file::read(&file::beside(folder, &name).map_err(located)?, budget).map_err(|error| match error {
+                        Error::Unreadable { file: name, reason } => Error::Unreadable {
+                            file: name,
+                            reason: format!("{reason}: it is buffer {index} of {file}"),
+                        },
+                        other => other,
+                    })?
                 }
             },
         };

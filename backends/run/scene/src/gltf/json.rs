@@ -6,6 +6,7 @@
 use super::locate::{GLB_HEADER, Text};
 use crate::error::{FileError, FilePosition};
 use crate::limits::Budget;
+use crate::text::foreign_message;
 
 /// The bytes of a JSON object once it is parsed, at most: the largest structs of the format, in a list that has doubled.
 const OBJECT: u64 = 1024;
@@ -33,6 +34,15 @@ pub(super) fn take(bytes: &[u8], budget: &Budget) -> Result<(), FileError> {
     let json = Text::of(bytes).json();
     budget.take(cost(json), 1, "the parsed JSON")?;
     budget.take((bytes.len() - json.len()) as u64, 1, "the binary chunk")
+}
+
+/// Returns the error about JSON that is not a model. The line is the position, so the message has the column alone.
+pub(super) fn invalid(error: &gltf::json::Error) -> FileError {
+    let message = foreign_message(error);
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let message = message.strip_suffix(&place).unwrap_or(&message);
+    let what = if error.is_data() { "not a model of glTF 2" } else { "invalid JSON" };
+    FileError::line(error.line().max(1), format!("column {}: {what}: {message}", error.column()))
 }
 
 /// Returns an upper bound on the memory of parsed JSON.

@@ -10,7 +10,7 @@ use super::locate::Text;
 use crate::error::FileError;
 use crate::limits::Budget;
 use crate::text::quoted;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// Extensions that change the image and are not read, and what is drawn without them.
 const EXTENSIONS: [(&str, &str); 3] = [
@@ -21,21 +21,22 @@ const EXTENSIONS: [(&str, &str); 3] = [
 
 /// Adds warnings about parts that change the image and are not read.
 pub(super) fn warn(root: &Root, text: Text<'_>, warnings: FileWarnings<'_>) {
-    let warn = |list: &str, number: usize, message: String| {
+    let warn = |list: &str, number: usize, message: Message| {
         warnings.add(WarningKind::NotRead, list, || (text.position(list, number), message));
     };
     for (number, material) in root.materials.iter().enumerate() {
         let glossiness = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
         let base = &material.pbr_metallic_roughness.base_color_texture;
         if base.is_some() || glossiness.is_some_and(|glossiness| glossiness.diffuse_texture.is_some()) {
-            let message = "textures are not read: the factor of its base colour is used without them";
-            warn("materials", number, format!("material {number}: {message}"));
+            let text = format!("material {number}: textures are not read");
+            warn("materials", number, Message::new(text, "the factor of its base colour is used without them"));
         }
     }
     for (number, extension) in root.extensions_used.iter().enumerate() {
         if let Some((_, instead)) = EXTENSIONS.iter().find(|(name, _)| name == extension) {
             warnings.add(WarningKind::NotRead, extension, || {
-                (text.position("extensionsUsed", number), format!("`{extension}` is not read: {instead}"))
+                let message = Message::new(format!("`{extension}` is not read"), *instead);
+                (text.position("extensionsUsed", number), message)
             });
         }
     }
@@ -43,7 +44,10 @@ pub(super) fn warn(root: &Root, text: Text<'_>, warnings: FileWarnings<'_>) {
         warn(
             "nodes",
             number,
-            format!("node {number}: the joints of skins are not read: its mesh is drawn in its own pose"),
+            Message::new(
+                format!("node {number}: the joints of skins are not read"),
+                "its mesh is drawn in its own pose",
+            ),
         );
     }
 }

@@ -26,7 +26,7 @@ use crate::error::{Error, FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
 use crate::model::ModelObject;
 use crate::text::{foreign_message, without_mark};
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 use locate::Text;
 use primitive::Reader;
 
@@ -37,17 +37,19 @@ pub(crate) fn parse(
     path: &Path,
     (color, requests): ([f32; 4], &[AttributeRequest]),
     (budget, warnings): (&Budget, FileWarnings<'_>),
-) -> Result<Vec<ModelObject>, Error> {
+) -> Result<(Vec<ModelObject>, Vec<AttributeRequest>), Error> {
     let (file, bytes) = (path.display().to_string(), without_mark(bytes));
     let text = Text::of(bytes);
     let located = |error: FileError| text.located(error).in_file(&file);
     let mut model = document(bytes, budget).map_err(located)?;
     missing::warn(model.as_json(), text, warnings);
-    attributes::check(model.as_json(), requests).map_err(located)?;
+    let requests = attributes::existing(model.as_json(), requests).map_err(located)?;
     let blob = model.blob.take();
     let buffers = buffers::read(&model, blob, (path, text), budget)?;
-    let reader = Reader { buffers: &buffers, root: model.as_json(), color, requests, text, budget, warnings };
-    objects(&model, &reader).map_err(located)
+    let reader =
+        Reader { buffers: &buffers, root: model.as_json(), color, requests: &requests, text, budget, warnings };
+    let objects = objects(&model, &reader).map_err(located)?;
+    Ok((objects, requests))
 }
 
 /// Parses and validates the JSON.
@@ -58,11 +60,16 @@ fn document(bytes: &[u8], budget: &Budget) -> Result<Gltf, FileError> {
         Err(gltf::Error::Deserialize(error)) => match missing::repaired(bytes, &error, budget)? {
             Some(model) => model,
             None => {
-                return Err(FileError::Malformed(FilePosition::Line(error.line()), foreign_message(&error)));
+                return Err(json::invalid(&error));
             }
         },
         // The others are about the chunks of a GLB, which follow its header.
-        parsed => parsed.map_err(|error| FileError::Malformed(FilePosition::Byte(12), foreign_message(&error)))?,
+        parsed => parsed.map_err(|error| {
+            FileError::Malformed(
+                FilePosition::Byte(12),
+                format!("the chunks of the GLB are invalid: {}", foreign_message(&error)),
+            )
+        })?,
     };
     validate::validate(model.as_json())?;
     Ok(model)
@@ -77,8 +84,8 @@ fn roots<'a>(model: &'a Gltf, reader: &Reader<'_>) -> (Vec<Node<'a>>, String) {
         return (nodes, name);
     }
     let message = || match scene.is_some() {
-        true => format!("{name} has no nodes: all nodes of the file are drawn"),
-        false => "the file has no scene: all its nodes are drawn".to_owned(),
+        true => Message::new(format!("{name} has no nodes"), "all nodes of the file are drawn"),
+        false => Message::new("the file has no scene", "all its nodes are drawn"),
     };
     let position = || scene.as_ref().map_or(FilePosition::Whole, |scene| reader.text.position("scenes", scene.index()));
     reader.warnings.add(WarningKind::MissingScene, "", || (position(), message()));

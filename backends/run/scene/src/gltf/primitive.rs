@@ -14,7 +14,7 @@ use crate::error::FileError;
 use crate::limits::Budget;
 use crate::model::{ModelObject, normal};
 use crate::text::MAX_NUMBER;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 const POSITIONS: Types = Types {
     dimensions: &[Dimensions::Vec3],
@@ -163,8 +163,8 @@ impl Reader<'_> {
             }
             let given = normals.as_ref().map_or(DVec3::ZERO, |normals| vector(normals, index));
             if !given.is_finite() {
-                let message =
-                    || format!("primitive {}: normal {index} is not finite: it is computed", primitive.index());
+                let text = || format!("primitive {}: normal {index} is not finite", primitive.index());
+                let message = || Message::new(text(), "it is computed");
                 self.warnings.add(WarningKind::InvalidNormal, "", || (self.text.position("meshes", mesh), message()));
             }
             // A transform without an inverse has no normals, either.

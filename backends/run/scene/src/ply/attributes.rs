@@ -1,15 +1,34 @@
 //! Finds the properties of vertices that are the components of requested attributes.
 //!
 //! An attribute with one component is the property of its name. One with several is a property per component, with the name and an ending:
-//! `heat_x heat_y`, `heat_0 heat_1` or `heat_r heat_g`. Lists are not attributes.
+//! `heat_x heat_y`, `heat_0 heat_1` or `heat_r heat_g`, each also without the `_`. Some names have other properties: `position` is `x y z`,
+//! and `uv` is `u v` or `s t`. Lists are not attributes.
 
 use super::header::Element;
 use crate::attribute::{AttributeRequest, AvailableAttribute, MAX_COMPONENTS};
 use crate::error::FileError;
 
 /// The endings of the names of components.
-const ENDINGS: [[&str; MAX_COMPONENTS]; 3] =
-    [["_x", "_y", "_z", "_w"], ["_0", "_1", "_2", "_3"], ["_r", "_g", "_b", "_a"]];
+const ENDINGS: [[&str; MAX_COMPONENTS]; 6] = [
+    ["_x", "_y", "_z", "_w"],
+    ["_0", "_1", "_2", "_3"],
+    ["_r", "_g", "_b", "_a"],
+    ["x", "y", "z", "w"],
+    ["0", "1", "2", "3"],
+    ["r", "g", "b", "a"],
+];
+
+/// Names of attributes, and the properties that writers of PLY use for them.
+const USUAL: [(&[&str], &[&str]); 6] = [
+    (&["position", "pos"], &["x", "y", "z"]),
+    (&["normal"], &["nx", "ny", "nz"]),
+    (UV, &["u", "v"]),
+    (UV, &["s", "t"]),
+    (UV, &["texture_u", "texture_v"]),
+    (UV, &["texture_s", "texture_t"]),
+];
+
+const UV: &[&str] = &["uv", "st", "texcoord", "texcoord_0"];
 
 /// The greatest number of properties that an error lists.
 const MAX_LISTED: usize = 256;
@@ -38,15 +57,37 @@ pub(super) fn find(element: &Element, attributes: &[AttributeRequest]) -> Result
     Ok(found)
 }
 
+/// Returns the requests without those that are optional and that no element has.
+pub(super) fn existing<'a>(
+    elements: impl Iterator<Item = &'a Element>,
+    attributes: &[AttributeRequest],
+) -> Vec<AttributeRequest> {
+    let elements: Vec<&Element> = elements.collect();
+    let has = |request: &&AttributeRequest| elements.iter().all(|element| properties(element, request).is_some());
+    attributes.iter().filter(|request| !request.is_optional || has(request)).cloned().collect()
+}
+
 /// Returns the indices of the properties of an attribute.
 fn properties(element: &Element, request: &AttributeRequest) -> Option<Vec<usize>> {
     match request.components {
         1 => Some(vec![property(element, &request.name, "")?]),
-        count @ 2..=MAX_COMPONENTS => ENDINGS.iter().find_map(|endings| {
-            endings.iter().take(count).map(|ending| property(element, &request.name, ending)).collect()
-        }),
+        count @ 2..=MAX_COMPONENTS => ENDINGS
+            .iter()
+            .find_map(|endings| {
+                endings.iter().take(count).map(|ending| property(element, &request.name, ending)).collect()
+            })
+            .or_else(|| usual(element, &request.name, count)),
         _ => None,
     }
+}
+
+/// Returns the indices of the usual properties of an attribute of this name.
+fn usual(element: &Element, name: &str, count: usize) -> Option<Vec<usize>> {
+    let rows = USUAL.iter().filter(|(names, properties)| {
+        properties.len() == count && names.iter().any(|other| other.eq_ignore_ascii_case(name))
+    });
+    rows.into_iter()
+        .find_map(|(_, properties)| properties.iter().map(|property| self::property(element, property, "")).collect())
 }
 
 /// Returns the index of the property `name` with an ending: the one with equal letters, or else one in another case.
@@ -75,10 +116,18 @@ fn available(element: &Element) -> Vec<AvailableAttribute> {
             let Some(name) = endings.first().and_then(|ending| property.name.strip_suffix(ending)) else { continue };
             let components = endings.iter().take_while(|ending| self::property(element, name, ending).is_some());
             let components = components.count();
-            if !name.is_empty() && components > 1 {
-                found.push(AvailableAttribute::new(name, components));
+            let attribute = AvailableAttribute::new(name, components);
+            // `nx ny nz` are the normal.
+            let is_name = !name.is_empty() && !name.ends_with('_');
+            if is_name && slot.is_none() && components > 1 && !found.contains(&attribute) {
+                found.push(attribute);
             }
         }
+    }
+    for (names, properties) in USUAL {
+        let has_all = properties.iter().all(|property| self::property(element, property, "").is_some());
+        let attribute = names.first().map(|name| AvailableAttribute::new(name, properties.len()));
+        found.extend(attribute.filter(|attribute| has_all && !found.contains(attribute)));
     }
     found
 }

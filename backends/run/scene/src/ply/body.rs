@@ -6,7 +6,7 @@
 use super::header::{Encoding, Header, Kind};
 use crate::error::{FileError, FilePosition};
 use crate::text::quoted_bytes;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// A reader of the body.
 #[derive(Clone)]
@@ -45,7 +45,8 @@ impl<'a> Body<'a> {
             return;
         }
         if let Some(word) = self.word() {
-            let message = format!("{} follows the last element: it is skipped", quoted_bytes(word));
+            let text = format!("{} follows the last element", quoted_bytes(word));
+            let message = Message::new(text, "it is skipped");
             warnings.add(WarningKind::UnknownStatement, "", || (self.position(), message));
         }
     }

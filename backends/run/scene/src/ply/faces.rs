@@ -10,7 +10,7 @@ use crate::error::FileError;
 use crate::limits::{Budget, Held};
 use crate::model::ModelObject;
 use crate::polygon::Triangulator;
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// The bytes of an entry of [`Faces::known`].
 const KNOWN: u64 = 64;
@@ -56,7 +56,7 @@ impl<'a> Faces<'a> {
             property.list.is_some() && ["vertex_indices", "vertex_index"].contains(&property.name.as_str())
         };
         let Some(list) = element.properties.iter().position(|property| is_list(&property)) else {
-            return Err(FileError::line(element.line, "faces have no list `vertex_indices`"));
+            return Err(FileError::line(element.line, "faces have no list `vertex_indices` or `vertex_index`"));
         };
         let is_used = |slot: &usize| *slot >= RED && !self.has_vertex_colors;
         let slots: Vec<Option<usize>> = slots(element).into_iter().map(|slot| slot.filter(is_used)).collect();
@@ -100,7 +100,8 @@ impl<'a> Faces<'a> {
     fn corners(&mut self, (length, kind): (Kind, Kind), body: &mut Body<'_>) -> Result<Option<Held<'a>>, FileError> {
         let length = body.length(length, kind)?;
         if length < 3 {
-            let message = || format!("a face with {length} vertices is skipped: it needs 3 or more");
+            let text = || format!("a face with {length} vertices, which needs 3 or more");
+            let message = || Message::new(text(), "it is skipped");
             self.warnings.add(WarningKind::DegenerateFace, "", || (body.position(), message()));
             for _ in 0..length {
                 body.scalar(kind)?;

@@ -185,9 +185,13 @@ fn encoding_of(name: &str, line: usize) -> Result<Encoding, FileError> {
     }
 }
 
+/// The names of types.
+const TYPES: &str = "the types are char, uchar, short, ushort, int, uint, float and double";
+
 fn property(words: &[&str], line: usize) -> Result<Property, FileError> {
-    let kind =
-        |name: &str| Kind::named(name).ok_or_else(|| FileError::line(line, format!("unknown type {}", quoted(name))));
+    let kind = |name: &str| {
+        Kind::named(name).ok_or_else(|| FileError::line(line, format!("unknown type {}: {TYPES}", quoted(name))))
+    };
     match words {
         ["list", length, item, name] => {
             let length = kind(length)?;

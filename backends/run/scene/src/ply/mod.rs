@@ -15,19 +15,23 @@ use crate::error::FileError;
 use crate::limits::{Budget, OBJECT};
 use crate::model::{ModelObject, normal};
 use crate::text::{MAX_NUMBER, quoted};
-use crate::warnings::{FileWarnings, WarningKind};
+use crate::warnings::{FileWarnings, Message, WarningKind};
 use attributes::Component;
 use body::Body;
 use faces::Faces;
 use header::{Element, Header, Property};
 
-/// Reads a model. `color` is the colour of vertices without one; `attributes` are properties of vertices.
+/// Reads a model, and returns the attributes that it has. `color` is the colour of vertices without one; `attributes` are properties of
+/// vertices.
 pub(crate) fn parse(
     bytes: &[u8],
     (color, attributes): ([f32; 4], &[AttributeRequest]),
     (budget, warnings): (&Budget, FileWarnings<'_>),
-) -> Result<Vec<ModelObject>, FileError> {
+) -> Result<(Vec<ModelObject>, Vec<AttributeRequest>), FileError> {
     let header = Header::parse(bytes)?;
+    let vertices = header.elements.iter().filter(|element| element.name == "vertex");
+    let attributes = attributes::existing(vertices, attributes);
+    let attributes = attributes.as_slice();
     if let Some(line) = header.texture {
         warnings.line(WarningKind::NotRead, "TextureFile", line, || "textures are not read".to_owned());
     }
@@ -51,7 +55,7 @@ pub(crate) fn parse(
     for (element, mut body) in face_elements {
         faces.read(element, &mut body)?;
     }
-    Ok(vec![object])
+    Ok((vec![object], attributes.to_vec()))
 }
 
 /// The names of the properties of a vertex.
@@ -162,7 +166,7 @@ impl<'a> Vertices<'a> {
             }
             budget.vertices(object, 1)?;
             let direction = normal(direction).unwrap_or_else(|| {
-                let message = || "a normal is not finite: it is computed".to_owned();
+                let message = || Message::new("a normal is not finite", "it is computed");
                 warnings.add(WarningKind::InvalidNormal, "", || (body.position(), message()));
                 [0.0; 3]
             });

@@ -6,7 +6,7 @@
 use fragbuf_codegen::{Profile, SourceMap, too_long};
 use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT, Options, Space, Unsupported};
 use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
-use fragbuf_targets::{causes, validate};
+use fragbuf_targets::{causes, explained, validate};
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides};
 use naga::valid::ModuleInfo;
 use naga::{Module, ResourceBinding, ShaderStage, SourceLocation, TypeInner};
@@ -137,7 +137,7 @@ fn invalid(shader: &Shader<'_>, location: Option<SourceLocation>, message: Strin
         let before = line.get(..at.line_position.saturating_sub(1) as usize).map_or(0, |text| text.chars().count());
         SourceSpan::new(shader.file, at.line_number, before as u32 + 1).with_length(at.length.max(1))
     });
-    let help = "the checker reads WGSL as naga does";
+    let (message, help) = explained(&message, shader.source);
     Error::Description(Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into())
 }
 
@@ -181,8 +181,11 @@ fn override_values(module: &Module, shader: &Shader<'_>) -> Result<PipelineConst
             own.as_deref() == Some(name) || id.is_some_and(|id| id.to_string() == *name)
         };
         let Some((_, found)) = module.overrides.iter().find(|(_, one)| is_named(one.id, &one.name)) else {
-            let text = format!("{} has no override `{name}`", shader.file);
-            return Err(Error::Unable(text));
+            let known: Vec<&str> = module.overrides.iter().filter_map(|(_, one)| one.name.as_deref()).collect();
+            let near = nearest_name(name, &known).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+            let known =
+                if known.is_empty() { "it has none".to_owned() } else { format!("it has {}", known.join(", ")) };
+            return Err(Error::Unable(format!("{} has no override `{name}`: {near}{known}", shader.file)));
         };
         let key = found.id.map_or(found.name.clone(), |id| Some(id.to_string()));
         values.insert(key.unwrap_or_default(), *value);
@@ -207,7 +210,10 @@ fn without_overrides(
 
 fn unsupported_error(unsupported: &[Unsupported], shader: &Shader<'_>) -> Error {
     let message = |one: &Unsupported| match one.span.is_defined() {
-        true => format!("{}:{}: {one}", shader.file, one.span.location(shader.source).line_number),
+        true => {
+            let location = one.span.location(shader.source);
+            format!("{}:{}:{}: {one}", shader.file, location.line_number, location.line_position)
+        }
         false => format!("{}: {one}", shader.file),
     };
     let mut messages: Vec<String> = unsupported.iter().map(message).collect();

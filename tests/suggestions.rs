@@ -1,0 +1,332 @@
+//! Tests that suggestions are true: a suggested expression compiles in place of what it replaces, the first fix of an incompatible
+//! choice makes the description valid, and an error has no follow-up errors.
+
+use fragbuf::load::{Description, load};
+use fragbuf::{Diagnostic, Registry};
+
+/// Returns the diagnostics of a description with changes from outside.
+fn found(text: &str, set: &[(&str, &str)]) -> Vec<Diagnostic> {
+    let description = Description::Text { file: "case.fragbuf".to_owned(), text: text.to_owned() };
+    let set: Vec<(String, String)> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+    let found = match load(&description, &set, &[], &Registry::builtin()).variant {
+        Ok(variant) => variant.warnings.clone(),
+        Err(errors) => errors,
+    };
+    found.iter().cloned().collect()
+}
+
+fn only(text: &str, set: &[(&str, &str)]) -> Diagnostic {
+    let found = found(text, set);
+    let [only] = found.as_slice() else { panic!("{text}\n{set:?}: {found:#?}") };
+    only.clone()
+}
+
+/// Returns the first part of a help in backquotes.
+fn code(help: &str) -> &str {
+    help.split('`').nth(1).unwrap_or_else(|| panic!("no code in: {help}"))
+}
+
+/// Calls of other languages, and what follows them to give a `bool`.
+const CALLS: &[(&str, &str)] = &[
+    ("saturate(f.depth)", " < 0.5"),
+    ("saturate(f.color)", ".x < 0.5"),
+    ("saturate(f.depth - 0.1)", " < 0.5"),
+    ("saturate(0.5)", " < f.depth"),
+    ("smoothstep(0.1, 0.2, f.depth)", " < 0.5"),
+    ("smoothstep(0.1, 0.2, f.color)", ".x < 0.5"),
+    ("smoothstep(f.normal, f.normal, f.normal)", ".x < 0.5"),
+    ("mix(0.1, 0.2, f.depth)", " < 0.5"),
+    ("mix(f.color, f.color, 0.5)", ".x < 0.5"),
+    ("lerp(f.color, f.color, f.color)", ".x < 0.5"),
+    ("mix(0, 1, f.depth)", " < 0.5"),
+    ("select(0.1, 0.2, f.id > 2)", " < f.depth"),
+    ("step(0.5, f.depth)", " < 0.5"),
+    ("fract(f.depth)", " < 0.5"),
+    ("frac(f.normal)", ".x < 0.5"),
+    ("sign(f.depth)", " < 0.5"),
+    ("inversesqrt(f.depth)", " < 0.5"),
+    ("rcp(f.color)", ".x < 0.5"),
+    ("pow(f.depth, 2.0)", " < 0.5"),
+    ("pow(f.color, 2.2)", ".x < 0.5"),
+    ("log(f.depth)", " < 0.5"),
+    ("fma(f.depth, 2.0, 1.0)", " < 0.5"),
+    ("fma(f.color, f.color, 1.0)", ".x < 0.5"),
+    ("radians(f.depth)", " < 0.5"),
+    ("degrees(f.normal)", ".x < 0.5"),
+    ("fmod(f.normal, 0.1)", ".x < 0.5"),
+    ("round(f.depth)", " < 0.5"),
+    ("sqrt(2)", " < f.depth"),
+    ("sqrt(f.id)", " < f.depth"),
+    ("atan(f.depth, 1.0)", " < 0.5"),
+    ("bitCount(f.id)", " < 5"),
+    ("firstbithigh(f.id)", " < 5"),
+    ("reversebits(5)", " < f.id"),
+    ("asuint(f.depth)", " < f.id"),
+    ("uintBitsToFloat(f.id)", " < f.depth"),
+    ("floatBitsToInt(f.depth)", " < 5"),
+    ("clamp(f.depth, 0.0, 1.0)", " < 0.5"),
+    ("clamp(f.color, 0.0, 1.0)", ".x < 0.5"),
+    ("max(f.color, 0)", ".x < 0.5"),
+    ("max(0.0, f.color)", ".x < 0.5"),
+    ("dot(f.normal, f.normal)", " < 0.5"),
+    ("normalize(f.normal)", ".x < 0.5"),
+    ("length(f.color.xyz() - f.normal)", " < 0.5"),
+    ("abs(-f.depth)", " < 0.5"),
+    ("float(f.id)", " < 0.5"),
+    ("uint(f.depth)", " < f.id"),
+    ("bool(f.id)", ""),
+    ("float3(1.0, 2.0, 3.0)", ".x < f.depth"),
+    ("float3(1, 2, 3)", ".x < f.depth"),
+    ("vec4f(f.normal, 1.0)", ".x < f.depth"),
+    ("vec4(f.normal, 1.0)", ".x < f.depth"),
+    ("vec4(f.color.xy(), 0.0, 1.0)", ".x < f.depth"),
+    ("vec4(1.0, f.normal)", ".x < f.depth"),
+    ("vec3(f.color)", ".x < f.depth"),
+    ("vec3(0.5)", ".x < f.depth"),
+    ("float4(f.color.xy(), f.color.xy())", ".x < f.depth"),
+    ("f.depth.saturate()", " < 0.5"),
+    ("f.color.saturate()", ".x < 0.5"),
+    ("f.normal.mix(f.normal, 0.5)", ".x < 0.5"),
+];
+
+#[test]
+fn a_suggested_expression_compiles_in_place_of_the_call() {
+    for (call, rest) in CALLS {
+        let text = format!(
+            "buffer B from kplus_array {{\n    fragment {{ color: rgba8, depth: f32, normal: octahedral, id: u32 }}\n    \
+             ties: attribute {{ by: id }};\n    where |f| f.normal.x + f.color.x < 9.0;\n    where |f| {call}{rest};\n}}"
+        );
+        let error = only(&text, &[]);
+        let suggestion = code(&error.help);
+        let changed = found(&text.replace(call, suggestion), &[]);
+        assert_eq!(changed, [], "{call}: {}", error.help);
+    }
+}
+
+/// Functions of numbers alone are applied to the components of a vector.
+#[test]
+fn functions_of_numbers_are_suggested_for_each_component() {
+    for (call, part) in [
+        ("inversesqrt(f.normal)", "f.normal.x.sqrt().recip()"),
+        ("step(0.5, f.normal)", "(if f.normal.x < 0.5 { 0.0 } else { 1.0 })"),
+        ("pow(f.normal, f.normal)", "f.normal.x.powf(f.normal.x)"),
+        ("sqrt(f.normal)", "f.normal.x.sqrt()"),
+        ("f.normal.sqrt()", "f.normal.x.sqrt()"),
+    ] {
+        let text = |part: &str| {
+            format!(
+                "buffer B from kplus_array {{\n    fragment {{ color: rgba8, depth: f32, normal: octahedral }}\n    where |f| {part} < 0.5;\n}}"
+            )
+        };
+        let error = only(&text(&format!("{call}.x")), &[]);
+        assert_eq!(code(&error.help), part, "{call}");
+        assert_eq!(found(&text(part), &[]), [], "{call}");
+    }
+}
+
+#[test]
+fn a_constructor_with_the_type_of_its_components_is_explained() {
+    let error = only("buffer B from kplus_array {\n    where |f| vec4<f32>(1.0, 0.0, 0.0, 1.0).x < f.depth;\n}", &[]);
+    assert!(error.help.contains("write `vec4(…)` without the type"), "{error}");
+    let error = only("buffer B from kplus_array {\n    where |f| mod(f.depth, 0.1) < 0.5;\n}", &[]);
+    assert_eq!(code(&error.help), "x - y * (x / y).floor()", "a keyword of Rust");
+}
+
+/// The first fix of a criterion that breaks the order of depth is a sort; for techniques that cannot have one, it is not.
+#[test]
+fn the_first_fix_makes_the_description_valid() {
+    let mut sorted = 0;
+    for technique in Registry::builtin().techniques() {
+        let text = |choice: &str| {
+            format!("buffer B from {} {{\n    keep 8 least |f| f.depth - f.color.w;\n{choice}}}", technique.key)
+        };
+        for error in found(&text(""), &[]) {
+            if error.code.name != "missing-capability" || !error.message.contains("fragments in depth order") {
+                continue;
+            }
+            sorted += 1;
+            let fix = error.help.split('`').skip(1).step_by(2).next().unwrap();
+            assert_eq!(fix, "sort: insertion", "{error}");
+            if error.help.starts_with("choose ") {
+                assert_eq!(found(&text(&format!("    {fix};\n")), &[]), [], "{error}");
+            }
+        }
+    }
+    assert!(sorted >= 5, "{sorted}");
+    // The technique is replaced last, and the effect never first.
+    let error = only("buffer B from ab_ll {\n    cull: early;\n}", &[]);
+    assert!(error.help.starts_with("choose `cull: none`"), "{error}");
+}
+
+/// An item that does not parse is one error: nothing that it would have declared is missing.
+#[test]
+fn an_item_with_an_error_has_no_follow_up_errors() {
+    for (items, line) in [
+        ("fragment { color: rgba8 depth: f32 }", 2),
+        ("fragment { color = rgba8, depth = f32 }\n    keep 8 least |f| f.depth - f.color.w;\n    sort: insertion;", 2),
+        ("fragmnt { color: rgba8, depth: f32, heat: f32 }\n    where |f| f.heat > 0.5;", 2),
+        ("fragment color: rgba8, heat: f32;\n    where |f| f.heat > 0.5;", 2),
+        ("uniform { cut f32 }\n    where |f, u| f.depth < u.cut;", 2),
+        ("uniform { cut: f32; far: f32 }\n    where |f, u| f.depth < u.far;", 2),
+        ("keep least 8 |f| f.depth;", 2),
+        ("keep = all;", 2),
+        ("storage linked_list;\n    sync: slot_counter;\n    cull: none;\n    keep all;", 2),
+        ("fn half(x f32) -> f32 { 0.5 * x }\n    where |f| half(f.depth) < 0.5;", 2),
+        ("fragment { depth: f32 }\n    resolve |fragments| { vec4(fragments.ln(), 0.0, 0.0, 1.0) }", 3),
+        ("fragment { depth: f32 }\n    resolve { vec4(0.0, 0.0, 0.0, 1.0) }", 3),
+    ] {
+        let found = found(&format!("buffer B from kplus_array {{\n    {items}\n}}"), &[]);
+        let lines: Vec<u32> = found.iter().map(|found| found.span.line).collect();
+        assert!(!lines.is_empty() && lines.iter().all(|found| *found == line), "{items}\n{found:#?}");
+    }
+    // Errors that do not follow are reported, too.
+    let found =
+        found("buffer B from kplus_array {\n    fragment { color: rgba8 depth: f32 }\n    sort: insertoin;\n}", &[]);
+    assert_eq!(found.iter().map(|found| found.code.name).collect::<Vec<_>>(), ["unexpected-token", "unknown-value"]);
+}
+
+#[test]
+fn the_header_of_a_buffer_has_suggestions() {
+    for (header, code, expected) in [
+        ("bufer B from kplus_array", "missing-buffer", "did you mean `buffer`?"),
+        ("Buffer B from kplus_array", "missing-buffer", "did you mean `buffer`?"),
+        ("buffer B form kplus_array", "unexpected-token", "did you mean `from`?"),
+        ("buffer B using kplus_array", "unexpected-token", "write `from kplus_array`"),
+        ("buffer B kplus_array", "unexpected-token", "write `from kplus_array`"),
+        ("buffer B: kplus_array", "unexpected-token", "write `buffer Name from preset"),
+    ] {
+        let error = only(&format!("{header} {{\n    keep 4;\n}}"), &[]);
+        assert!(error.code.name == code && error.help.contains(expected), "{header}: {error}");
+    }
+}
+
+#[test]
+fn an_option_is_repeated_with_a_colon() {
+    for (options, expected) in [("limit 100", "write `limit: 100`"), ("limit = 100", "write `limit: 100`")] {
+        let text = format!("buffer B from kplus_array {{\n    sync: spin_lock {{ {options} }};\n}}");
+        let error = only(&text, &[]);
+        assert_eq!(error.help, expected);
+        assert_eq!(found(&text.replace(options, code(&error.help)), &[]), []);
+    }
+}
+
+#[test]
+fn changes_from_outside_have_suggestions_that_work() {
+    const TEXT: &str = "buffer B from kplus_array {\n    fragment { color: rgba8, depth: f32 }\n}";
+    for (name, value, code, expected) in [
+        ("keep", "4", "unknown-axis", "write `k=4`"),
+        ("K", "4", "unknown-axis", "write `k=4`"),
+        ("limit", "100", "unknown-axis", "write `sync.limit=100`"),
+        ("samples.count", "8", "unknown-option", "choose `samples: coverage`"),
+        ("fragment.colour", "vec4", "unknown-field", "did you mean `color`?"),
+        ("fragment.color", "rgb8", "invalid-option", "rgba8"),
+        ("sync.limt", "9", "unknown-option", "did you mean `limit`?"),
+        ("cull.words", "2", "unknown-option", "choose `cull: occupancy`"),
+        ("k", "many", "invalid-option", "a whole number, or `all`"),
+        ("sort", "", "invalid-option", "a value after the `=`"),
+    ] {
+        let error = only(TEXT, &[(name, value)]);
+        assert!(error.code.name == code && error.help.contains(expected), "{name}={value}: {error}");
+        assert_eq!(&*error.span.file, "--set", "{error}");
+    }
+    for set in [&[("k", "4")][..], &[("sync.limit", "100")], &[("samples", "coverage"), ("samples.count", "8")]] {
+        assert_eq!(found(TEXT, set), [], "{set:?}");
+    }
+    // The same names in a description.
+    let inside = |line: &str| only(&format!("buffer B from kplus_array {{\n    {line}\n}}"), &[]).help;
+    assert_eq!(inside("k: 4;"), "write `keep 4;`");
+    assert_eq!(inside("limit: many;"), "it is an option: write `sync: spin_lock { limit: many }`");
+}
+
+/// Syntax of other languages and slips: each has a help that says what to write.
+#[test]
+fn wrong_items_say_what_to_write() {
+    for (items, expected) in [
+        ("where |f| f.depth < 0.5 and f.color.x > 0.1;", "write `&&`"),
+        ("where |f| f.depth < .5;", "write a digit before the point: `0.5`"),
+        ("fn half(x) -> f32 { 0.5 * x }", "its type, after its name: `x: f32`"),
+        ("float half(float x) { return 0.5 * x; }", "write a function as in Rust"),
+        ("storage: \"max_array\";", "write the name without quotes: `storage: max_array;`"),
+        ("storage: \"mine.wgsl\";", "write `storage: wgsl(\"mine.wgsl\");`"),
+        ("storage: max-array;", "names have `_` in place of `-`: `max_array`"),
+        ("storage: glsl(\"mine.glsl\");", "a user file is WGSL: `storage: wgsl(\"file.wgsl\");`"),
+        ("sync: spin_lock(limit: 100);", "options are in braces"),
+        ("sync: spin_lock | interlock;", "separated by `else`: `spin_lock else interlock`"),
+        ("sync: spin_lock, interlock;", "separated by `else`: `spin_lock else interlock`"),
+        ("sync: spin_lock { limit: -1 };", "numbers of options are 0 or more"),
+        ("k: 4;", "write `keep 4;`"),
+        ("keep 4 |f| f.depth;", "write `least` before the criterion"),
+        ("fragment { color: rgba8, depth: f32 },\n    keep 4;", "remove it: items are not separated by commas"),
+        ("fragment { rgba8 color, depth: f32 }", "write `color: rgba8`"),
+        ("fragment { color: vec4<f32>, depth: f32 }", "write `color: vec4`, without the type"),
+        ("fragment { color: rgba8; depth: f32 }", "separate declarations by commas"),
+        ("fragment { color: rgba8 = 0, depth: f32 }", "a declaration has no value"),
+        ("criterion |f| f.depth;", "the criterion follows `keep`"),
+        ("filter |f| f.depth < 0.5;", "write `where |f| f.depth > 0.5;`"),
+        ("where |f| f.depth as bool;", "compare it: `x != 0.0`"),
+    ] {
+        let error = only(&format!("buffer B from kplus_array {{\n    {items}\n}}"), &[]);
+        assert!(error.help.contains(expected), "{items}: {error}");
+    }
+    for (header, expected) in [
+        ("buffer B from \"kplus_array\"", "without quotes: `from kplus_array`"),
+        ("buffer B from kplus-array", "write `from kplus_array`"),
+    ] {
+        let error = only(&format!("{header} {{ keep 4; }}"), &[]);
+        assert!(error.help.contains(expected), "{header}: {error}");
+    }
+    let set = |name: &str, value: &str| only("buffer B from kplus_array { }", &[(name, value)]).help;
+    assert!(set("fragment", "vec4").contains("`fragment.name=format`"));
+    assert!(set("uniform.far", "1").contains("`--uniform far=1`"));
+    assert!(set("storage", "wgsl(\"a.wgsl\")").contains("in a .fragbuf file"));
+}
+
+/// Closures with slips of other languages: the help fits the types.
+#[test]
+fn wrong_expressions_say_what_to_write() {
+    for (closure, expected) in [
+        ("where |f| 2.sqrt() < f.depth;", "write `2.0_f32.sqrt(…)`"),
+        ("where |f| f.depth.sin < 0.5;", "it is a method: write `.sin(…)`"),
+        ("where |f| f.depth ** 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
+        ("where |f| f.depth ^ 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
+        ("where |f| dFdx(f.depth) < 0.5;", "closures have no derivatives"),
+        ("where |f| f.color > 0.5;", "compare components, `a.x < b.x`"),
+        ("where |f| any(f.color.xyz());", "`v.x > 0.5 || v.y > 0.5`"),
+        ("where |f| let x = f.depth; x < 0.5;", "enclose statements in braces"),
+        ("resolve |fragments| { fragments[-1].color }", "`fragments[fragments.len() - 1]`"),
+        ("where |f| length(f.depth) < 0.5;", "it is a method of Vec2, Vec3, Vec4"),
+    ] {
+        let error = only(&format!("buffer B from kplus_array {{\n    {closure}\n    keep 4;\n}}"), &[]);
+        assert!(error.help.contains(expected), "{closure}: {error}");
+    }
+}
+
+/// Slips that had follow-up errors or help that does not fit.
+#[test]
+fn slips_are_one_error_each() {
+    for (text, code, expected) in [
+        ("buffer B {\n    storge: linked_list;\n    sync: slot_counter;\n}", "unknown-axis", "did you mean `storage`?"),
+        ("buffer B from kplus_array {\n    keep 4 leats |f| f.depth;\n}", "unexpected-token", "did you mean `least`?"),
+        (
+            "buffer B from kplus_array {\n    fragment { color: rgba8, depth: f32, id: u32 }\n    ties: attribute { by: idd };\n}",
+            "invalid-option",
+            "did you mean `id`?",
+        ),
+        ("buffer B from kplus_array {\n    where |(a, b)| a < 0.5;\n}", "unsupported", "write a name"),
+        (
+            "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = Vec3::ZERO;\n        for f in fragments { c += f.color; }\n        \
+             c.extend(1.0)\n    }\n}",
+            "type-mismatch",
+            "write `.truncate()` or `.xyz()`",
+        ),
+        (
+            "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = 0.0;\n        for f in fragments { c += f.color; }\n        \
+             vec4(c, c, c, 1.0)\n    }\n}",
+            "type-mismatch",
+            "declare a vector: `let mut … = Vec4::ZERO;`",
+        ),
+    ] {
+        let error = only(text, &[]);
+        assert!(error.code.name == code && error.help.contains(expected), "{text}: {error}");
+    }
+}
