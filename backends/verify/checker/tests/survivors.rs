@@ -56,6 +56,7 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "",
         "an early return: later slots have greater keys, and a carried EMPTY changes none",
     ),
+    ("storage/cascade", "return;", "", "an early return: no slot has the key of a fragment behind the last"),
     (
         "storage/max_heap",
         "if kept_before < frame.k {",
@@ -64,21 +65,15 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/max_heap",
-        "for (var parent = frame.k / 2u; parent > 1u; parent--) {",
-        "for (var parent = frame.k / 1u; parent > 1u; parent--) {",
+        "tops = max(frame.k / 2u, 1u);",
+        "tops = max(frame.k / 1u, 1u);",
         "a slot without children does not change",
     ),
     (
         "storage/max_heap",
-        "for (var parent = frame.k / 2u; parent > 1u; parent--) {",
-        "for (var parent = frame.k / 2u; parent > 0u; parent--) {",
-        "slot 0 is EMPTY, which is worse than any key: it does not change",
-    ),
-    (
-        "storage/max_heap",
-        "for (var parent = frame.k / 2u; parent > 1u; parent--) {",
-        "for (var parent = frame.k / 2u; parent >= 1u; parent--) {",
-        "the same",
+        "kept_counts_store(pixel, frame.k); tops = max(frame.k / 2u, 1u);",
+        "tops = max(frame.k / 2u, 1u); kept_counts_store(pixel, frame.k);",
+        "one of the two is a variable of the invocation",
     ),
     (
         "storage/max_heap",
@@ -175,6 +170,13 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "an early return: slots behind that of a key have greater keys",
     ),
     ("storage/distinct_cascade", "return;", "", "the same, in the second pass"),
+    ("storage/distinct_cascade", "return;", "", "an early return: no slot has the key of a fragment behind the last"),
+    (
+        "storage/distinct_cascade",
+        "for (var slot = 0u; slot < frame.k; slot++) {",
+        "for (var slot = 0u; slot <= frame.k; slot++) {",
+        "in the second pass: the key of the last slot is not less than the fragment's, so the loop ends there",
+    ),
     (
         "storage/depth_ranges",
         "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
