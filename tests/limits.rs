@@ -27,10 +27,11 @@ fn number(limits: &[Limit], is_wanted: impl Fn(&Limit) -> bool) -> u64 {
     }
 }
 
-/// The numbers of storage buffers are the greatest that a shader declares: a buffer without words has no declaration.
+/// The numbers of storage buffers are at least those that a shader declares, and at most those that a pass uses: a buffer is in the layout of
+/// a pass that uses it, also where no function of the pass accesses it. A buffer without words has no declaration.
 #[test]
 fn storage_buffers_are_those_that_shaders_declare() {
-    let mut without_words = 0;
+    let (mut without_words, mut exact) = (0, 0);
     for (name, generation) in generations() {
         let plan = &generation.plans[0].plan;
         let most = |in_compute: Option<bool>| {
@@ -46,13 +47,18 @@ fn storage_buffers_are_those_that_shaders_declare() {
         let limits = limits(plan, 0, &generation.plans[0].workgroups);
         let of_opengl = |wanted| number(&limits, |limit| limit.opengl == Some(wanted));
         let all = number(&limits, |limit| limit.is_of_webgpu("maxStorageBuffersPerShaderStage"));
-        assert_eq!(all, most(None), "{name}");
-        assert_eq!(of_opengl("GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS"), most(Some(false)), "{name}");
-        // A pass may use a buffer, which is in the layout of its pipeline, without an access to it.
-        assert!(of_opengl("GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS") >= most(Some(true)), "{name}");
+        let used = plan.passes.iter().map(|pass| pass.uses.len() as u64).max().unwrap_or(0);
+        let bounds = |declared: u64| declared..=used.max(declared);
+        assert!(bounds(most(None)).contains(&all), "{name}: {all}");
+        let fragment = of_opengl("GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS");
+        assert!(bounds(most(Some(false))).contains(&fragment), "{name}: {fragment}");
+        let compute = of_opengl("GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS");
+        assert!(bounds(most(Some(true))).contains(&compute), "{name}: {compute}");
+        exact += usize::from(all == most(None));
         without_words += usize::from(!plan.resources.iter().all(|planned| plan.is_declared(planned)));
     }
     assert!(without_words > 0, "no case has a buffer without words");
+    assert!(exact > 100, "the number is exact in {exact} cases only");
 }
 
 /// Stencil routing keeps words in the samples of integer textures, and a coverage mask is a variable of fragment stages.

@@ -253,6 +253,8 @@ impl Verdict {
             // What was not visited may fail in another way.
             (Some(_), None) if report.is_declared && !report.is_exhaustive => Verdict::Undecided,
             (Some(_), _) => Verdict::Fails,
+            // A failure of a part of a workgroup decides nothing.
+            (None, Some(_)) if report.has_undecided_failure => Verdict::Undecided,
             (None, Some(_)) => Verdict::Sampled,
             (None, None) if report.is_exhaustive => Verdict::Holds,
             (None, None) => Verdict::Undecided,
@@ -277,13 +279,12 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
     let k = if report.entries.is_empty() { String::new() } else { format!("k = {}; ", listed(&report.entries)) };
     let cases = format!("{k}{} case{plural}, {} states", report.cases, report.states);
     let subject = format!("{name} on {on}, {}", model_name(limits.model));
-    let unchecked = "the set of kept fragments is not checked: the storage provides neither keeps-all nor keeps-best, and has no `keeps` line";
-    let unchecked = (!report.is_kept_set_checked).then_some(unchecked);
-    let notes: Vec<&str> = report.notes.iter().map(String::as_str).chain(unchecked).collect();
-    let notes: String = notes.iter().map(|note| format!("  note: {note}\n")).collect();
+    let notes: String = notes(report).iter().map(|note| format!("  note: {note}\n")).collect();
     let Some(schedule) = &report.failure else {
         let sentence = match (Verdict::of(limits, report), limits.random_schedules) {
-            (Verdict::Undecided, _) => format!("NOT DECIDED: no failure found, but {}", undecided(limits, &notes)),
+            (Verdict::Undecided, _) => {
+                format!("NOT DECIDED: no failure found, but {}", undecided((limits, report), &notes))
+            }
             (_, Some(count)) => format!("no failure in {count} random schedules per case; others may fail"),
             (_, None) => "no failure in any interleaving".to_owned(),
         };
@@ -291,7 +292,7 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
     };
     let verdict = match (Verdict::of(limits, report), report.is_declared) {
         (Verdict::Undecided, _) => {
-            format!("NOT DECIDED: fails with declared hazards, but {}", undecided(limits, &notes))
+            format!("NOT DECIDED: fails with declared hazards, but {}", undecided((limits, report), &notes))
         }
         (_, true) => "fails with declared hazards".to_owned(),
         (_, false) => "FAILS".to_owned(),
@@ -311,8 +312,19 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
     text
 }
 
+/// Returns the notes of a report, and one about what is not checked.
+fn notes(report: &Report) -> Vec<&str> {
+    let unchecked = "which fragments are kept, and in which order, is not checked: the storage provides neither keeps-all nor keeps-best, and has no \
+         `keeps` line";
+    let unchecked = (!report.is_kept_set_checked).then_some(unchecked);
+    report.notes.iter().map(String::as_str).chain(unchecked).collect()
+}
+
 /// Says why a search decides nothing.
-fn undecided(limits: &Limits, notes: &str) -> String {
+fn undecided((limits, report): (&Limits, &Report), notes: &str) -> String {
+    if report.states < limits.states && !notes.is_empty() {
+        return "the check does not cover everything: see the notes".to_owned();
+    }
     let reason = if notes.is_empty() { "" } else { "see the notes; " };
     format!(
         "not every state was visited ({reason}at most {} states of a case are visited: raise `--states`, or use `--random-schedules`)",
@@ -348,7 +360,7 @@ fn report_json((name, on): (&str, &str), limits: &Limits, report: &Report) -> Va
             verdict => Value::Bool(matches!(verdict, Verdict::Holds | Verdict::Sampled)),
         },
         "exhaustive": report.is_exhaustive,
-        "notes": report.notes,
+        "notes": notes(report),
         "k": report.entries,
         "cases": report.cases,
         "states": report.states,

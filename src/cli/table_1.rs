@@ -99,10 +99,8 @@ pub(super) fn both(cell: &Cell) -> String {
 
 /// Returns when fragments are sorted by depth: `store` if the storage keeps them sorted, else `resolve`.
 fn sorted(plan: &Plan) -> &'static str {
-    let gathered =
-        plan.selection.rows.iter().filter(|selected| selected.row.provides.contains(&Capability::StableSort));
-    let sorts =
-        gathered.flat_map(|selected| &selected.row.provides).any(|capability| *capability == Capability::Sorted);
+    let mut sorts = plan.selection.rows.iter().filter(|selected| selected.row.axis == "sort");
+    let sorts = sorts.any(|selected| selected.row.provides.contains(&Capability::Sorted));
     if sorts { "resolve" } else { "store" }
 }
 

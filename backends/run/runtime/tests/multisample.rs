@@ -9,7 +9,7 @@ use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{Choice, Headless, Offscreen};
 use fragbuf_runtime::{Error, Output, VertexInputs};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::KeepDefault;
+use fragbuf_templates::vocabulary::{Capability, KeepDefault};
 
 use crate::order::{Numbers, orders};
 use crate::quads::SIZE;
@@ -224,7 +224,9 @@ fn opaque_surfaces_hide_every_sample() {
 #[test]
 fn every_sort_serves_every_sample() {
     let stage = stage::device();
-    for row in Registry::builtin().rows_of("sort").filter(|row| row.key != "none") {
+    let registry = Registry::builtin();
+    let sorts = registry.rows_of("sort").filter(|row| row.provides.contains(&Capability::Sorted));
+    for row in sorts {
         for select in ["on_store", "on_resolve"] {
             let set: &[(&str, &str)] = &[("sort", &row.key), ("select", select), ("k", "8")];
             let (key, set) = if select == "on_store" { ("ab_ll", &set[..1]) } else { ("kb_ab_ll", set) };

@@ -10,6 +10,7 @@ use fragbuf_templates::vocabulary::Kind;
 
 use crate::memory::{Memory, STALE, WIDTH, with_buffers};
 use crate::programs::Runnable;
+use crate::report::code_location;
 use crate::sequential::{machine_with, run_alone};
 use crate::subject::Subject;
 
@@ -207,8 +208,22 @@ impl<'s> Frame<'s> {
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {
                     dispatch(&runnable.program, counts, buffers)
                 });
-                if end != DispatchEnd::Ended {
-                    return Err(format!("pass `{}` does not end: {end:?}", runnable.pass.name));
+                let (name, location) =
+                    (&runnable.pass.name, |at| code_location(&runnable.program, at, &runnable.source));
+                match end {
+                    DispatchEnd::Ended => {}
+                    DispatchEnd::Endless => return Err(format!("pass `{name}` does not end")),
+                    DispatchEnd::DivergentBarrier => {
+                        return Err(format!(
+                            "some invocations of pass `{name}` wait at a barrier that others do not reach"
+                        ));
+                    }
+                    DispatchEnd::OutOfBounds(access) => {
+                        return Err(format!(
+                            "pass `{name}` accesses an index out of bounds at {}",
+                            location(access.at)
+                        ));
+                    }
                 }
             }
             Kind::Geometry => {
@@ -224,13 +239,19 @@ impl<'s> Frame<'s> {
     /// Runs one fragment to its end.
     pub(crate) fn insert(&mut self, runnable: &Runnable, inputs: &[Vec<u32>]) -> Result<(), String> {
         let mut machine = machine_with(&runnable.program, inputs);
-        match run_alone(&mut machine, &mut self.memory)? {
-            Exit::Ended => {
+        let location = |at: u32| code_location(&runnable.program, at, &runnable.source);
+        let subject = format!("a fragment of pass `{}` that runs alone", runnable.pass.name);
+        match run_alone(&mut machine, &mut self.memory) {
+            Ok(Exit::Ended) => {
                 self.samples[runnable.id.0] += 1;
                 Ok(())
             }
-            Exit::Discarded => Ok(()),
-            other => Err(format!("a fragment of pass `{}` does not end: {other:?}", runnable.pass.name)),
+            Ok(Exit::Discarded) => Ok(()),
+            Ok(_) => Err(format!("{subject} does not end: it repeats the loop at {}", location(machine.at()))),
+            Err(error) => {
+                let at = machine.out_of_bounds.map(|access| location(access.at));
+                Err(format!("{subject} fails: {error}{}", at.map_or(String::new(), |at| format!(" at {at}"))))
+            }
         }
     }
 

@@ -17,20 +17,35 @@ pub struct FrameMemory {
 }
 
 /// Why a pixel cannot be read out: the storage or the words are wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReadOutError {
-    /// The storage's list of a pixel returns to an earlier fragment or is too long, or one call of it does not end.
-    Endless,
+    /// The storage's list of a pixel returns to an earlier fragment, or is too long.
+    Cycle,
+    /// One call of the storage's functions does not end.
+    Endless {
+        /// File and line of the loop.
+        location: String,
+    },
     /// A buffer has no such word, or a texture no such texel.
-    OutOfBounds,
+    OutOfBounds {
+        /// File and line of the access.
+        location: String,
+    },
 }
 
 impl fmt::Display for ReadOutError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ReadOutError::Endless => "reading the pixel out does not end",
-            ReadOutError::OutOfBounds => "an index is out of bounds",
-        })
+        match self {
+            ReadOutError::Cycle => {
+                f.write_str("reading the pixel does not end: `storage_next` returns an entry that was read before")
+            }
+            ReadOutError::Endless { location } => {
+                write!(f, "reading the pixel does not end: it repeats the loop at {location}")
+            }
+            ReadOutError::OutOfBounds { location } => {
+                write!(f, "reading the pixel accesses an index out of bounds at {location}")
+            }
+        }
     }
 }
 

@@ -68,6 +68,14 @@ pub(crate) struct CheckedSource {
     pub(crate) file: String,
 }
 
+impl CheckedSource {
+    /// Returns the source of a checked pass.
+    pub(crate) fn of(checked: &Checked) -> Self {
+        let (text, lines) = (checked.pass().text.clone(), checked.pass().lines.clone());
+        CheckedSource { text, lines, file: String::new() }
+    }
+}
+
 impl Runnable {
     /// Compiles a pass, outside of any iteration.
     pub(crate) fn new(
@@ -95,8 +103,7 @@ impl Runnable {
             }),
             _ => None,
         };
-        let (text, lines) = (checked.pass().text.clone(), checked.pass().lines.clone());
-        let source = CheckedSource { text, lines, file: String::new() };
+        let source = CheckedSource::of(checked);
         let is_awaited = plan.frame.waits_for_samples(id);
         Ok(Runnable { pass: pass.clone(), id, iteration: None, is_awaited, program, fragment, source })
     }

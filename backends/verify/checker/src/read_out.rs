@@ -16,7 +16,8 @@ use fragbuf_templates::vocabulary::{Capability, Element, TextureFormat};
 use crate::frame_memory::{FrameMemory, ReadOutError};
 use crate::memory::{Memory, memory_index, with_buffers};
 use crate::probe::{probe_pass, probe_row};
-use crate::programs::{diagnostics, options};
+use crate::programs::{CheckedSource, diagnostics, options};
+use crate::report::code_location;
 use crate::sampled::{Reader, SampledTexture, is_readable};
 
 /// The probe passes; each is a file.
@@ -53,6 +54,8 @@ pub struct ReadOut {
     read: Bytecode,
     /// The key that no fragment of the k best exceeds, where the storage provides one.
     pub(crate) bound: Option<Bytecode>,
+    /// The source of the functions that read the entries.
+    source: CheckedSource,
     /// The formats of textures, by the plan's resources.
     formats: Vec<Option<TextureFormat>>,
 }
@@ -85,6 +88,11 @@ impl ReadOut {
             walk: required("walk_to")?,
             read: required("storage_read")?,
             bound: compiled(READ_BOUND, "storage_bound")?,
+            source: checked
+                .iter()
+                .find(|checked| checked.pass().name == READ_OUT)
+                .map(CheckedSource::of)
+                .unwrap_or_default(),
             formats,
         })
     }
@@ -127,7 +135,7 @@ impl ReadOut {
                 return Ok(entries);
             }
             if !visited.insert(cursor) || entries.len() == most {
-                return Err(ReadOutError::Endless);
+                return Err(ReadOutError::Cycle);
             }
             before.into_iter().for_each(|(index, words)| memory[index] = words);
             entries.push(self.call(&self.read, &[&[pixel], &[cursor]], memory, size)?);
@@ -161,10 +169,11 @@ impl ReadOut {
             machine.run_or_repeat(&mut Reader::new(buffers, &textures), |reader| reader.changes)
         });
         indices.into_iter().zip(words).for_each(|(index, words)| memory[index] = words);
+        let location = |at: u32| code_location(program, at, &self.source);
         match (machine.out_of_bounds.take(), exit) {
-            (Some(_), _) => Err(ReadOutError::OutOfBounds),
+            (Some(access), _) => Err(ReadOutError::OutOfBounds { location: location(access.at) }),
             (None, Exit::Ended) => Ok(machine.result().to_vec()),
-            (None, _) => Err(ReadOutError::Endless),
+            (None, _) => Err(ReadOutError::Endless { location: location(machine.at()) }),
         }
     }
 

@@ -39,14 +39,14 @@ impl SharedMemory for SequentialMemory<'_> {
     }
 }
 
-/// Runs a machine to its end while no other runs. `Err`: an index is out of bounds.
+/// Runs a machine to its end while no other runs. `Err`: an index is out of bounds; the machine has the access.
 pub(crate) fn run_alone(machine: &mut Machine<'_>, memory: &mut Memory) -> Result<Exit, String> {
     let textures = textures(machine.program(), memory);
     let exit = with_buffers(machine.program(), memory, |buffers| {
         let mut memory = SequentialMemory { buffers: Sequential { buffers }, textures, changes: 0 };
         machine.run_or_repeat(&mut memory, |memory| memory.changes)
     });
-    match machine.out_of_bounds.take() {
+    match &machine.out_of_bounds {
         Some(_) => Err("an index is out of bounds".to_owned()),
         None => Ok(exit),
     }

@@ -72,6 +72,8 @@ pub struct Report {
     pub hazards: Vec<(String, String)>,
     /// Whether the declared hazards permit the failure. Then they permit all failures that were found.
     pub is_declared: bool,
+    /// Whether a failure was found that may come from invocations of a workgroup that do not run. It decides nothing.
+    pub has_undecided_failure: bool,
     /// What the verdict depends on, in sentences.
     pub notes: Vec<String>,
     /// Whether the rows declare which fragments are kept. Otherwise the set of kept fragments is not checked.
@@ -106,6 +108,7 @@ impl Report {
             failure: None,
             hazards: Vec::new(),
             is_declared: false,
+            has_undecided_failure: false,
             notes: Vec::new(),
             is_kept_set_checked: true,
         }

@@ -168,7 +168,7 @@ fn main(@location(0) a: f32) { x = dpdx(a); }";
     let Err(Error::Unable(text)) = check_shader(&shader, &Limits::default()) else {
         panic!("derivatives are accepted")
     };
-    assert_eq!(text, "litmus.wgsl:4: the interpreter does not run derivatives");
+    assert_eq!(text, "litmus.wgsl:4:36: the interpreter does not run derivatives");
 }
 
 #[test]

@@ -31,6 +31,12 @@ fn read(replacements: &[(&str, &str)]) -> Result<Vec<Vec<u32>>, ReadOutError> {
     read_out.pixel(&mut frame, [0, 0])
 }
 
+/// Returns the number of the line of the storage that contains a text.
+fn line_of(text: &str) -> usize {
+    let source = Registry::builtin().row("storage", "sorted_array").unwrap().template.clone().unwrap().source;
+    source.lines().position(|line| line.contains(text)).unwrap() + 1
+}
+
 const NEXT: &str = "return sorted_array_seek(pixel, cursor + 1u);";
 const READ: &str = "return sorted_array_read(pixel, cursor);";
 
@@ -41,23 +47,27 @@ fn a_storage_without_errors_is_read_to_its_end() {
 
 #[test]
 fn a_list_that_returns_to_an_earlier_fragment_is_endless() {
-    assert_eq!(read(&[(NEXT, "return cursor;")]), Err(ReadOutError::Endless));
-    assert_eq!(read(&[(NEXT, "return cursor ^ 1u;")]), Err(ReadOutError::Endless));
+    assert_eq!(read(&[(NEXT, "return cursor;")]), Err(ReadOutError::Cycle));
+    assert_eq!(read(&[(NEXT, "return cursor ^ 1u;")]), Err(ReadOutError::Cycle));
 }
 
 #[test]
 fn a_list_with_more_fragments_than_words_is_endless() {
     let first = (READ, "return sorted_array_read(pixel, 0u);");
-    assert_eq!(read(&[(NEXT, "return cursor + 1u;"), first]), Err(ReadOutError::Endless));
+    assert_eq!(read(&[(NEXT, "return cursor + 1u;"), first]), Err(ReadOutError::Cycle));
 }
 
 #[test]
 fn a_call_of_storage_next_that_does_not_end_is_endless() {
     let next = "var next = cursor; while next != END { next ^= 1u; } return next;";
-    assert_eq!(read(&[(NEXT, next)]), Err(ReadOutError::Endless));
+    let Err(ReadOutError::Endless { location }) = read(&[(NEXT, next)]) else { panic!("it ends") };
+    assert_eq!(location, format!("user/sorted_array.wgsl:{}", line_of(NEXT)));
 }
 
 #[test]
 fn a_cursor_beyond_the_buffers_is_out_of_bounds() {
-    assert_eq!(read(&[(NEXT, "return cursor + 1000u;")]), Err(ReadOutError::OutOfBounds));
+    // The read of the entry: the access is in a generated accessor, which the template calls.
+    let Err(error) = read(&[(NEXT, "return cursor + 1000u;")]) else { panic!("it is within bounds") };
+    let expected = "reading the pixel accesses an index out of bounds at user/sorted_array.wgsl:";
+    assert!(error.to_string().starts_with(expected), "{error}");
 }

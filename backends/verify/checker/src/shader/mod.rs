@@ -125,6 +125,7 @@ impl ShaderCheck<'_> {
             match found.failure {
                 Some(schedule) if found.is_of_part => {
                     self.report.is_exhaustive = false;
+                    self.report.has_undecided_failure = true;
                     let (members, size) = invocations.part();
                     self.note(format!(
                         "with {members} of {size} invocations of a workgroup: {}. The others do not run, so this decides nothing",

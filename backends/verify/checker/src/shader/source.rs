@@ -209,14 +209,20 @@ fn without_overrides(
 }
 
 fn unsupported_error(unsupported: &[Unsupported], shader: &Shader<'_>) -> Error {
-    let message = |one: &Unsupported| match one.span.is_defined() {
-        true => {
-            let location = one.span.location(shader.source);
-            format!("{}:{}:{}: {one}", shader.file, location.line_number, location.line_position)
+    let mut messages: Vec<String> = Vec::new();
+    // A statement that contains such a construct is reported, too.
+    let mut known = Vec::new();
+    for one in unsupported {
+        let location = one.span.is_defined().then(|| one.span.location(shader.source));
+        let line = location.map(|at| at.line_number);
+        if known.contains(&(line, &one.what)) {
+            continue;
         }
-        false => format!("{}: {one}", shader.file),
-    };
-    let mut messages: Vec<String> = unsupported.iter().map(message).collect();
-    messages.dedup();
+        known.push((line, &one.what));
+        messages.push(match location {
+            Some(at) => format!("{}:{}:{}: {one}", shader.file, at.line_number, at.line_position),
+            None => format!("{}: {one}", shader.file),
+        });
+    }
     Error::Unable(messages.join("\n"))
 }
