@@ -78,7 +78,8 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         let neighbours = frame.read_out(WIDTH - 1 - setup.case.pixel)?;
         let is_lost = setup.specification.neighbours_lost > 0;
         if neighbours != if is_lost { Vec::new() } else { vec![setup.neighbour.words.clone()] } {
-            return Ok(StateVerdict::Wrong("the neighbouring pixel changed".to_owned()));
+            return Ok(StateVerdict::Wrong("other fragments are read from the neighbouring pixel: an access reached its words, or the functions that read a pixel are wrong"
+                    .to_owned()));
         }
         let plan = &frame.subject.plan;
         let counters = plan.resources.iter().position(|planned| planned.resource.name == COUNTERS_RESOURCE);

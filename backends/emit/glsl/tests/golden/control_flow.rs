@@ -245,7 +245,7 @@ void sync_store(uint pixel, uint key) {
             // slot 0 is published last
             a[pixel] = key;
             memoryBarrierBuffer();
-            atomicExchange(locks[pixel], 0u);
+            locks[pixel] = 0u;
             return;
         }
     }

@@ -109,8 +109,21 @@ impl<'a> Body<'a> {
         Ok(bytes)
     }
 
-    /// Returns the next word; `None` at the end of the file.
-    fn word(&mut self) -> Option<&'a [u8]> {
+    /// Skips to the next word of an ASCII body; returns its line. `None`: the body is binary.
+    pub(super) fn next_line(&mut self) -> Option<usize> {
+        if self.encoding != Encoding::Ascii {
+            return None;
+        }
+        self.skip_space();
+        Some(self.line)
+    }
+
+    /// Returns the line of the last word that was read.
+    pub(super) fn last_line(&self) -> usize {
+        self.line
+    }
+
+    fn skip_space(&mut self) {
         while let Some(byte) = self.bytes.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
             self.at += 1;
             // A carriage return and a line feed are one line end.
@@ -120,6 +133,11 @@ impl<'a> Body<'a> {
                 self.line += 1;
             }
         }
+    }
+
+    /// Returns the next word; `None` at the end of the file.
+    fn word(&mut self) -> Option<&'a [u8]> {
+        self.skip_space();
         let rest = self.bytes.get(self.at..)?;
         let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
         self.at += length;

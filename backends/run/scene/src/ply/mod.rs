@@ -11,7 +11,7 @@ mod header;
 
 use crate::attribute::{AttributeRequest, MAX_COMPONENTS};
 use crate::color_range::ColorRange;
-use crate::error::FileError;
+use crate::error::{FileError, FilePosition};
 use crate::limits::{Budget, OBJECT};
 use crate::model::{ModelObject, normal};
 use crate::text::{MAX_NUMBER, quoted};
@@ -137,7 +137,9 @@ impl<'a> Vertices<'a> {
     ) -> Result<(), FileError> {
         let (first, mut range) = (object.colors.len(), color_range(self.element, &self.slots));
         let mut values = vec![[0.0; MAX_COMPONENTS]; self.attributes.len()];
+        let mut line_before = None;
         for _ in 0..self.element.count {
+            let line = body.next_line();
             let (mut position, mut direction, mut color) = ([0.0; 3], [0.0; 3], self.color.map(f64::from));
             for ((property, slot), components) in self.element.properties.iter().zip(&self.slots).zip(&self.components)
             {
@@ -163,6 +165,17 @@ impl<'a> Vertices<'a> {
                     3..RED => direction[*slot - 3] = value,
                     _ => color[*slot - RED] = channel(value, property, body)?,
                 }
+            }
+            if let Some(line) = line {
+                // One vertex per line, as every writer does. Otherwise a value is missing, or is one too many.
+                if line != body.last_line() || line_before == Some(line) {
+                    let count = self.element.properties.len();
+                    let message = || format!("a line does not have the {count} values of a vertex");
+                    warnings.add(WarningKind::OutOfRange, "", || {
+                        (FilePosition::Line(line), Message::new(message(), "values are read across lines"))
+                    });
+                }
+                line_before = Some(body.last_line());
             }
             budget.vertices(object, 1)?;
             let direction = normal(direction).unwrap_or_else(|| {
