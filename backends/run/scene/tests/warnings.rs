@@ -456,13 +456,13 @@ fn a_line_of_a_ply_file_without_all_values_of_a_vertex_is_reported() {
         format!("{header}element face 1\nproperty list uchar int vertex_indices\nend_header\n{vertices}3 0 1 2\n")
     };
     clean(&[("a.ply", &model("0 0 0\n1 0 0\n\n0 1 0\n"))]);
-    // The second line has four values, and the third two.
+    // The second vertex has four values, and the third two.
     let (scene, warnings) = loaded(&[("a.ply", &model("0 0 0\n1 0 0 0\n1 0\n"))]);
-    let expected = "a.ply:12: a line does not have the 3 values of a vertex: values are read across lines";
+    let expected = "a.ply:11: a line does not have the 3 values of a vertex: values are read across lines";
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains(expected), "{warnings:?}");
     assert_eq!(scene.objects[0].positions.len(), 3);
     // All on one line.
     let (_, warnings) = loaded(&[("a.ply", &model("0 0 0 1 0 0 0 1 0\n"))]);
-    assert!(warnings.len() == 1 && warnings[0].contains("a.ply:11: "), "{warnings:?}");
+    assert!(warnings.len() == 1 && warnings[0].contains("a.ply:10: "), "{warnings:?}");
 }
