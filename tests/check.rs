@@ -83,6 +83,36 @@ fn a_description_with_closures_is_checked() {
     assert!(text(&output.stdout).contains("no failure in any interleaving"));
 }
 
+/// Attributes and uniforms are chosen so that constraints admit fragments: of one object, between two limits, of great values.
+#[test]
+fn constraints_of_every_kind_can_be_checked() {
+    let folder = crate::render::folder("check-constraints");
+    let descriptions = [
+        ("object", "id: u32", "uniform { object: u32 }", "where |f, u| f.id == u.object;"),
+        ("between", "heat: f32", "uniform { low: f32, high: f32 }", "where |f, u| f.heat > u.low && f.heat < u.high;"),
+        ("great", "heat: f32", "", "where |f| f.heat > 100.0;"),
+        ("steps", "heat: f32", "", "keep 4 least |f| f.heat.floor();"),
+    ];
+    for (name, attribute, uniform, choice) in descriptions {
+        let text = format!(
+            "buffer B from kplus_array {{ fragment {{ color: rgba8, depth: f32, {attribute} }} {uniform} {choice} sort: insertion; }}"
+        );
+        let path = folder.join(format!("{name}.fragbuf"));
+        std::fs::write(&path, text).unwrap();
+        let output = fragbuf(&["check", path.to_str().unwrap(), "--fragments", "2"]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", text_of_both(&output));
+    }
+    let none = folder.join("none.fragbuf");
+    std::fs::write(&none, "buffer B from kplus_array { where |f| f.depth > 2.0; }").unwrap();
+    let output = fragbuf(&["check", none.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("the constraints admit at most 0 of 96"), "{}", text(&output.stderr));
+}
+
+fn text_of_both(output: &Output) -> String {
+    format!("{}{}", text(&output.stdout), text(&output.stderr))
+}
+
 /// A search that was cut decides nothing.
 #[test]
 fn a_search_that_was_cut_is_no_verdict() {

@@ -139,11 +139,20 @@ impl Input {
     }
 }
 
+/// Returns whether a WGSL file has the header of a registry row.
+fn is_user_row(path: &Path) -> bool {
+    source_file::read(path).is_ok_and(|source| source.lines().any(|line| line.trim_start().starts_with("//:")))
+}
+
 /// Returns the failure for an argument that names a file of another kind, or none although it looks like the name of a file.
 fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Failure> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let extension = extension.as_deref().unwrap_or_default();
     let usage = match extension {
+        "wgsl" if is_user_row(path) => {
+            let name = path.file_name().map_or(argument.into(), |name| name.to_string_lossy());
+            format!("it is a row of its own: choose it in a description, as in `storage: wgsl(\"{name}\");`")
+        }
         "wgsl" => format!("`fragbuf check --wgsl {argument} --entry NAME` checks a shader"),
         "obj" | "ply" | "gltf" | "glb" | "gz" => format!("give a model to `--scene {argument}`"),
         "glsl" | "vert" | "frag" | "comp" | "hlsl" | "metal" | "spv" => "fragbuf reads shaders in WGSL only".to_owned(),

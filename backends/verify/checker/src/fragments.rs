@@ -21,10 +21,27 @@ pub(crate) struct Fragment {
 }
 
 /// Fragments that are generated.
-const GENERATED: u32 = 96;
+pub(crate) const GENERATED: u32 = 96;
 
 /// Candidates that are chosen from them.
-const RANKS: usize = 24;
+pub(crate) const RANKS: usize = 24;
+
+/// The values of attributes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AttributeValues {
+    /// Floats from 0 to 1, and integers from 1 to 1000.
+    Unit,
+    /// Floats from 0 to 1000.
+    Thousand,
+    /// Floats from 0 to 1; every integer is 1.
+    OneObject,
+}
+
+impl AttributeValues {
+    /// In the order in which they are considered.
+    pub(crate) const ALL: [AttributeValues; 3] =
+        [AttributeValues::Unit, AttributeValues::Thousand, AttributeValues::OneObject];
+}
 
 /// Admitted fragments of different keys, best first; and for each a twin, which has the same key and, if possible, another
 /// payload.
@@ -34,8 +51,9 @@ pub(crate) struct Candidates {
 }
 
 impl Candidates {
-    /// Chooses the candidates. `Err`: the constraints admit too few fragments, or too many have equal keys.
-    pub(crate) fn new(subject: &Subject, memory: &mut Memory) -> Result<Self, String> {
+    /// Chooses the candidates. The inner `Err` is their number, if the constraints admit too few fragments or too many have equal
+    /// keys.
+    pub(crate) fn new(subject: &Subject, memory: &mut Memory) -> Result<Result<Self, usize>, String> {
         let mut ranked: Vec<Fragment> = Vec::new();
         for seed in 0..GENERATED {
             ranked.extend(fragment(subject, memory, seed, seed)?);
@@ -43,16 +61,13 @@ impl Candidates {
         ranked.sort_by(|a, b| a.words.cmp(&b.words));
         ranked.dedup_by_key(|fragment| fragment.words[0]);
         if ranked.len() < RANKS {
-            return Err(format!(
-                "only {} of {GENERATED} generated fragments are admitted and have different keys",
-                ranked.len()
-            ));
+            return Ok(Err(ranked.len()));
         }
         // Candidates are spread over the whole range, so that there are keys between any two.
         let step = ranked.len() / RANKS;
         let ranked: Vec<Fragment> = ranked.into_iter().step_by(step).take(RANKS).collect();
         let twins = ranked.iter().map(|fragment| twin(subject, memory, fragment)).collect::<Result<_, _>>()?;
-        Ok(Candidates { ranked, twins })
+        Ok(Ok(Candidates { ranked, twins }))
     }
 }
 
@@ -65,7 +80,7 @@ fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<F
         let (program, _) = geometry(subject)?;
         for (number, input) in program.inputs.iter().enumerate() {
             if !is_position(input) {
-                other.inputs[number] = seeded(input, seed);
+                other.inputs[number] = seeded(input, seed, subject.attributes);
             }
         }
         if let Some(words) = packed(subject, memory, &other.inputs)?
@@ -92,7 +107,7 @@ fn fragment(subject: &Subject, memory: &mut Memory, seed: u32, depth: u32) -> Re
         .map(|input| match is_position(input) {
             // Depths are not in the order of seeds, and use all their bits.
             true => [0.5, 0.5, (depth * 37 % GENERATED) as f32 * 0.007_731 + 0.065_1, 1.0].map(f32::to_bits).to_vec(),
-            false => seeded(input, seed),
+            false => seeded(input, seed, subject.attributes),
         })
         .collect();
     Ok(packed(subject, memory, &inputs)?.map(|words| Fragment { inputs, words }))
@@ -164,13 +179,15 @@ pub(crate) fn is_position(input: &InterfaceVariable) -> bool {
     matches!(input.binding, Some(Binding::BuiltIn(BuiltIn::Position { .. })))
 }
 
-/// Returns attribute values: whole numbers, or floats from 0 to 1 in 255ths.
-fn seeded(input: &InterfaceVariable, seed: u32) -> Vec<u32> {
+/// Returns attribute values: whole numbers, or floats in 255ths of the greatest.
+fn seeded(input: &InterfaceVariable, seed: u32, values: AttributeValues) -> Vec<u32> {
+    let greatest = if values == AttributeValues::Thousand { 1000.0 } else { 1.0 };
     (0..input.words.len() as u32)
         .map(|component| {
             let mixed = (seed * 4 + component + 1).wrapping_mul(0x9e37_79b1) >> 8;
             match input.kind {
-                Some(ScalarKind::Float) => ((mixed % 255 + 1) as f32 / 255.0).to_bits(),
+                Some(ScalarKind::Float) => ((mixed % 255 + 1) as f32 / 255.0 * greatest).to_bits(),
+                _ if values == AttributeValues::OneObject => 1,
                 _ => mixed % 1000 + 1,
             }
         })

@@ -46,7 +46,7 @@ impl<'s> Frame<'s> {
         let samples = vec![0; plan.passes.len()];
         let mut frame =
             Frame { subject, memory, values, allocation_limit: None, requested: None, cursor, flipped: 0, samples };
-        frame.memory[1] = vec![subject.uniform.to_bits(); 256];
+        frame.memory[1] = subject.uniforms.iter().copied().cycle().take(256).collect();
         frame.memory[2] = vec![0; 16];
         frame.allocate()?;
         Ok(frame)

@@ -10,6 +10,7 @@ use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
 
+use crate::fragments::AttributeValues;
 use crate::probe::{probe_pass, probe_row};
 use crate::programs::{FullscreenProgram, Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
 use crate::read_out::ReadOut;
@@ -46,8 +47,9 @@ pub(crate) struct Subject {
     pub(crate) has_weak_exchange: bool,
     /// Whether an interlock admits fragments in submission order.
     pub(crate) has_ordered_interlock: bool,
-    /// The value of every component of every uniform.
-    pub(crate) uniform: f32,
+    /// The words of the uniform buffer, which alternate.
+    pub(crate) uniforms: [u32; 2],
+    pub(crate) attributes: AttributeValues,
 }
 
 impl Subject {
@@ -86,7 +88,8 @@ impl Subject {
             has_fences: target.provides.contains(&Feature::Fences),
             has_weak_exchange: target.has_weak_exchange,
             has_ordered_interlock: plan.requires.contains(&Feature::OrderedInterlock),
-            uniform: 1.0,
+            uniforms: [1.0_f32.to_bits(); 2],
+            attributes: AttributeValues::Unit,
             plan,
         }))
     }

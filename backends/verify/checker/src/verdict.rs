@@ -11,7 +11,7 @@ use fragbuf_templates::vocabulary::{Capability, Kind};
 use crate::case::{Case, cases};
 use crate::case_run::{CaseResult, CaseRun};
 use crate::case_setup::{CaseSetup, SearchOptions};
-use crate::fragments::Candidates;
+use crate::fragments::{AttributeValues, Candidates, GENERATED, RANKS};
 use crate::frame::Frame;
 use crate::kept_set::KeptSet;
 use crate::model::Model;
@@ -149,7 +149,7 @@ pub fn check_variant(
     }
     for retries in [RetryLimit::AsDeclared, RetryLimit::Minimum] {
         let Some(mut subject) = Subject::new(variant, target, registry, retries)? else { continue };
-        choose_uniform(&mut subject).map_err(Error::Unable)?;
+        choose_values(&mut subject).map_err(Error::Unable)?;
         report.is_kept_set_checked = !KeptSet::new(&subject, None).is_unknown();
         let hazards = subject.plan.hazards.iter();
         report.hazards = hazards.map(|hazard| (hazard.name.to_string(), hazard.description.to_string())).collect();
@@ -161,23 +161,34 @@ pub fn check_variant(
     Ok(report)
 }
 
-/// Values of uniforms, in the order in which they are considered.
-const UNIFORMS: [f32; 4] = [1.0, 0.0, 0.5, -1.0];
+/// Words of the uniform buffer, in the order in which they are considered: two that alternate, for constraints with a lower and an
+/// upper limit. The last are those of integers.
+const UNIFORMS: [[u32; 2]; 7] = [
+    [1.0_f32.to_bits(); 2],
+    [0.0_f32.to_bits(); 2],
+    [0.5_f32.to_bits(); 2],
+    [(-1.0_f32).to_bits(); 2],
+    [0.05_f32.to_bits(), 0.95_f32.to_bits()],
+    [0.95_f32.to_bits(), 0.05_f32.to_bits()],
+    [1; 2],
+];
 
-/// Sets the uniforms to a value with which the constraints admit enough fragments.
-fn choose_uniform(subject: &mut Subject) -> Result<(), String> {
-    let mut problem = String::new();
-    for uniform in UNIFORMS {
-        subject.uniform = uniform;
-        let mut frame = Frame::new(subject, ample_values(subject)?)?;
-        match Candidates::new(subject, &mut frame.memory) {
-            Ok(_) => return Ok(()),
-            Err(error) => problem = error,
+/// Sets uniforms and attributes to values with which the constraints admit enough fragments.
+fn choose_values(subject: &mut Subject) -> Result<(), String> {
+    let mut most = 0;
+    for attributes in AttributeValues::ALL {
+        for uniforms in UNIFORMS {
+            (subject.uniforms, subject.attributes) = (uniforms, attributes);
+            let mut frame = Frame::new(subject, ample_values(subject)?)?;
+            match Candidates::new(subject, &mut frame.memory)? {
+                Ok(_) => return Ok(()),
+                Err(found) => most = most.max(found),
+            }
         }
     }
     Err(format!(
-        "{problem}, with uniforms of {}: check the storage with constraints that admit more fragments",
-        UNIFORMS.map(|uniform| uniform.to_string()).join(", ")
+        "the constraints admit at most {most} of {GENERATED} generated fragments with different keys, and a check needs {RANKS}: the attributes were \
+         from 0 to 1, from 0 to 1000, and integers of 1, the uniforms from -1 to 1: check the storage with a criterion and constraints for such values"
     ))
 }
 
@@ -189,7 +200,8 @@ fn check_all(
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
     let mut frame = Frame::new(subject, ample_values(subject)?)?;
-    let candidates = Candidates::new(subject, &mut frame.memory)?;
+    let candidates =
+        Candidates::new(subject, &mut frame.memory)?.map_err(|found| format!("only {found} fragments are admitted"))?;
     let options = SearchOptions {
         model: limits.model,
         random_schedules: limits.random_schedules,

@@ -238,6 +238,9 @@ impl Checker<'_, '_, '_> {
             _ => {
                 let message = format!("no method `{name}` for the list of fragments");
                 let help = match nearest_name(name, &["len", "is_empty"]) {
+                    _ if ["iter", "rev"].contains(&name) => {
+                        "it is only for loops: `for f in fragments.iter().rev() { … }`".to_string()
+                    }
                     Some(nearest) => format!("did you mean `{nearest}`?"),
                     None => "use `len()`, `is_empty()`, or iterate with `for f in fragments { … }`".to_string(),
                 };

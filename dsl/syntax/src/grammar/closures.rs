@@ -248,7 +248,7 @@ fn syntax_help(message: &str) -> &'static str {
 
 /// Reports an attribute `#[…]`.
 pub(super) fn reject_attribute(span: &SourceSpan, report: &mut Report) {
-    let help = "remove the attribute: shaders have no equivalent";
+    let help = "remove `#`: a comment begins with `//`, and shaders have no attributes like `#[…]`";
     report.error(codes::UNSUPPORTED, span, "attributes are not supported", help);
 }
 

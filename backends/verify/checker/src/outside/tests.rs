@@ -38,7 +38,7 @@ fn each_technique(mut test: impl FnMut(&str, &Subject)) {
 fn every_technique_leaves_memory_outside_of_the_frame_alone() {
     each_technique(|key, subject| {
         let mut frame = Frame::new(subject, ample_values(subject).unwrap()).unwrap();
-        let candidates = Candidates::new(subject, &mut frame.memory).unwrap();
+        let candidates = Candidates::new(subject, &mut frame.memory).unwrap().ok().unwrap();
         assert_eq!(check_outside(subject, &candidates.ranked[0]).unwrap(), None, "{key}");
         assert!(!subject.fullscreen.is_empty(), "{key}");
     });
@@ -48,7 +48,7 @@ fn every_technique_leaves_memory_outside_of_the_frame_alone() {
 fn every_walk_ends_in_any_memory() {
     each_technique(|key, subject| {
         let mut frame = Frame::new(subject, ample_values(subject).unwrap()).unwrap();
-        let candidates = Candidates::new(subject, &mut frame.memory).unwrap();
+        let candidates = Candidates::new(subject, &mut frame.memory).unwrap().ok().unwrap();
         for (number, fill) in FILLS.into_iter().enumerate() {
             for (pass, program) in programs(subject) {
                 for x in 0..WIDTH {
