@@ -126,7 +126,7 @@ fn an_invalid_shader_is_explained() {
         let text = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "{text}");
         let line = if column == 1 { 6 } else { 5 };
-        for expected in ["error[invalid-wgsl]", &format!("a.wgsl:{line}:{column}"), message, &format!("help: ")] {
+        for expected in ["error[invalid-wgsl]", &format!("a.wgsl:{line}:{column}"), message, "help: "] {
             assert!(text.contains(expected), "{body}: {expected}: {text}");
         }
         assert!(text.contains(help) && !text.contains("naga") && !text.contains(" is invalid: "), "{body}: {text}");
