@@ -1,5 +1,5 @@
 // The fragments of one pixel, read from the storage: sorts order them and effects read them. If a pixel has more than
-// LAYERS, the farthest are dropped, for any order of arrival, and counted once per pixel.
+// LAYERS, the farthest are dropped and counted, for any order of arrival.
 
 var<private> layers: array<Packed, LAYERS>;
 var<private> gathered: u32;

@@ -73,7 +73,7 @@ pub(super) fn run(peers: &Peers, options: &Figure, experiment: &Experiment) -> R
             experiment.name
         )));
     };
-    let context = Context::surfaceless().map_err(device)?;
+    let device_name = Context::surfaceless().map_err(device)?.name.clone();
     let side = options.size.unwrap_or(if options.quick { QUICK_SIDE } else { peers.side });
     let progress = Progress::new();
     let (mut points, count) =
@@ -87,6 +87,8 @@ pub(super) fn run(peers: &Peers, options: &Figure, experiment: &Experiment) -> R
                     || format!("{}: {} on {}", experiment.name, description.technique, scene.name),
                     share,
                 );
+                // The memory of a context ends with it.
+                let context = Context::surfaceless().map_err(device)?;
                 let outcome = measure(&context, &description, (scene, side), (folder, options))?;
                 let changes = description.set.iter().map(|(name, value)| format!(" {name}={value}"));
                 points.push(Point {
@@ -104,19 +106,22 @@ pub(super) fn run(peers: &Peers, options: &Figure, experiment: &Experiment) -> R
     let mut header = vec![
         format!("fragbuf {}, figure {}", env!("CARGO_PKG_VERSION"), experiment.name),
         format!("{}: {}", experiment.paper, experiment.title),
-        format!("device: {} (OpenGL); {build} build; {side} x {side} pixels", context.name),
+        format!("device: {} (OpenGL); {build} build; {side} x {side} pixels", device_name),
         format!("each point: {WARM_UP} warm-up frames, {} measured frames of each side in turns", options.repeats()),
     ];
     header.extend(PROJECTS.iter().map(|project| format!("{}: {}, {}", project.name, project.paper, project.source)));
     let file = |extension: &str| options.out.join(format!("{}.{extension}", experiment.name));
     csv::write(&file("csv"), &header, &COLUMNS, &points.iter().map(row).collect::<Vec<_>>())?;
-    csv::write_text(&file("svg"), &drawing(experiment, &context.name, &points))?;
-    Ok(sentence(experiment, &context.name, &points))
+    csv::write_text(&file("svg"), &drawing(experiment, &device_name, &points))?;
+    Ok(sentence(experiment, &device_name, &points))
 }
 
 fn device(error: Error) -> Failure {
     Failure::Device(error.0)
 }
+
+/// The bytes of a fragment on both sides together, at most: words of an entry, a link, and texels of two images.
+const FRAGMENT_BYTES: u64 = 32;
 
 /// Measures one technique. The inner `Err` is the reason why the driver or the checkout does not allow it.
 fn measure(
@@ -136,7 +141,9 @@ fn measure(
     let name = scene.scene[usize::from(options.quick)].to_owned();
     let view = View::measured(name, camera, (side, side), (DeviceRequest::Cpu, None), options.memory);
     let (viewed, _) = view.scene_views(&[])?;
-    let geometry = geometry((&viewed.scene, &[]), &planned.plan, view.memory_beside(&[&viewed])?)?;
+    let fragments = u64::from(side) * u64::from(side) * CAPACITY;
+    let memory = view.memory_beside(&[&viewed])?.without(fragments * FRAGMENT_BYTES, "the memory of both sides")?;
+    let geometry = geometry((&viewed.scene, &[]), &planned.plan, memory)?;
     let stride = geometry.vertices.len() / viewed.scene.vertices().max(1);
     let words =
         geometry.indices.iter().filter_map(|index| geometry.vertices.get(*index as usize * stride..)?.get(..stride));

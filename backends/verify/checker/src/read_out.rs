@@ -54,8 +54,9 @@ pub struct ReadOut {
     read: Bytecode,
     /// The key that no fragment of the k best exceeds, where the storage provides one.
     pub(crate) bound: Option<Bytecode>,
-    /// The source of the functions that read the entries.
+    /// The sources of the functions that read the entries, and of the bound.
     source: CheckedSource,
+    bound_source: CheckedSource,
     /// The formats of textures, by the plan's resources.
     formats: Vec<Option<TextureFormat>>,
 }
@@ -82,17 +83,17 @@ impl ReadOut {
             let of_pass = checked.iter().filter(|checked| checked.pass().name == pass);
             of_pass.map(|checked| function(checked, name, &formats, span)).next().transpose()
         };
+        let source = |pass: &str| {
+            checked.iter().find(|checked| checked.pass().name == pass).map(CheckedSource::of).unwrap_or_default()
+        };
         let required = |name: &str| compiled(READ_OUT, name)?.ok_or_else(|| missing(READ_OUT, name, span));
         Ok(ReadOut {
             index: required("pixel_index")?,
             walk: required("walk_to")?,
             read: required("storage_read")?,
             bound: compiled(READ_BOUND, "storage_bound")?,
-            source: checked
-                .iter()
-                .find(|checked| checked.pass().name == READ_OUT)
-                .map(CheckedSource::of)
-                .unwrap_or_default(),
+            source: source(READ_OUT),
+            bound_source: source(READ_BOUND),
             formats,
         })
     }
@@ -108,12 +109,12 @@ impl ReadOut {
     pub fn bound(&self, frame: &mut FrameMemory, at: [u32; 2]) -> Result<Option<u32>, ReadOutError> {
         let Some(bound) = &self.bound else { return Ok(None) };
         let pixel = self.index(frame, at)?;
-        Ok(self.call(bound, &[&[pixel]], &mut frame.memory, frame.size)?.first().copied())
+        Ok(self.call((bound, &self.bound_source), &[&[pixel]], &mut frame.memory, frame.size)?.first().copied())
     }
 
     fn index(&self, frame: &mut FrameMemory, at: [u32; 2]) -> Result<u32, ReadOutError> {
         let centre = at.map(|at| (at as f32 + 0.5).to_bits());
-        Ok(self.call(&self.index, &[&centre], &mut frame.memory, frame.size)?[0])
+        Ok(self.call((&self.index, &self.source), &[&centre], &mut frame.memory, frame.size)?[0])
     }
 
     /// Returns the fragments of the pixel of this index.
@@ -130,7 +131,7 @@ impl ReadOut {
         loop {
             // Each walk starts again and may count losses. Only the counts of the last walk, which reaches the end, are kept.
             let before = self.written(memory);
-            let cursor = self.call(&self.walk, &[&[pixel], &[entries.len() as u32]], memory, size)?[0];
+            let cursor = self.call((&self.walk, &self.source), &[&[pixel], &[entries.len() as u32]], memory, size)?[0];
             if cursor == u32::MAX {
                 return Ok(entries);
             }
@@ -138,7 +139,7 @@ impl ReadOut {
                 return Err(ReadOutError::Cycle);
             }
             before.into_iter().for_each(|(index, words)| memory[index] = words);
-            entries.push(self.call(&self.read, &[&[pixel], &[cursor]], memory, size)?);
+            entries.push(self.call((&self.read, &self.source), &[&[pixel], &[cursor]], memory, size)?);
         }
     }
 
@@ -152,7 +153,7 @@ impl ReadOut {
     /// Calls one of the functions; returns its result.
     fn call(
         &self,
-        program: &Bytecode,
+        (program, source): (&Bytecode, &CheckedSource),
         arguments: &[&[u32]],
         memory: &mut Memory,
         size: [u32; 2],
@@ -169,7 +170,7 @@ impl ReadOut {
             machine.run_or_repeat(&mut Reader::new(buffers, &textures), |reader| reader.changes)
         });
         indices.into_iter().zip(words).for_each(|(index, words)| memory[index] = words);
-        let location = |at: u32| code_location(program, at, &self.source);
+        let location = |at: u32| code_location(program, at, source);
         match (machine.out_of_bounds.take(), exit) {
             (Some(access), _) => Err(ReadOutError::OutOfBounds { location: location(access.at) }),
             (None, Exit::Ended) => Ok(machine.result().to_vec()),

@@ -13,6 +13,11 @@ const WORDS: usize = 64;
 
 /// Reads a pixel of `kb` out, whose storage has these replacements in its source.
 fn read(replacements: &[(&str, &str)]) -> Result<Vec<Vec<u32>>, ReadOutError> {
+    with_frame(replacements, |read_out, frame| read_out.pixel(frame, [0, 0]))
+}
+
+/// Calls a function with the storage and a frame of one pixel.
+fn with_frame<T>(replacements: &[(&str, &str)], call: impl Fn(&ReadOut, &mut FrameMemory) -> T) -> T {
     let registry = Registry::builtin();
     let mut row = registry.row("storage", "sorted_array").unwrap().clone();
     let template = row.template.unwrap();
@@ -28,7 +33,7 @@ fn read(replacements: &[(&str, &str)]) -> Result<Vec<Vec<u32>>, ReadOutError> {
     let read_out = ReadOut::new(&plan, Profile::Native, &registry).unwrap();
     let symbol = |name: &str| [("width", 1), ("height", 1), ("k", 2)].iter().find(|one| one.0 == name).map(|one| one.1);
     let mut frame = FrameMemory::new(&plan, [1, 1], symbol, |_| Some(vec![7; WORDS]));
-    read_out.pixel(&mut frame, [0, 0])
+    call(&read_out, &mut frame)
 }
 
 /// Returns the number of the line of the storage that contains a text.
@@ -70,4 +75,17 @@ fn a_cursor_beyond_the_buffers_is_out_of_bounds() {
     let Err(error) = read(&[(NEXT, "return cursor + 1000u;")]) else { panic!("it is within bounds") };
     let expected = "reading the pixel accesses an index out of bounds at user/sorted_array.wgsl:";
     assert!(error.to_string().starts_with(expected), "{error}");
+}
+
+#[test]
+fn an_error_of_the_bound_has_its_line() {
+    let before = "return keys_hint(frame.k - 1u, pixel);";
+    let bound = |read_out: &ReadOut, frame: &mut FrameMemory| read_out.bound(frame, [0, 0]);
+    assert_eq!(with_frame(&[], bound), Ok(Some(7)));
+    let Err(error) = with_frame(&[(before, "return keys_hint(frame.k + 1000u, pixel);")], bound) else {
+        panic!("it is within bounds")
+    };
+    let expected =
+        format!("reading the pixel accesses an index out of bounds at user/sorted_array.wgsl:{}", line_of(before));
+    assert_eq!(error.to_string(), expected);
 }
