@@ -52,7 +52,7 @@ fn spin_lock() -> Row {
         parameters: vec![Parameter::retry_limit(
             "limit",
             "SPIN_LIMIT",
-            "4096",
+            "16384",
             (1, 1 << 24),
             "tries before a fragment times out and is counted",
         )],

@@ -12,14 +12,19 @@ fn sync_store(pixel: u32, entry: Packed) {
     if is_helper_lane() {
         return;
     }
-    for (var attempt = 0u; attempt < SPIN_LIMIT; attempt++) {
+    // No `return` inside the loop: lanes of a wave that wait must join the lane with the lock after each try, or they
+    // can use up their tries before it runs.
+    var is_waiting = true;
+    for (var attempt = 0u; attempt < SPIN_LIMIT && is_waiting; attempt++) {
         if locks_atomic_exchange(pixel, TAKEN) == FREE {
             memory_fence();
             storage_insert(pixel, entry);
             memory_fence();
             locks_store(pixel, FREE);
-            return;
+            is_waiting = false;
         }
     }
-    on_lost(pixel, entry, TIMED_OUT);
+    if is_waiting {
+        on_lost(pixel, entry, TIMED_OUT);
+    }
 }

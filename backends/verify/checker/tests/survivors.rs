@@ -186,9 +186,15 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ("sync/spin_lock", "const TAKEN = 1u;", "const TAKEN = 2u;", "every word but FREE means taken"),
     (
         "sync/spin_lock",
-        "for (var attempt = 0u; attempt < SPIN_LIMIT; attempt++) {",
-        "for (var attempt = 0u; attempt <= SPIN_LIMIT; attempt++) {",
+        "for (var attempt = 0u; attempt < SPIN_LIMIT && is_waiting; attempt++) {",
+        "for (var attempt = 0u; attempt <= SPIN_LIMIT && is_waiting; attempt++) {",
         "one more attempt: the number of attempts is a bound, not part of the specification",
+    ),
+    (
+        "sync/spin_lock",
+        "locks_store(pixel, FREE); is_waiting = false;",
+        "is_waiting = false; locks_store(pixel, FREE);",
+        "the variable is the invocation's own",
     ),
     (
         "storage/bucket_lists",
