@@ -1,5 +1,6 @@
 //! The image of the CPU device for tests of other devices, and whether the reference can judge a variant.
 
+use fragbuf_codegen::Plan;
 use fragbuf_cpu::{Device, Mesh};
 use fragbuf_templates::vocabulary::{Capability, TieBreak};
 
@@ -20,10 +21,10 @@ pub fn cpu_image(
     picture.pixels.iter().map(|pixel| over_background(pixel.map(f64::from), background)).collect()
 }
 
-/// Tests whether the image is that of the k nearest fragments, or of all: nothing is lost, and ties do not depend on arrival.
-pub fn is_exact(device: &Device) -> bool {
-    let storage = &device.plan().selection.row("storage").unwrap().row;
+/// Tests whether the image is that of the k nearest fragments, or of all: nothing is lost, and words decide ties.
+pub fn is_exact(plan: &Plan) -> bool {
+    let storage = &plan.selection.row("storage").unwrap().row;
     let keeps_best = [Capability::KeepsAll, Capability::KeepsBest].iter().any(|kept| storage.may_provide(*kept));
-    let ties = device.plan().selection.row("ties").and_then(|ties| ties.row.order);
-    keeps_best && device.plan().hazards.is_empty() && ties != Some(TieBreak::Unordered)
+    let ties = plan.selection.row("ties").and_then(|ties| ties.row.order);
+    keeps_best && plan.hazards.is_empty() && !matches!(ties, Some(TieBreak::Unordered | TieBreak::Submission))
 }

@@ -61,12 +61,29 @@ pub fn vertices(quads: &[Quad], [width, height]: [u32; 2], inputs: &[&str]) -> V
     bytes
 }
 
-/// Returns the image of the k nearest fragments of each pixel, of all for `None`, over an opaque background.
-pub fn image(quads: &[Quad], [width, height]: [u32; 2], k: Option<u32>, background: [f64; 3]) -> Vec<[f64; 3]> {
+/// Returns the image of the k nearest fragments of each pixel, of all for `None`, over an opaque background. Of equal depths the lesser
+/// colour word is nearer.
+pub fn image(quads: &[Quad], size: [u32; 2], k: Option<u32>, background: [f64; 3]) -> Vec<[f64; 3]> {
+    let words = |quad: &Quad| vec![reference::depth_key(quad.depth), u32::from_le_bytes(quad.color)];
+    image_by(&words, quads, size, k, background)
+}
+
+/// As [`image`], but of equal depths the one that is drawn first is nearer.
+pub fn image_in_order(quads: &[Quad], size: [u32; 2], k: Option<u32>, background: [f64; 3]) -> Vec<[f64; 3]> {
+    let place = |quad: &Quad| quads.iter().position(|other| other.id == quad.id).unwrap() as u32;
+    image_by(&|quad| vec![reference::depth_key(quad.depth), place(quad)], quads, size, k, background)
+}
+
+fn image_by(
+    words: &dyn Fn(&Quad) -> Vec<u32>,
+    quads: &[Quad],
+    [width, height]: [u32; 2],
+    k: Option<u32>,
+    background: [f64; 3],
+) -> Vec<[f64; 3]> {
     let pixel = |index: u32| {
         let covering: Vec<Quad> =
             quads.iter().filter(|quad| quad.covers(index % width, index / width)).copied().collect();
-        let words = |quad: &Quad| vec![reference::depth_key(quad.depth), u32::from_le_bytes(quad.color)];
         let kept = reference::best(&covering, words, k);
         let front = reference::over(kept.iter().map(|quad| quad.color.map(|channel| f64::from(channel) / 255.0)));
         over_background(front, background)

@@ -1,4 +1,5 @@
-//! Opens an OpenGL 4.5 context without a window or a display server: EGL's surfaceless platform, which Mesa has.
+//! Opens an OpenGL 4.5 context without a window or a display server: EGL's surfaceless platform, which Mesa has, or else the first device
+//! that EGL lists and that opens, which is how the drivers of GPU vendors are reached.
 
 use std::ffi::c_void;
 use std::mem::transmute;
@@ -12,6 +13,13 @@ type Egl = egl::DynamicInstance<egl::EGL1_5>;
 
 /// `EGL_PLATFORM_SURFACELESS_MESA`.
 const SURFACELESS: egl::Enum = 0x31dd;
+/// `EGL_PLATFORM_DEVICE_EXT`.
+const DEVICE: egl::Enum = 0x313f;
+/// No more devices than this are tried.
+const MOST_DEVICES: usize = 16;
+
+/// `eglQueryDevicesEXT`.
+type QueryDevices = unsafe extern "system" fn(egl::Int, *mut *mut c_void, *mut egl::Int) -> egl::Boolean;
 
 // Functions of OpenGL that glow lacks.
 type SampleMask = unsafe extern "system" fn(u32, u32);
@@ -41,10 +49,7 @@ impl Context {
         let failed = |what: &str, error: &dyn std::fmt::Display| Error(format!("no OpenGL: {what}: {error}"));
         // SAFETY: the library is the system's EGL, whose initialisers may run.
         let egl = unsafe { Egl::load_required() }.map_err(|error| failed("libEGL.so.1 with EGL 1.5", &error))?;
-        // SAFETY: this platform has only the default display.
-        let display = unsafe { egl.get_platform_display(SURFACELESS, egl::DEFAULT_DISPLAY, &[egl::ATTRIB_NONE]) };
-        let display = display.map_err(|error| failed("the surfaceless platform", &error))?;
-        egl.initialize(display).map_err(|error| failed("eglInitialize", &error))?;
+        let display = open_display(&egl).map_err(|error| failed("the surfaceless platform", &error))?;
         egl.bind_api(egl::OPENGL_API).map_err(|error| failed("eglBindAPI", &error))?;
         let wanted = [egl::SURFACE_TYPE, egl::PBUFFER_BIT, egl::RENDERABLE_TYPE, egl::OPENGL_BIT, egl::NONE];
         let config = egl.choose_first_config(display, &wanted).map_err(|error| failed("eglChooseConfig", &error))?;
@@ -92,6 +97,35 @@ impl Context {
             })
         }
     }
+}
+
+/// Returns an initialised display, of the surfaceless platform where that has one.
+fn open_display(egl: &Egl) -> Result<egl::Display, egl::Error> {
+    let surfaceless = open_platform(egl, SURFACELESS, egl::DEFAULT_DISPLAY);
+    surfaceless.or_else(|error| {
+        let mut devices = devices(egl).into_iter();
+        devices.find_map(|device| open_platform(egl, DEVICE, device).ok()).ok_or(error)
+    })
+}
+
+fn open_platform(egl: &Egl, platform: egl::Enum, native: *mut c_void) -> Result<egl::Display, egl::Error> {
+    // SAFETY: the native display is the default one or a device that EGL listed.
+    let display = unsafe { egl.get_platform_display(platform, native, &[egl::ATTRIB_NONE]) }?;
+    egl.initialize(display)?;
+    Ok(display)
+}
+
+/// The devices of `EGL_EXT_device_enumeration`, none where EGL lacks it.
+fn devices(egl: &Egl) -> Vec<*mut c_void> {
+    let Some(query) = egl.get_proc_address("eglQueryDevicesEXT") else { return Vec::new() };
+    // SAFETY: the function of this name has this type.
+    let query: QueryDevices = unsafe { transmute(query) };
+    let mut devices = [std::ptr::null_mut(); MOST_DEVICES];
+    let mut count = 0;
+    // SAFETY: the array has room for as many devices as the call may write.
+    let found = unsafe { query(MOST_DEVICES as egl::Int, devices.as_mut_ptr(), &raw mut count) };
+    let count = if found == egl::TRUE { count.clamp(0, MOST_DEVICES as egl::Int) as usize } else { 0 };
+    devices[..count].to_vec()
 }
 
 impl Context {

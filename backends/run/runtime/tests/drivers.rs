@@ -7,10 +7,11 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
+use fragbuf_codegen::Arrival;
 use fragbuf_cpu::{Code, Device};
-use fragbuf_model::Variant;
+use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Output, Renderer, Settings};
+use fragbuf_runtime::{Error, Interlock, Output, Renderer, Settings, Shaders};
 use fragbuf_targets::target;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
@@ -25,7 +26,7 @@ use scene::{Quad, first_difference, image, quads, vertices};
 #[path = "../../../../tests/oracle/cpu_image.rs"]
 mod cpu_image;
 #[path = "../../../../tests/oracle/scene.rs"]
-mod scene;
+pub mod scene;
 
 /// The width and height of each frame, and the rows of its slices.
 const FRAMES: [([u32; 2], Option<u32>); 6] =
@@ -53,12 +54,22 @@ fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], size: [u32; 2
 fn compare(stage: &Headless, key: &str, variant: &Variant, k: Option<u32>) -> Result<(), Error> {
     // Techniques that portable WGSL cannot express use naga's WGSL.
     let is_portable = variant.select(target("wgsl").unwrap().provides).is_ok();
-    let shaders = shaders(variant, if is_portable { "wgsl" } else { "wgsl-native" });
+    compare_shaders(stage, key, &shaders(variant, if is_portable { "wgsl" } else { "wgsl-native" }), variant, k)
+}
+
+/// Compares shaders in every frame with a variant that has the same image.
+fn compare_shaders(
+    stage: &Headless,
+    key: &str,
+    shaders: &Shaders,
+    variant: &Variant,
+    k: Option<u32>,
+) -> Result<(), Error> {
     let code = Arc::new(Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{key}: {error}")));
     for (size, slice) in FRAMES {
         let [width, height] = size;
-        let settings = Settings { slice, ..Settings::new(FORMAT, width, height) };
-        let mut renderer = renderer(stage, &shaders, &settings)?;
+        let settings = Settings { slice, interlock: stage.interlock, ..Settings::new(FORMAT, width, height) };
+        let mut renderer = renderer(stage, shaders, &settings)?;
         let settings = fragbuf_cpu::Settings::new(width, height);
         let mut cpu = Device::new(code.clone(), settings).unwrap();
         let inputs: Vec<String> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.clone()).collect();
@@ -68,7 +79,7 @@ fn compare(stage: &Headless, key: &str, variant: &Variant, k: Option<u32>) -> Re
         let mut quads = quads(8, size, &mut numbers);
         for order in 0..3 {
             let seen = draw(stage, &mut renderer, &quads, size);
-            let expected = match is_exact(&cpu) {
+            let expected = match is_exact(cpu.plan()) {
                 true => image(&quads, size, k, BACKGROUND),
                 false => cpu_image(&mut cpu, &quads, size, &inputs, BACKGROUND),
             };
@@ -106,6 +117,47 @@ fn every_technique_at_odd_sizes() {
     let expected = usize::from(!has_wide_atomics);
     assert!(left_out.len() == expected && left_out.iter().all(is_lacking), "{left_out:?}");
     assert_eq!(right + expected, registry.techniques().len());
+}
+
+/// Every technique in SPIR-V with every interlock that it takes. A device without interlock says so, and draws nothing.
+#[test]
+fn interlock_where_the_device_has_it() {
+    let stage = stage::chosen_device();
+    let (mut compared, registry) = (0, Registry::builtin());
+    for row in registry.techniques() {
+        let k = match row.keep {
+            KeepDefault::All => None,
+            KeepDefault::Best(most) => Some(most.min(4)),
+        };
+        let number = k.map(|k| k.to_string());
+        let set: Vec<(&str, &str)> = number.iter().map(|k| ("k", k.as_str())).collect();
+        for sync in ["interlock", "interlock_ordered"] {
+            let span = SourceSpan::new(row.key.as_str(), 1, 1);
+            let mut draft = Draft::from_technique(&row.key, &span);
+            for (name, value) in set.iter().copied().chain([("sync", sync)]) {
+                draft.set(name, value, &span).unwrap();
+            }
+            let Ok(variant) = check(&draft, &registry) else { continue };
+            let what = format!("{} with {sync}", row.key);
+            // The CPU device has no interlock. The choice of a sync does not change the image.
+            let shaders = shaders(&variant, "spirv");
+            if stage.interlock == Interlock::Enabled && shaders.plan.arrival() == Arrival::Race {
+                println!("{what}: not compared, because races change its image");
+                continue;
+            }
+            let seen = compare_shaders(&stage, &what, &shaders, &technique(&row.key, &set), k);
+            match stage.interlock {
+                Interlock::Enabled => assert!(seen.is_ok(), "{what}: {seen:?}"),
+                Interlock::Absent => {
+                    let message = seen.unwrap_err().to_string();
+                    assert!(message.contains("fragment shader interlock"), "{what}: {message}");
+                }
+            }
+            compared += 1;
+        }
+    }
+    println!("{compared} techniques with {:?} interlock", stage.interlock);
+    assert!(compared > 8, "{compared}");
 }
 
 /// Runs a test of this binary on SwiftShader and returns what it printed.

@@ -18,6 +18,7 @@ mod quads;
 mod samples;
 mod stage;
 
+mod allocation;
 mod buckets;
 mod capture;
 mod cpu_device;
@@ -36,6 +37,7 @@ mod occupancy;
 mod opaque;
 mod opaque_depth;
 mod overflow;
+mod parallel;
 mod rasterisation;
 mod routing;
 mod sizing;

@@ -17,11 +17,21 @@ use crate::samples;
 
 /// Returns the CPU's adapter: it is the same on every machine, and runs fragments in submission order.
 pub fn device() -> MutexGuard<'static, Headless> {
-    static DEVICE: LazyLock<Mutex<Headless>> = LazyLock::new(|| {
-        let opened = Headless::open(&Choice::Cpu, wgpu::Features::PASSTHROUGH_SHADERS);
-        Mutex::new(opened.unwrap_or_else(|error| panic!("these tests need a software driver: {error}")))
-    });
+    static DEVICE: LazyLock<Mutex<Headless>> = LazyLock::new(|| open(&Choice::Cpu));
     DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns the adapter that the environment variable `FRAGBUF_TEST_DEVICE` names, as `--device` does, or the CPU's: for tests of what
+/// holds on devices that run fragments concurrently, too.
+pub fn chosen_device() -> MutexGuard<'static, Headless> {
+    static DEVICE: LazyLock<Mutex<Headless>> =
+        LazyLock::new(|| open(&std::env::var("FRAGBUF_TEST_DEVICE").map_or(Choice::Cpu, |name| name.parse().unwrap())));
+    DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn open(choice: &Choice) -> Mutex<Headless> {
+    let opened = Headless::open(choice, wgpu::Features::PASSTHROUGH_SHADERS);
+    Mutex::new(opened.unwrap_or_else(|error| panic!("these tests need a software driver: {error}")))
 }
 
 pub const FORMAT: wgpu::TextureFormat = BLENDED;
