@@ -5,12 +5,13 @@
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
 //! 5. [`run`]: images and statistics from the command line.
-//! 6. [`figures`]: experiments of the papers, with the comparison of their trends.
-//! 7. [`embed`]: frames in your own engine, and [`material`]: a shader of your own that stores fragments.
-//! 8. [`extend`]: your own storage, snapshots.
-//! 9. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
-//! 10. [`verdict`]: what a verdict of the checker means, and what it does not.
-//! 11. [`diagnostics`]: error messages, and how to read them; [`codes`]: every code with its cause, an example and the fix.
+//! 6. [`memory`]: k from a memory budget and a hit ratio.
+//! 7. [`figures`]: experiments of the papers, with the comparison of their trends.
+//! 8. [`embed`]: frames in your own engine, and [`material`]: a shader of your own that stores fragments.
+//! 9. [`extend`]: your own storage, snapshots.
+//! 10. [`check`]: the checker, which runs the fragments of a pixel in every interleaving.
+//! 11. [`verdict`]: what a verdict of the checker means, and what it does not.
+//! 12. [`diagnostics`]: error messages, and how to read them; [`codes`]: every code with its cause, an example and the fix.
 
 #[doc = include_str!("guide/describe.md")]
 pub mod describe {}
@@ -24,6 +25,8 @@ pub mod generate {}
 pub mod manifest {}
 #[doc = include_str!("guide/run.md")]
 pub mod run {}
+#[doc = include_str!("guide/memory.md")]
+pub mod memory {}
 #[doc = include_str!("guide/figures.md")]
 pub mod figures {}
 #[cfg(feature = "gpu")]

@@ -37,6 +37,7 @@ mod no_op_rows;
 mod opaque;
 mod options;
 mod oracle;
+mod predict;
 mod product;
 mod quads;
 mod render;

@@ -40,6 +40,19 @@ impl CameraRequest {
     }
 }
 
+impl CameraRequest {
+    /// Returns the view after an orbit of so many degrees around the scene; `None` for views that do not frame the scene.
+    pub(crate) fn turned(self, degrees: f64) -> Option<Self> {
+        let (angles, field_of_view) = match self {
+            CameraRequest::Auto => (Camera::framing_angles(), FIELD_OF_VIEW),
+            CameraRequest::Orbit { angles, field_of_view } => (angles, field_of_view),
+            CameraRequest::Clip | CameraRequest::Eye { .. } => return None,
+        };
+        let [azimuth, elevation] = angles;
+        Some(CameraRequest::Orbit { angles: [azimuth + degrees, elevation], field_of_view })
+    }
+}
+
 impl FromStr for CameraRequest {
     type Err = String;
 

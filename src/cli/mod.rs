@@ -2,6 +2,8 @@
 //!
 //! Exit code 0: done. 1: an error in the description or an input. 2: usage. 3: device or file system.
 
+#[cfg(feature = "pictures")]
+mod animation;
 mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;
@@ -32,6 +34,8 @@ mod output;
 mod page;
 #[cfg(feature = "pictures")]
 mod picture;
+#[cfg(feature = "pictures")]
+mod predict;
 #[cfg(feature = "pictures")]
 mod progress;
 mod progress_line;
@@ -92,6 +96,9 @@ enum Command {
     /// Render a scene with two techniques and measure the difference between the images
     #[cfg(feature = "pictures")]
     Compare(compare::Compare),
+    /// Predict k for a scene from a memory budget and a hit ratio
+    #[cfg(feature = "pictures")]
+    Predict(predict::Predict),
     /// List the devices that can render
     #[cfg(feature = "pictures")]
     Devices(devices::Devices),
@@ -124,6 +131,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Render(render) => render.run(),
         #[cfg(feature = "pictures")]
         Command::Compare(compare) => compare.run(),
+        #[cfg(feature = "pictures")]
+        Command::Predict(predict) => predict.run(),
         #[cfg(feature = "pictures")]
         Command::Devices(devices) => devices.run(),
         #[cfg(feature = "figures")]

@@ -168,7 +168,9 @@ impl From<fragbuf_cpu::Error> for Failure {
         match error {
             fragbuf_cpu::Error::MissingFeature(_)
             | fragbuf_cpu::Error::Shader { .. }
-            | fragbuf_cpu::Error::Frame(FrameError::Unsupported { .. }) => Failure::Input(text),
+            | fragbuf_cpu::Error::Frame(FrameError::Unsupported { .. } | FrameError::Host { .. }) => {
+                Failure::Input(text)
+            }
             fragbuf_cpu::Error::Frame(FrameError::BadValue { .. }) => Failure::Usage(text),
             _ => Failure::Device(text),
         }
@@ -180,7 +182,7 @@ impl From<fragbuf_runtime::Error> for Failure {
     fn from(error: fragbuf_runtime::Error) -> Self {
         let text = error.to_string();
         match error {
-            fragbuf_runtime::Error::Unsupported { .. } => Failure::Input(text),
+            fragbuf_runtime::Error::Unsupported { .. } | fragbuf_runtime::Error::Host { .. } => Failure::Input(text),
             fragbuf_runtime::Error::BadValue { .. } => Failure::Usage(text),
             // The CPU device has the same budget.
             fragbuf_runtime::Error::OverBudget(_) => Failure::Device(text),

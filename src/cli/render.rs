@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use fragbuf::Registry;
+use serde_json::Value;
 
+use super::animation::Animation;
 use super::assignment::{assignment, uniform};
 use super::attributes::{check_sources, model_attributes};
 use super::input::Input;
@@ -32,11 +34,16 @@ pub(crate) struct Render {
     /// Render again whenever the description, a user file that it names, a model or a file that a model names changes. Ctrl-C ends
     #[arg(long)]
     watch: bool,
+    #[command(flatten)]
+    animation: Animation,
 }
 
 impl Render {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         self.view.check()?;
+        if self.animation.is_given() {
+            return self.animate();
+        }
         if !self.watch {
             return self.render(&mut Vec::new());
         }
@@ -49,9 +56,37 @@ impl Render {
         watch(files, "give a .fragbuf file, or a model to `--scene`", |files| self.render(files))
     }
 
+    /// Renders the frames of an animation, and prints a line per frame.
+    fn animate(&self) -> Result<(), Failure> {
+        if self.watch {
+            return Err(Failure::Usage("`--watch` renders one image again and again: leave out `--frames`".to_owned()));
+        }
+        let views = self.animation.views(&self.view)?;
+        let mut statistics = Vec::new();
+        for (number, view) in (0..).zip(views) {
+            let found = self.frame(&view, &mut Vec::new())?;
+            match view.json {
+                true => statistics.push(found),
+                false => output::print(&line(number, &found))?,
+            }
+        }
+        match self.view.json {
+            true => output::print(&output::json(&statistics.into())),
+            false => Ok(()),
+        }
+    }
+
     /// Renders once, and adds the files that it reads to `files`.
     fn render(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
-        let view = &self.view;
+        let found = self.frame(&self.view, files)?;
+        match self.view.json {
+            true => output::print(&output::json(&found)),
+            false => Ok(()),
+        }
+    }
+
+    /// Renders a view, adds the files that it reads to `files`, and returns the statistics of the frame.
+    fn frame(&self, view: &View, files: &mut Vec<PathBuf>) -> Result<Value, Failure> {
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
@@ -68,19 +103,25 @@ impl Render {
             description: &self.description,
             set: &self.set,
             uniforms: &self.uniforms,
-            count_all: view.json,
+            count_all: view.json || self.animation.is_given(),
             opaque: opaque.as_ref(),
             held: 0,
+            words: &[],
         };
         let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
         let result = render(&request, &mut input, (view, &mut selection), &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
-        drop(progress);
-        if view.json {
-            output::print(&output::json(&statistics(&self.description, &result, &selection, &scene)))?;
-        }
-        Ok(())
+        Ok(statistics(&self.description, &result, &selection, &scene))
     }
+}
+
+/// Returns the line of a frame: k, bytes and hit ratio, as far as the description has them.
+fn line(number: u32, found: &Value) -> String {
+    let value = |name: &str| match &found[name] {
+        Value::Null => "-".to_owned(),
+        value => value.to_string(),
+    };
+    format!("frame {number}: k = {}, {} bytes, hit ratio {}\n", value("k"), value("bytes"), value("hit_ratio"))
 }

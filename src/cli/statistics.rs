@@ -25,7 +25,7 @@ pub(crate) fn statistics(
         "backend": result.backend,
         "target": result.target,
         "triangles": scene.scene.triangles(),
-        "k": result.plan.variant.keep,
+        "k": stats.k,
         "fragment": payload(result),
         "ms": if stats.times.is_some() { Value::from(ms) } else { Value::Null },
         "bytes": stats.bytes,

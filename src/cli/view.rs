@@ -14,7 +14,7 @@ use super::memory::{self, Budget};
 use super::output::{self, Failure};
 use super::picture;
 
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct View {
     /// Model file (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
@@ -33,7 +33,7 @@ pub(crate) struct View {
     /// the right, 0,90 above. `eye`: from a point of the model to its centre, or to `,target:X,Y,Z`. Both take the vertical field of
     /// view as `,fov:DEGREES`, 40 by default. `clip`: positions are clip-space positions
     #[arg(long, default_value = "auto", value_name = "auto|clip|orbit:AZIMUTH,ELEVATION|eye:X,Y,Z")]
-    camera: CameraRequest,
+    pub(crate) camera: CameraRequest,
     /// Light the scene from the camera position, or use its colours unlit
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
@@ -68,6 +68,9 @@ pub(crate) struct View {
     /// Print statistics as JSON on stdout. Uses `counters=all` unless the description chooses another value
     #[arg(long)]
     pub(crate) json: bool,
+    /// Whether an earlier frame has printed the warnings about the models.
+    #[arg(skip)]
+    pub(crate) is_later_frame: bool,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -87,7 +90,6 @@ pub(crate) struct SceneView {
 
 impl View {
     /// Returns the view of a measurement: it has a scene, a camera, a size and a device, writes no image, and measures the times of passes.
-    #[cfg(feature = "figures")]
     pub(crate) fn measured(
         scene: String,
         camera: CameraRequest,
@@ -111,6 +113,7 @@ impl View {
             memory,
             strict: false,
             json: true,
+            is_later_frame: false,
         }
     }
 
@@ -146,7 +149,7 @@ impl View {
         if self.strict && !scene.warnings.is_empty() {
             return Err(Failure::Model(scene.warnings));
         }
-        for warning in &scene.warnings {
+        for warning in scene.warnings.iter().filter(|_| !self.is_later_frame) {
             output::warn_code(warning.kind.code(), &warning.to_string());
         }
         if self.camera == CameraRequest::Clip {
@@ -253,7 +256,7 @@ pub(crate) fn scenes() -> String {
 }
 
 /// Parses `WIDTHxHEIGHT`.
-fn size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     const FORM: &str = "write WIDTHxHEIGHT in pixels, as 640x480";
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or(FORM)?;
     let side = |text: &str| match text.trim().parse::<u64>() {

@@ -19,6 +19,7 @@ macro_rules! template {
 }
 
 mod addressing;
+mod allocation;
 mod conditions;
 mod counters;
 mod cull;
@@ -26,6 +27,7 @@ mod host;
 mod opaque;
 mod overflow;
 mod pass;
+mod prediction;
 mod registry;
 mod resolve;
 mod samples;
@@ -40,6 +42,7 @@ mod technique;
 mod ties;
 
 pub use counters::{COUNTERS, CounterKind};
+pub use prediction::{BINS, BudgetTooSmall, Histogram, HitRatio, Prediction};
 pub use registry::Registry;
 pub use shorthand::Shorthand;
 pub use table_1::{PaperRow, TABLE_1};

@@ -96,6 +96,18 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/occupancy_map"),
             &["addressing", "cull"],
         ),
+        drawn(
+            "count_complexity",
+            "draws the scene before any fragment is stored, to count the fragments of each pixel",
+            template!("pass/count_complexity"),
+            &["addressing", "allocation"],
+        ),
+        row(
+            "build_histogram",
+            "counts the pixels of each number of fragments",
+            template!("pass/build_histogram"),
+            vec!["addressing", "allocation"],
+        ),
         row(
             "occupancy_bound",
             "narrows the range of each pixel's keys to those that can be kept",

@@ -79,6 +79,9 @@ fn single() -> Row {
     }
 }
 
+/// The capabilities of the sorted array beside those of every array that replaces its worst entry.
+const SORTED_ARRAY: [Capability; 3] = [Capability::RaceTolerant, Capability::KeepsArrival, Capability::SlotsPerPixel];
+
 fn sorted_array() -> Row {
     Row {
         template: Some(template!("storage/sorted_array")),
@@ -93,7 +96,7 @@ fn sorted_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        provides: [REPLACES_WORST.as_slice(), &[Capability::RaceTolerant, Capability::KeepsArrival]].concat(),
+        provides: [REPLACES_WORST.as_slice(), &SORTED_ARRAY].concat(),
         // Entries are sorted by key.
         implies: vec![("depth_key".into(), Capability::Sorted), ("depth_key".into(), Capability::OrderedSlots)],
         needs: vec![Feature::FragmentAtomics],

@@ -183,6 +183,20 @@ pub(crate) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "unified".to_owned(),
+            title: "unified framework",
+            paper: "K15 §4.3",
+            summary: "a Z-buffer, a k-buffer or an A-buffer: every frame takes the k that a memory budget and a hit ratio give",
+            keep: KeepDefault::Best(64),
+            choices: vec![
+                ("storage", "bounded_regions"),
+                ("sync", "spin_lock"),
+                ("cull", "early"),
+                ("allocation", "predicted_exact"),
+                ("sort", "hybrid"),
+            ],
+        },
+        Technique {
             key: "ab_ll_paged".to_owned(),
             title: "AB_LL-Paged",
             paper: "after Crassin 2010",

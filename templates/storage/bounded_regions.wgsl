@@ -18,6 +18,10 @@ fn storage_count(pixel: u32) {
     counts_atomic_add(pixel, 1u);
 }
 
+fn storage_fragments(pixel: u32) -> u32 {
+    return counts_load(pixel);
+}
+
 fn storage_size(pixel: u32) -> u32 {
     return min(counts_load(pixel), frame.k);
 }

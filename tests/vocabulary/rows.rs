@@ -30,9 +30,9 @@ pub(super) fn registry() -> Registry {
 }
 
 /// Returns the index of the last non-empty bin of a histogram, plus one.
-fn deepest(call: &HostCall<'_>) -> Vec<u64> {
+fn deepest(call: &HostCall<'_>) -> Result<Vec<u64>, String> {
     let last = call.reads.first().and_then(|bins| bins.iter().rposition(|pixels| *pixels > 0));
-    last.map(|bin| bin as u64 + 1).into_iter().collect()
+    Ok(last.map(|bin| bin as u64 + 1).into_iter().collect())
 }
 
 fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static str)>) -> Technique {

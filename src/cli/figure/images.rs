@@ -106,7 +106,8 @@ fn draw(
     let set = changes(&variant.series, 0);
     let mut input = Input::read(variant.series.technique, &registry)?;
     let description = variant.series.technique;
-    let request = RenderRequest { description, set: &set, uniforms: &[], count_all: true, opaque: None, held: 0 };
+    let request =
+        RenderRequest { description, set: &set, uniforms: &[], count_all: true, opaque: None, held: 0, words: &[] };
     let result = match render_quietly(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {
         Ok(result) => result,
         Err(failure) => return unavailable(failure).map(Err),

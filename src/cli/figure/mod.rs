@@ -16,7 +16,7 @@ mod properties;
 mod run;
 mod spread;
 mod steps;
-mod style;
+pub(crate) mod style;
 mod svg;
 mod sweep;
 

@@ -7,13 +7,13 @@ use plotters::prelude::*;
 use crate::cli::output::Failure;
 
 /// The font family.
-pub(super) const FONT: &str = "sans-serif";
+pub(crate) const FONT: &str = "sans-serif";
 
 /// The colour of what is not data.
-pub(super) const MUTED: RGBColor = RGBColor(95, 95, 95);
+pub(crate) const MUTED: RGBColor = RGBColor(95, 95, 95);
 
 /// The colours of series, different for readers with impaired colour vision (Okabe & Ito 2008), then darker ones.
-pub(super) const COLORS: [RGBColor; 12] = [
+pub(crate) const COLORS: [RGBColor; 12] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -29,14 +29,14 @@ pub(super) const COLORS: [RGBColor; 12] = [
 ];
 
 /// Returns the marker of a point: filled for the first half of the colours, hollow for the others.
-pub(super) fn marker<C>(at: C, style: usize, color: RGBColor) -> Circle<C, i32> {
+pub(crate) fn marker<C>(at: C, style: usize, color: RGBColor) -> Circle<C, i32> {
     let is_filled = style % COLORS.len() < COLORS.len() / 2;
     let look = if is_filled { color.filled() } else { color.stroke_width(2) };
     Circle::new(at, 4, look)
 }
 
 /// Returns the ticks of a logarithmic axis: 1, 2 and 5 times the powers of ten, or the powers alone in a range of many.
-pub(super) fn ticks(range: &Range<f64>) -> Vec<f64> {
+pub(crate) fn ticks(range: &Range<f64>) -> Vec<f64> {
     let powers = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
     let factors: &[f64] = if powers.clone().count() > 4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let of = |power: i32| factors.iter().map(move |factor| rounded(factor * 10.0_f64.powi(power)));
@@ -49,7 +49,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Converts an error of the drawing.
-pub(super) fn failure<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> Failure {
+pub(crate) fn failure<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> Failure {
     Failure::Files(format!("the chart: {error}"))
 }
 

@@ -106,6 +106,8 @@ pub(super) fn render(
             bytes: device.allocated_bytes(),
             slices: device.slices(),
             loops: picture.loops,
+            k: device.symbol("k").and_then(|k| u32::try_from(k).ok()).filter(|_| code.plan.variant.keep.is_some()),
+            words: request.words.iter().map(|name| device.words(name).unwrap_or_default()).collect(),
         };
         let result = RenderResult {
             stats,

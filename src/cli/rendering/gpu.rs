@@ -188,7 +188,7 @@ impl GpuRenderer {
             let (frame, slices) = (redraw.frames, renderer.slices());
             progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
             redraw.rows = Some(height.div_ceil(slices));
-            match self.frame(&mut renderer, scene, &mesh, view.size) {
+            match self.frame(&mut renderer, scene, &mesh, (view.size, request.words)) {
                 Ok(FrameOutcome::PoolExhausted { needed }) => redraw.pool_size = Some(needed),
                 Ok(FrameOutcome::Complete(stats)) => break (stats, renderer),
                 // The slice has more fragments than a buffer or the budget allows.
@@ -228,7 +228,7 @@ impl GpuRenderer {
         // In one slice: the next slice would clear the depth buffer of the former one.
         let settings = Settings { memory, slice: Some(height), ..Settings::new(BLENDED, width, height) };
         let mut renderer = block_on(device, Renderer::new(device, queue, &shaders, &settings))??;
-        match self.frame(&mut renderer, opaque.scene, &mesh, task.view.size)? {
+        match self.frame(&mut renderer, opaque.scene, &mesh, (task.view.size, &[]))? {
             FrameOutcome::Complete(FrameStats { pixels, .. }) => {
                 let depths = renderer.texture(&depth_texture(&shaders.plan)?).cloned();
                 let depths =
@@ -247,7 +247,7 @@ impl GpuRenderer {
         renderer: &mut Renderer,
         scene: &SceneView,
         mesh: &Mesh,
-        (width, height): (u32, u32),
+        ((width, height), words): ((u32, u32), &[&str]),
     ) -> Result<FrameOutcome, Error> {
         let Headless { device, queue, .. } = &self.headless;
         renderer.set_camera(&scene.camera.view_projection);
@@ -257,7 +257,10 @@ impl GpuRenderer {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (counters, by_slice) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
         let times = renderer.pass_times(&mut encoder);
+        let words: Vec<_> = words.iter().map(|name| renderer.words(name, &mut encoder)).collect();
         queue.submit([encoder.finish()]);
+        let words = words.into_iter().map(|pending| pending.map_or(Ok(Vec::new()), |pending| pending.wait(device)));
+        let words = words.collect::<Result<Vec<_>, _>>()?;
         let counters = counters.map(|pending| pending.wait(device)).transpose()?;
         let by_slice = by_slice.map(|pending| pending.wait(device)).transpose()?;
         let times = times.map(|pending| pending.wait(device)).transpose()?;
@@ -283,6 +286,8 @@ impl GpuRenderer {
             bytes: renderer.allocated_bytes(),
             slices: renderer.slices(),
             loops,
+            k: renderer.k(),
+            words,
         }))
     }
 }

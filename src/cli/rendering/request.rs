@@ -18,6 +18,8 @@ pub(crate) struct RenderRequest<'a> {
     pub(crate) opaque: Option<&'a SceneView>,
     /// The bytes of other images that the command holds meanwhile.
     pub(crate) held: u64,
+    /// Resources whose words are read after the frame; of several slices, those of the last.
+    pub(crate) words: &'a [&'a str],
 }
 
 /// One checked description to render on one device.

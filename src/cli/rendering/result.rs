@@ -35,6 +35,10 @@ pub(crate) struct FrameStats {
     pub(crate) slices: u32,
     /// Loops that end when a condition is met.
     pub(crate) loops: Vec<LoopReport>,
+    /// The fragments that a pixel of the last slice keeps at most; `None`: all.
+    pub(crate) k: Option<u32>,
+    /// The words that the request reads.
+    pub(crate) words: Vec<Vec<u32>>,
 }
 
 impl FrameStats {
@@ -135,7 +139,16 @@ mod tests {
     fn warns_when_a_loop_reaches_its_limit() {
         let report = |end| LoopReport { until: "`left` is zero".to_owned(), iterations: 7, end };
         let loops = vec![report(LoopEnd::ConditionMet), report(LoopEnd::LimitReached)];
-        let stats = FrameStats { pixels: Vec::new(), counters: None, times: None, bytes: 0, slices: 1, loops };
+        let stats = FrameStats {
+            pixels: Vec::new(),
+            counters: None,
+            times: None,
+            bytes: 0,
+            slices: 1,
+            loops,
+            k: None,
+            words: Vec::new(),
+        };
         let messages: Vec<String> = stats.unfinished_loops().collect();
         assert!(
             messages.len() == 1 && messages[0].contains("until `left` is zero stopped at its limit of 7"),

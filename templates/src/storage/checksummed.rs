@@ -16,7 +16,7 @@ pub(super) fn checksummed_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        provides: vec![Capability::KeepsBest, Capability::Indexed, Capability::RaceTolerant],
+        provides: vec![Capability::KeepsBest, Capability::Indexed, Capability::RaceTolerant, Capability::SlotsPerPixel],
         conditions: vec![
             depth_key(),
             Condition::new(

@@ -114,6 +114,7 @@ fn by_minima(row: Row) -> Row {
             Capability::KeepsBest,
             Capability::AcceptsKBestOnly,
             Capability::ConservativeBound,
+            Capability::SlotsPerPixel,
         ],
         implies: vec![("depth_key".into(), Capability::Sorted)],
         needs: vec![Feature::FragmentAtomics],

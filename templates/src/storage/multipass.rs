@@ -26,7 +26,7 @@ pub(super) fn multipass_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["counters"],
-        provides: vec![Capability::KeepsBest, Capability::RaceTolerant],
+        provides: vec![Capability::KeepsBest, Capability::RaceTolerant, Capability::SlotsPerPixel],
         // It keeps one of two triangles that share an edge: several samples would show cracks.
         requires: vec![Capability::Unsynchronised, Capability::OneSample],
         needs: vec![Feature::FragmentAtomics],

@@ -79,12 +79,15 @@ pub struct HostCall<'a> {
     /// Returns the value of a symbol, including parameters of the chosen rows by their constants; `None` if it has
     /// none.
     pub symbol: &'a dyn Fn(&str) -> Option<u64>,
+    /// Returns the bytes of all buffers of the frame, or of a slice, if these symbols had these values; `None` if a size has no
+    /// value. Textures, and the memory that a device needs beside the plan's resources, are not included.
+    pub bytes: &'a dyn Fn(&[(&str, u64)]) -> Option<u64>,
 }
 
-/// A host function. It returns one value per symbol of [`Host::sets`]. A missing value leaves its symbol unchanged; the
-/// frame rejects values beyond a symbol's range.
+/// A host function. It returns one value per symbol of [`Host::sets`], or why the frame cannot go on and how to fix it. A missing
+/// value leaves its symbol unchanged; the frame rejects values beyond a symbol's range.
 #[derive(Clone, Copy)]
-pub struct HostFunction(pub fn(&HostCall<'_>) -> Vec<u64>);
+pub struct HostFunction(pub fn(&HostCall<'_>) -> Result<Vec<u64>, String>);
 
 impl fmt::Debug for HostFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -45,6 +45,13 @@ pub enum Error {
         /// The accepted values.
         expected: String,
     },
+    /// A host function cannot decide.
+    Host {
+        /// The function.
+        function: String,
+        /// The reason, and how to fix it.
+        message: String,
+    },
 }
 
 impl fmt::Display for Error {
@@ -57,6 +64,7 @@ impl fmt::Display for Error {
             }
             Error::OverBudget(need) => need.fmt(f),
             Error::BadValue { name, expected } => write!(f, "{name} must be {expected}"),
+            Error::Host { function, message } => write!(f, "the host function `{function}`: {message}"),
         }
     }
 }

@@ -3,6 +3,7 @@
 use fragbuf_codegen::{Action, Decision, Plan, Range};
 use fragbuf_templates::vocabulary::HostCall;
 
+use crate::memory::buffer_bytes;
 use crate::step::WordRange;
 use crate::{Error, Values};
 
@@ -57,7 +58,14 @@ pub(crate) fn apply(
         reads.push(read);
         rest = behind;
     }
-    let results = (decision.function.0)(&HostCall { reads, symbol: &|name| values.named(name) });
+    let bytes = |assumed: &[(&str, u64)]| {
+        let known = assumed.iter().filter_map(|(name, value)| Some((plan.symbols.find(name)?, *value)));
+        let values = known.fold(values.clone(), |values, (id, value)| values.with(id, value));
+        buffer_bytes(plan, &values).ok()
+    };
+    let call = HostCall { reads, symbol: &|name| values.named(name), bytes: &bytes };
+    let results =
+        (decision.function.0)(&call).map_err(|message| Error::Host { function: decision.name.to_string(), message })?;
     let decided = || decision.sets.iter().zip(&results);
     for (id, &value) in decided() {
         let symbol = plan.symbols.get(*id);

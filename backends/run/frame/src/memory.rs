@@ -3,10 +3,9 @@
 //! Input: a plan, the values of its symbols and the limits of a device. Output: bytes and rows, or an error with the numbers.
 //! Every device asks here before it allocates; this module allocates nothing.
 
-use fragbuf_codegen::{Plan, PlannedResource, SymbolId};
+use fragbuf_codegen::{Action, PassId, Plan, PlannedResource, ResourceId, SymbolId};
 use fragbuf_templates::vocabulary::Element;
 
-use crate::pool_size::is_set_by_host;
 use crate::{Error, MemoryNeed, Values};
 
 /// The default budget of a device: 2 GiB.
@@ -116,18 +115,56 @@ impl MemoryLimits {
 }
 
 /// Returns name and bytes of every resource: a buffer for one slice, a texture for the whole frame. Counted symbols are 0 until
-/// fragments are counted. Where a host step sets k, the sizes are those for the greatest k, so that words written before the step
-/// keep their positions.
+/// fragments are counted. Where a host step sets k, the resources that steps before it use have the size for the greatest k, so that words
+/// written before the step keep their positions.
 pub fn resource_bytes<'a>(plan: &'a Plan, values: &Values) -> Result<Vec<(&'a str, u64)>, Error> {
-    let for_any_k = is_set_by_host(plan, SymbolId::K).then(|| values.with(SymbolId::K, plan.capacity().into()));
-    let slice = for_any_k.as_ref().unwrap_or(values);
-    let whole = slice.with_rows(slice.height());
-    let sizes = plan.resources.iter().map(|planned| {
+    let decided = decision_of_k(plan);
+    let for_any_k = decided.map(|_| values.with(SymbolId::K, plan.capacity().into()));
+    let sizes = plan.resources.iter().enumerate().map(|(index, planned)| {
         let name = &planned.resource.name;
-        let values = if is_texture(planned) { &whole } else { slice };
-        Ok((name.as_str(), values.evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4)))
+        let slice = match (&for_any_k, decided) {
+            (Some(for_any_k), Some(command)) if is_used_before(plan, ResourceId(index), command) => for_any_k,
+            _ => values,
+        };
+        let whole = is_texture(planned).then(|| slice.with_rows(slice.height()));
+        let bytes = whole.as_ref().unwrap_or(slice).evaluate(&planned.words, &format!("`{name}`"))?.saturating_mul(4);
+        Ok((name.as_str(), bytes))
     });
     sizes.collect()
+}
+
+/// Returns the bytes of all buffers, as [`resource_bytes`] counts them.
+pub fn buffer_bytes(plan: &Plan, values: &Values) -> Result<u64, Error> {
+    let sizes = resource_bytes(plan, values)?.into_iter().zip(&plan.resources);
+    let buffers = sizes.filter(|(_, planned)| !is_texture(planned)).map(|((_, bytes), _)| bytes);
+    Ok(buffers.fold(0, u64::saturating_add))
+}
+
+/// Returns the command of the first host step that sets k.
+fn decision_of_k(plan: &Plan) -> Option<usize> {
+    plan.frame.commands.iter().position(|command| match &command.action {
+        Action::Host(decision) => decision.sets.contains(&SymbolId::K),
+        _ => false,
+    })
+}
+
+/// Whether a command before this one, or in a loop around it, uses the resource or one that is exchanged with it.
+fn is_used_before(plan: &Plan, id: ResourceId, command: usize) -> bool {
+    let around = plan.frame.loops.iter().filter(|looped| (looped.begin..looped.end).contains(&command));
+    let end = around.map(|looped| looped.end).max().unwrap_or(command);
+    let exchanged = plan.frame.exchanges.iter().filter(|pair| pair.contains(&id)).flatten();
+    let ids: Vec<ResourceId> = exchanged.copied().chain([id]).collect();
+    let uses = |pass: PassId| {
+        let pass = &plan.passes[pass.0];
+        let resources = pass.uses.iter().map(|usage| usage.resource.as_str());
+        resources.filter_map(|name| plan.resource_id(name)).any(|used| ids.contains(&used))
+    };
+    plan.frame.commands[..end].iter().any(|command| match &command.action {
+        Action::Clear { resource, .. } => ids.contains(resource),
+        Action::Copy { from, to } => ids.contains(from) || ids.contains(to),
+        Action::Pass(pass) => uses(*pass),
+        Action::Loop(_) | Action::LoopEnd(_) | Action::Host(_) => false,
+    })
 }
 
 fn is_texture(planned: &PlannedResource) -> bool {

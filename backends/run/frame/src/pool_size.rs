@@ -70,6 +70,10 @@ pub fn initial_values(plan: &Plan, size: (u32, u32), sizing: Sizing) -> Result<(
     if let Sizing::Reserve(size) = sizing {
         reserve(plan, &mut values, size)?;
     }
+    // Memory for more is allocated once a host step has decided.
+    if readbacks == Readbacks::Enabled && host_sets_k(plan) {
+        values.set(SymbolId::K, 1);
+    }
     Ok((values, readbacks))
 }
 
@@ -87,6 +91,11 @@ fn counted_symbols(plan: &Plan) -> Vec<SymbolId> {
     counted
 }
 
+/// Whether a host step sets k.
+pub fn host_sets_k(plan: &Plan) -> bool {
+    is_set_by_host(plan, SymbolId::K)
+}
+
 /// Whether a host step sets the symbol.
 pub(crate) fn is_set_by_host(plan: &Plan, id: SymbolId) -> bool {
     plan.frame.decisions().any(|decision| decision.sets.contains(&id))
@@ -99,6 +108,9 @@ pub fn reserve(plan: &Plan, values: &mut Values, size: PoolSize) -> Result<(), E
         PoolSize::Bytes(bytes) => fragments_in(plan, values, bytes)?,
     };
     set_fragments(plan, values, fragments);
+    if let Some(k) = plan.variant.keep.filter(|_| host_sets_k(plan)) {
+        values.set(SymbolId::K, k.into());
+    }
     Ok(())
 }
 

@@ -75,6 +75,13 @@ pub enum Error {
         /// The accepted values.
         expected: String,
     },
+    /// A host function cannot decide.
+    Host {
+        /// The function.
+        function: String,
+        /// The reason, and how to fix it.
+        message: String,
+    },
     /// The shaders lack an entry point that the plan needs.
     MissingCode {
         /// The pass.
@@ -114,6 +121,7 @@ impl fmt::Display for Error {
             Error::NotSubmitted => f.write_str("nothing to wait for: submit the recorded commands first"),
             Error::StaleFrame => f.write_str("stale frame: a later frame, a resize or a new k replaced it"),
             Error::BadValue { name, expected } => write!(f, "{name} must be {expected}"),
+            Error::Host { function, message } => write!(f, "the host function `{function}`: {message}"),
             Error::MissingCode { pass, stage } => {
                 write!(f, "the shaders have no {stage} entry point for pass `{pass}`")
             }
@@ -142,6 +150,7 @@ impl From<fragbuf_frame::Error> for Error {
             }
             fragbuf_frame::Error::OverBudget(need) => Error::OverBudget(need),
             fragbuf_frame::Error::BadValue { name, expected } => Error::BadValue { name, expected },
+            fragbuf_frame::Error::Host { function, message } => Error::Host { function, message },
         }
     }
 }

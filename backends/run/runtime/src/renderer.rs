@@ -8,8 +8,8 @@ use std::sync::{Mutex, PoisonError};
 
 use fragbuf_codegen::{Plan, SymbolId};
 use fragbuf_frame::{
-    MemoryLimits, Readbacks, Values, initial_values, pool_size_after, reserve, reuse_pool_sizes, set_uniform,
-    zero_uniforms,
+    MemoryLimits, Readbacks, Values, host_sets_k, initial_values, pool_size_after, reserve, reuse_pool_sizes,
+    set_uniform, zero_uniforms,
 };
 
 use crate::error_scope::in_error_scope;
@@ -151,7 +151,9 @@ impl Renderer {
     pub async fn reserve(&mut self, size: PoolSize) -> Result<(), Error> {
         let mut values = self.resources.values.clone();
         reserve(self.plan(), &mut values, size)?;
+        let k = host_sets_k(self.plan()).then(|| values.k());
         self.resize_to(values).await?;
+        self.k = k.unwrap_or(self.k);
         self.readbacks = Readbacks::Disabled;
         Ok(())
     }
@@ -334,12 +336,12 @@ impl Renderer {
         Ok(())
     }
 
-    /// Applies the values that a host step has set. The buffers already fit any k; for other values they are reallocated.
+    /// Applies the values that a host step has set. Buffers are reallocated for a greater k than ever before, and for other values.
     pub(crate) async fn apply_decision(&mut self, mut values: Values) -> Result<(), Error> {
         reuse_pool_sizes(self.plan(), &self.resources.values, &mut values);
         let k = values.k();
         if let Some(allocated) = self.resources.values.k() {
-            values.set(SymbolId::K, allocated.into());
+            values.set(SymbolId::K, allocated.max(k.unwrap_or(0)).into());
         }
         self.reallocate(values).await?;
         self.k = k;

@@ -252,9 +252,9 @@ fn a_frame_may_have_queries_of_two_loops_and_of_boxes() {
 }
 
 /// Returns the number of fragments of the deepest pixel, from a histogram.
-fn deepest(call: &HostCall<'_>) -> Vec<u64> {
+fn deepest(call: &HostCall<'_>) -> Result<Vec<u64>, String> {
     let last = call.reads[0].iter().rposition(|pixels| *pixels > 0).unwrap_or(0);
-    vec![(last as u64).max(1)]
+    Ok(vec![(last as u64).max(1)])
 }
 
 fn by_histogram() -> Registry {
@@ -295,7 +295,7 @@ fn the_host_reads_a_histogram_and_sets_k() {
 fn a_host_step_that_sets_a_value_out_of_range_is_an_error() {
     let stage = device();
     let registry =
-        by_histogram().with(Row { host: Some(HostFunction(|_| vec![17])), ..Row::new("host", "deepest", "", "") });
+        by_histogram().with(Row { host: Some(HostFunction(|_| Ok(vec![17]))), ..Row::new("host", "deepest", "", "") });
     let mut renderer = renderer(&stage, &shaders(&registry), &settings()).unwrap();
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE, SIZE).unwrap();
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };

@@ -52,6 +52,12 @@ impl Camera {
         Camera::framing_from(scenes, aspect, (THREE_QUARTER.normalize(), Vec3::Y), HALF_ANGLE)
     }
 
+    /// Returns azimuth and elevation of the view of [`Camera::framing`], in degrees, as [`Camera::orbit`] takes them.
+    pub fn framing_angles() -> [f64; 2] {
+        let direction = THREE_QUARTER.as_dvec3().normalize();
+        [direction.x.atan2(direction.z).to_degrees(), direction.y.asin().to_degrees()]
+    }
+
     /// Returns a perspective view from a direction, in degrees. All scenes together just fit into a frame with this aspect.
     ///
     /// The azimuth 0 is in front (positive z), 90 on the right (positive x); the elevation 90 is above (positive y). `field_of_view`

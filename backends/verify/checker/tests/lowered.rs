@@ -97,7 +97,7 @@ fn exchanged_resources_replace_each_other() {
 }
 
 /// Returns rows whose host function sets k from a histogram of fragments per pixel.
-fn registry_of(function: fn(&HostCall<'_>) -> Vec<u64>) -> Registry {
+fn registry_of(function: fn(&HostCall<'_>) -> Result<Vec<u64>, String>) -> Registry {
     let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 64)", "1")
         .uses("counts", Access::Read)
         .uses("bins", Access::Atomic);
@@ -120,14 +120,15 @@ fn deepest(call: &HostCall<'_>) -> u64 {
 #[test]
 fn a_host_step_reads_a_histogram_and_sets_k() {
     let set = [("select", "by_histogram")];
-    for function in
-        [|call: &HostCall<'_>| vec![deepest(call).max(1)], |call: &HostCall<'_>| vec![(deepest(call) / 2).max(1)]]
-    {
+    for function in [
+        |call: &HostCall<'_>| Ok(vec![deepest(call).max(1)]),
+        |call: &HostCall<'_>| Ok(vec![(deepest(call) / 2).max(1)]),
+    ] {
         let found = checked(&registry_of(function), "kplus_ab_sb", &set);
         assert!(found.failure.is_none() && found.is_exhaustive, "{:?}", found.failure);
     }
-    let variant = crate::subjects::variant("kplus_ab_sb", &set, &registry_of(|_| vec![99])).unwrap();
-    let registry = registry_of(|_| vec![99]);
+    let variant = crate::subjects::variant("kplus_ab_sb", &set, &registry_of(|_| Ok(vec![99]))).unwrap();
+    let registry = registry_of(|_| Ok(vec![99]));
     let beyond = fragbuf_checker::check_variant(
         &variant,
         crate::subjects::target("wgsl"),

@@ -1,0 +1,68 @@
+//! Axis `allocation`: how many fragments per pixel memory is allocated for.
+
+use crate::conditions::limited;
+use crate::vocabulary::{Access, Capability, Edit, Element, Host, Parameter, Pass, Resource, Row, Step};
+
+pub(crate) fn rows() -> Vec<Row> {
+    vec![
+        Row::new("allocation", "described", "as the storage and the description state", ""),
+        predicted(),
+        predicted_exact(),
+    ]
+}
+
+/// Counts fragments in a pass of its own.
+fn predicted() -> Row {
+    let complexity = Resource::new("complexity", Element::Word, "fragments of the pixel");
+    let count = Pass::geometry("count_complexity", "count_complexity").uses("complexity", Access::Atomic);
+    let mut steps = vec![Step::Pass(count)];
+    steps.extend(prediction("complexity"));
+    Row {
+        template: Some(template!("allocation/predicted")),
+        resources: vec![complexity.by("pixel", "pixels").cleared(0)],
+        requires: vec![Capability::SlotsPerPixel],
+        edits: vec![Edit::AddResource(histogram()), Edit::Before("reset".to_owned(), steps)],
+        ..by_histogram("predicted", "for the k that a histogram of the frame's fragments predicts within a budget")
+    }
+}
+
+/// Uses the counts of a storage that counts anyway.
+fn predicted_exact() -> Row {
+    Row {
+        template: Some(template!("allocation/predicted_exact")),
+        requires: vec![Capability::Counted],
+        conditions: vec![limited()],
+        calls: vec!["storage"],
+        edits: vec![Edit::AddResource(histogram()), Edit::After("count".to_owned(), prediction("counts"))],
+        ..by_histogram("predicted_exact", "the same for storages that count fragments first and allocate exactly")
+    }
+}
+
+fn by_histogram(key: &str, summary: &'static str) -> Row {
+    let parameters = vec![
+        Parameter::number(
+            "budget",
+            "BUDGET_MIB",
+            "200",
+            (1, 1 << 20),
+            "MiB that the buffers of a frame or slice may have",
+        ),
+        Parameter::number("hit_ratio", "HIT_PERCENT", "100", (1, 100), "per cent of the fragments that are to be kept"),
+    ];
+    Row { parameters, ..Row::new("allocation", key, summary, "K15 §4.2, Eq. 4-7, corrected") }
+}
+
+/// The bins, and a word for fragments that no bin counts.
+fn histogram() -> Resource {
+    let summary = "pixels with bin + 1 fragments, the last bin with 1024 or more; then the fragments beyond the 1024th of their pixels";
+    Resource::new("histogram", Element::Word, summary).by("bin", "1025").cleared(0)
+}
+
+/// Returns the pass that evaluates the counts, and the decision.
+fn prediction(counts: &str) -> Vec<Step> {
+    let pass = Pass::compute("build_histogram", "build_histogram", "ceil_div(width, 16)", "ceil_div(height, 16)");
+    vec![
+        Step::Pass(pass.uses(counts, Access::Read).uses("histogram", Access::Atomic)),
+        Step::Host(Host::new("predict_k").reads_all("histogram").sets("k")),
+    ]
+}

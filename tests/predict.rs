@@ -1,0 +1,101 @@
+//! `fragbuf predict`: its numbers follow from its own histogram by trying every k, and the histogram is that of the scene.
+
+use crate::render::{fragbuf, stderr};
+
+fn predicted(description: &str, options: &[&str]) -> serde_json::Value {
+    let scene = ["--scene", "builtin:marbles,n=60", "--size", "64x48", "--device", "cpu", "--json"];
+    let output = fragbuf(&[&["predict", description], scene.as_slice(), options].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn bins(found: &serde_json::Value) -> Vec<u64> {
+    let bins: Vec<u64> = found["histogram"].as_array().unwrap().iter().map(|bin| bin.as_u64().unwrap()).collect();
+    assert_eq!(bins.len(), 1024);
+    bins
+}
+
+fn kept(bins: &[u64], k: u64) -> u64 {
+    (1..).zip(bins).map(|(count, pixels)| k.min(count) * pixels).sum()
+}
+
+/// Compares with trying every k. `bytes` is over k and the kept fragments.
+fn compare(description: &str, budget: u64, per_mille: u64, bytes: impl Fn(u64, u64) -> u64) {
+    let (budget_text, ratio) = (budget.to_string(), format!("0.{per_mille:03}"));
+    let found = predicted(description, &["--budget", &budget_text, "--hit-ratio", &ratio]);
+    let bins = bins(&found);
+    let all = kept(&bins, 1024);
+    let fitting: Vec<u64> = (1..=1024).filter(|k| bytes(*k, kept(&bins, *k)) <= budget).collect();
+    let goal = fitting.iter().copied().find(|k| kept(&bins, *k) * 1000 >= all * per_mille);
+    let k = goal.unwrap_or(*fitting.last().unwrap());
+    assert_eq!(found["k"], k, "{description}, {budget}, {per_mille}");
+    assert_eq!(found["k_budget"], *fitting.last().unwrap());
+    assert_eq!(found["goal_met"], goal.is_some());
+    assert_eq!(found["bytes"], bytes(k, kept(&bins, k)));
+    assert_eq!((&found["fragments"], &found["kept"]), (&all.into(), &kept(&bins, k).into()));
+}
+
+const PIXELS: u64 = 64 * 48;
+const COUNTERS: u64 = 14 * 4;
+
+#[test]
+fn k_slots_per_pixel() {
+    for budget in [PIXELS * 16 + COUNTERS, 100_000, 10 << 20] {
+        for per_mille in [200, 700, 999] {
+            compare("kplus_array", budget, per_mille, |k, _| PIXELS * (8 * k + 8) + COUNTERS);
+        }
+    }
+}
+
+#[test]
+fn exact_regions() {
+    let constant = PIXELS * 12 + 4 + 4 * PIXELS.div_ceil(1024) + COUNTERS;
+    for budget in [60_000, 10 << 20] {
+        for per_mille in [200, 700, 999] {
+            compare("kplus_ab_sb", budget, per_mille, |_, kept| 8 * kept + constant);
+        }
+    }
+}
+
+/// The fragments of an A-buffer, which counts each.
+#[test]
+fn the_histogram_has_the_fragments_of_the_scene() {
+    let found = predicted("mdt32_coplanar", &[]);
+    let out = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("predict.png");
+    let scene = ["--scene", "builtin:marbles,n=60", "--size", "64x48", "--device", "cpu", "--json"];
+    let rendered = fragbuf(&[&["render", "ab_ll", "--out", out.to_str().unwrap()], scene.as_slice()].concat());
+    let rendered: serde_json::Value = serde_json::from_slice(&rendered.stdout).unwrap();
+    assert_eq!(found["fragments"], rendered["fragments"]["generated"]);
+    assert!(found["fragments"].as_u64() > Some(100));
+}
+
+#[test]
+fn bad_input_has_its_numbers() {
+    let failed = |arguments: &[&str]| {
+        let scene = ["--scene", "builtin:marbles,n=2", "--size", "64x48", "--device", "cpu"];
+        let output = fragbuf(&[&["predict"], arguments, scene.as_slice()].concat());
+        assert!(!output.status.success(), "{arguments:?}");
+        stderr(&output)
+    };
+    let needed = PIXELS * 16 + COUNTERS;
+    let below = failed(&["kplus_array", "--budget", &(needed - 1).to_string()]);
+    assert!(
+        below.contains(&format!("one fragment per pixel needs {needed} bytes, and `--budget` is {}", needed - 1)),
+        "{below}"
+    );
+    for ratio in ["0", "1.5", "-1", "nan"] {
+        let message = failed(&["kplus_array", &format!("--hit-ratio={ratio}")]);
+        assert!(message.contains("at most 1"), "{message}");
+    }
+    // A storage that has neither slots per pixel nor counts.
+    let message = failed(&["kb_ab_ll"]);
+    assert!(message.contains("k slots per pixel"), "{message}");
+}
+
+#[test]
+fn the_plot_marks_k() {
+    let plot = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("predict.svg");
+    let found = predicted("kplus_array", &["--plot", plot.to_str().unwrap()]);
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains(&format!("k = {};", found["k"])));
+}
