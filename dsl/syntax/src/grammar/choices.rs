@@ -9,7 +9,7 @@ use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spa
 use proc_macro2::{Delimiter, Group, TokenTree};
 
 use super::cursor::Cursor;
-use super::recovery::end_of_item_or;
+use super::recovery::{end_of_item_or, starts_item};
 use crate::names;
 use crate::report::{FIRST, Report, Stop};
 
@@ -52,8 +52,20 @@ fn help_after(choice: &Choice, cursor: &Cursor) -> String {
             ',' | '|' | '/' => format!("alternatives are separated by `else`: `{last} else {next}`"),
             _ => "end the item with `;`".to_owned(),
         },
+        // `a or b`, and `a b` in place of `a else b`.
+        (Some(TokenTree::Ident(word)), Some(TokenTree::Ident(next))) if is_separator(&word.to_string()) => {
+            format!("alternatives are separated by `else`: `{last} else {next}`")
+        }
+        (Some(TokenTree::Ident(next)), _) if !starts_item(cursor) => {
+            format!("end the item with `;`, or separate alternatives by `else`: `{last} else {next}`")
+        }
         _ => "end the item with `;`".to_owned(),
     }
+}
+
+/// Whether a word separates alternatives in other languages.
+fn is_separator(word: &str) -> bool {
+    matches!(word, "or" | "and" | "then" | "otherwise")
 }
 
 /// Returns a choice that a builder made, after the same checks of its names.
