@@ -409,6 +409,12 @@ fn a_condition_of_the_users_own() {
         "{said}"
     );
     assert!(said.contains("= help: write `keep 4;`, and leave the payload out"), "{said}");
+    // The help is the author's, at the line that violates the condition.
+    let six = with_condition("//: when keep <= 6 -- write `keep 6;` or less");
+    let (unmet, _) = diagnostics(&with("condition_of_keep", DESCRIPTION, &six)).unwrap_err();
+    let unmet = unmet.iter().next().unwrap();
+    assert_eq!((unmet.span.line, unmet.span.column), (3, 10), "{unmet}");
+    assert!(unmet.help.starts_with("write `keep 6;` or less"), "{unmet}");
     let met = DESCRIPTION.replace("keep 8", "keep 4");
     assert_eq!(
         diagnostics(&with("condition_met", &met, &four)).map_err(|(diagnostics, _)| diagnostics.to_string()),

@@ -244,11 +244,13 @@ impl Context<'_> {
         let row = name(combination[index]);
         let chosen = &self.choices[index].span;
         let cause = self.cause(&condition.formula, combination);
-        // A change that is printed whole is first.
-        let help = match (cause.as_ref().and_then(|cause| cause.help.as_ref()), self.fixes(index, combination)) {
+        // A change that is printed whole is first. The author of a user file knows more about a condition than its symbols say.
+        let is_of_user = combination[index].template.as_ref().is_some_and(|template| template.user_file.is_some());
+        let change = cause.as_ref().filter(|_| !is_of_user).and_then(|cause| cause.help.as_ref());
+        let help = match (change, self.fixes(index, combination)) {
             (Some(fix), Some(fixes)) => format!("{fix}, or choose {fixes}"),
             (Some(fix), None) => fix.clone(),
-            (None, Some(fixes)) if cause.is_some() => format!("choose {fixes}, or {}", condition.help),
+            (None, Some(fixes)) if cause.is_some() && !is_of_user => format!("choose {fixes}, or {}", condition.help),
             (None, Some(fixes)) => format!("{}, or choose {fixes}", condition.help),
             (None, None) => condition.help.to_string(),
         };

@@ -85,9 +85,28 @@ pub(crate) fn from_builder(choice: &Choice, report: &mut Report) -> Result<Choic
             };
             options.push((names::identifier(name, report), value));
         }
+        reject_several(&alternative.value, report)?;
         alternatives.push(Alternative { value: names::identifier(&alternative.value, report), options });
     }
     Ok(without_duplicates(Choice { axis, alternatives }, report))
+}
+
+/// Rejects several values in one string, which only a builder can pass: `choose("sync", "interlock, spin_lock")`.
+fn reject_several(value: &Spanned<String>, report: &mut Report) -> Result<(), Stop> {
+    let text = value.value.replace(" or ", ",").replace(" else ", ",");
+    let values: Vec<&str> = text.split([',', '|', '/']).map(str::trim).collect();
+    let [first, second, ..] = values.as_slice() else { return Ok(()) };
+    // A user file is one value, and its path may have a `/`.
+    if value.value.starts_with("wgsl:") || !values.iter().all(|value| syn::parse_str::<syn::Ident>(value).is_ok()) {
+        return Ok(());
+    }
+    let message = format!("expected one value, found `{}`", value.value);
+    let help = format!(
+        "alternatives are separated by `else`: `{}`, or `value(\"{first}\").or_else(\"{second}\")` in a program",
+        values.join(" else ")
+    );
+    report.error(codes::UNEXPECTED_TOKEN, &value.span, message, help);
+    Err(Stop)
 }
 
 /// Returns the choice without duplicate alternatives and options, which are reported.
