@@ -3,6 +3,7 @@
 //! `cargo run --example builder`
 
 use std::io::Write;
+use std::process::ExitCode;
 
 use fragbuf::builder::{Buffer, Closure, Format, UniformType, value};
 use fragbuf::{Registry, closure, function};
@@ -33,7 +34,18 @@ fn study(k: u32, criterion: Closure) -> Buffer {
         }))
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // `Result` as the type of `main` prints the `Debug` form. There is no other stream to report a failure of this one on.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn std::error::Error>> {
     report(&mut std::io::stdout())
 }
 

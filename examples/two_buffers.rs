@@ -3,6 +3,7 @@
 //! `cargo run --example two_buffers`
 
 use std::io::Write;
+use std::process::ExitCode;
 
 use fragbuf::glam::Vec4;
 use fragbuf::{Form, Registry, Request, Variant, fragment_buffer, generate, target};
@@ -36,7 +37,18 @@ fragment_buffer! {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // `Result` as the type of `main` prints the `Debug` form. There is no other stream to report a failure of this one on.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn std::error::Error>> {
     report(&mut std::io::stdout())
 }
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use fragbuf_model::{Diagnostics, Draft, SourceSpan, Variant};
+use fragbuf_model::{Diagnostics, Draft, MissingFeature, SourceSpan, Variant};
 use fragbuf_syntax::{Parsed, parse};
+use fragbuf_targets::{Request, Target, select};
 use fragbuf_templates::Registry;
 
 use crate::{source_file, user_file};
@@ -74,6 +75,7 @@ pub fn load(
         change(&mut draft, set, defaults, &mut diagnostics);
         let user = user_file::read(&draft, registry);
         sources.extend(user.sources);
+        draft.file_warnings = user.warnings;
         if !user.diagnostics.is_empty() {
             // Without the row of a file, its capabilities are unknown: the check would report all of them as missing.
             diagnostics.extend(user.diagnostics);
@@ -96,6 +98,40 @@ pub fn variant(
     registry: &Registry,
 ) -> Result<Variant, Diagnostics> {
     load(description, set, &[], registry).variant
+}
+
+/// Returns the changes `axis=value else other` after which one of the targets supports the description, for each feature that a target lacks.
+pub fn alternatives(
+    description: &Description,
+    set: &[(String, String)],
+    registry: &Registry,
+    unsupported: &[(&'static Target, MissingFeature)],
+    request: &Request<'_>,
+) -> Vec<(String, String)> {
+    let mut found: Vec<(String, String)> = Vec::new();
+    for (target, missing) in unsupported {
+        let is_chosen = registry.axis(&missing.axis).is_some_and(|axis| axis.chosen);
+        if !is_chosen || found.iter().any(|(axis, _)| *axis == missing.axis) {
+            continue;
+        }
+        let current = chosen_values(description, set, registry, &missing.axis);
+        let others = registry.rows_of(&missing.axis).filter(|row| row.key != Registry::CLOSURE);
+        let mut values = others.map(|row| format!("{current} else {}", row.key));
+        let supported = values.find(|value| {
+            let more = [set, &[(missing.axis.clone(), value.clone())]].concat();
+            variant(description, &more, registry).is_ok_and(|variant| select(&variant, target, request).is_ok())
+        });
+        found.extend(supported.map(|value| (missing.axis.clone(), value)));
+    }
+    found
+}
+
+/// Returns the alternatives that a description has on an axis, as `a else b`.
+fn chosen_values(description: &Description, set: &[(String, String)], registry: &Registry, axis: &str) -> String {
+    let variant = variant(description, set, registry);
+    let chosen = variant.iter().flat_map(|variant| &variant.choices).find(|chosen| chosen.axis == axis);
+    let keys = chosen.into_iter().flat_map(|chosen| &chosen.alternatives).map(|selected| selected.row.key.as_str());
+    keys.collect::<Vec<_>>().join(" else ")
 }
 
 fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics> {

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use fragbuf_codegen::validate_user_row;
+use fragbuf_codegen::{user_row_warnings, validate_user_row};
 use fragbuf_model::{Alternative, Diagnostic, Diagnostics, Draft, codes, nearest_name};
 use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
@@ -22,16 +22,26 @@ pub struct UserFiles {
     pub sources: Vec<(String, String)>,
     /// The errors in them.
     pub diagnostics: Diagnostics,
+    /// The warnings about them.
+    pub warnings: Diagnostics,
 }
 
 /// Reads every file that `draft` names. Lists a source once, even if several choices name it.
 pub fn read(draft: &Draft, registry: &Registry) -> UserFiles {
-    let mut user = UserFiles { registry: registry.clone(), sources: Vec::new(), diagnostics: Diagnostics::new() };
+    let mut user = UserFiles {
+        registry: registry.clone(),
+        sources: Vec::new(),
+        diagnostics: Diagnostics::new(),
+        warnings: Diagnostics::new(),
+    };
     for choice in &draft.choices {
         for alternative in &choice.alternatives {
             if let Some(path) = alternative.file() {
                 match read_row(alternative, path, &choice.axis.value, registry, &mut user.sources) {
-                    Ok(row) => user.registry = user.registry.with(row),
+                    Ok((row, warnings)) => {
+                        user.registry = user.registry.with(row);
+                        user.warnings.extend(warnings);
+                    }
                     Err(errors) => user.diagnostics.extend(errors),
                 }
             }
@@ -40,14 +50,14 @@ pub fn read(draft: &Draft, registry: &Registry) -> UserFiles {
     user
 }
 
-/// Reads the row of one file and validates it.
+/// Reads the row of one file and validates it; returns the warnings, too.
 fn read_row(
     alternative: &Alternative,
     path: &str,
     axis: &str,
     registry: &Registry,
     sources: &mut Vec<(String, String)>,
-) -> Result<Row, Diagnostics> {
+) -> Result<(Row, Diagnostics), Diagnostics> {
     let value = &alternative.value;
     let folder = Path::new(&*value.span.file).parent().unwrap_or(Path::new(""));
     let file = folder.join(path).display().to_string();
@@ -76,5 +86,6 @@ fn read_row(
         let diagnostic = Diagnostic::new(codes::UNKNOWN_VALUE, &value.span, message, help);
         return Err(diagnostic.label(&user_row.spans.row, "the file declares it here").into());
     }
-    validate_user_row(user_row, registry)
+    let warnings = user_row_warnings(&user_row, registry);
+    Ok((validate_user_row(user_row, registry)?, warnings))
 }

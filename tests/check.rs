@@ -201,3 +201,74 @@ fn a_race_in_a_users_storage_is_found_from_the_report() {
         assert!(location.ends_with(&format!("first_k.wgsl:{line}")), "{race}");
     }
 }
+
+/// A storage that provides neither keeps-best nor keeps-all, and says that it is sorted, is read in the order of depth.
+#[test]
+fn an_order_that_a_users_storage_promises_is_checked() {
+    let folder = std::env::temp_dir().join(format!("fragbuf-sorted-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let right = std::fs::read_to_string("examples/user_storage/first_k.wgsl").unwrap();
+    let wrong = right.replace("provides lock-free, indexed", "provides lock-free, indexed, sorted");
+    assert_ne!(right, wrong);
+    std::fs::write(folder.join("first_k.wgsl"), wrong).unwrap();
+    std::fs::copy("examples/user_storage/first_k.fragbuf", folder.join("first_k.fragbuf")).unwrap();
+    let description = folder.join("first_k.fragbuf");
+    let output = fragbuf(&["check", description.to_str().unwrap(), "--k", "2", "--fragments", "2"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("the entries are not in order"), "{}", text(&output.stdout));
+}
+
+/// A shader whose uniform block is zero may store nothing: the verdict says so, and how to give it words.
+#[test]
+fn a_shader_that_changes_nothing_is_noted() {
+    let folder = std::env::temp_dir().join(format!("fragbuf-nothing-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("material.wgsl");
+    let source = "struct Frame { width: u32, height: u32 }
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read_write> n: array<atomic<u32>, 4>;
+@compute @workgroup_size(1) fn main() {
+    if frame.width == 0u { return; }
+    atomicAdd(&n[0], 1u);
+}";
+    std::fs::write(&file, source).unwrap();
+    let check = |more: &[&str]| {
+        let arguments = ["check", "--wgsl", file.to_str().unwrap(), "--entry", "main"];
+        text(&fragbuf(&[&arguments[..], more].concat()).stdout)
+    };
+    let nothing = check(&[]);
+    assert!(nothing.contains("no invocation changes a word of `n`"), "{nothing}");
+    assert!(nothing.contains("`frame` hold only 0 here") && nothing.contains("`--fill frame=1,1`"), "{nothing}");
+    assert!(!check(&["--fill", "frame=1,1"]).contains("no invocation changes"));
+    assert!(check(&["--random-schedules", "4"]).contains("no invocation changes"));
+}
+
+/// The note about a loop that waits has the line of the loop, not that of a function that it calls.
+#[test]
+fn a_loop_that_waits_is_named_by_its_line() {
+    let folder = std::env::temp_dir().join(format!("fragbuf-loop-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("loop.wgsl");
+    for (head, first) in [
+        ("for (var i = 0u; i < 100u; i++) {", ""),
+        ("var i = 0u; loop {", "i++; if i > 100u { break; }"),
+        ("var i = 0u; while i < 100u {", "i++;"),
+    ] {
+        let source = format!(
+            "@group(0) @binding(0) var<storage, read_write> n: array<atomic<u32>, 4>;
+fn load() -> u32 {{
+    return atomicLoad(&n[0]);
+}}
+@compute @workgroup_size(1) fn main() {{
+    atomicAdd(&n[0], 1u);
+    {head}
+        if load() >= 2u {{ break; }}
+        {first}
+    }}
+}}"
+        );
+        std::fs::write(&file, source).unwrap();
+        let output = text(&fragbuf(&["check", "--wgsl", file.to_str().unwrap(), "--entry", "main"]).stdout);
+        assert!(output.contains("loop.wgsl:7 is taken to wait"), "{head}: {output}");
+    }
+}

@@ -17,7 +17,7 @@ type Expected = (&'static str, u32, u32, &'static str);
 const CASES: &[(&str, &[Expected])] = &[
     (
         "buffer B from kplus_array {\n    storage: linked_list;\n    sync: slot_counter;\n    keep 6;\n}",
-        &[("missing-capability", 1, 15, ""), ("keep-mismatch", 4, 10, "another choice than `cull: early`")],
+        &[("missing-capability", 2, 14, ""), ("keep-mismatch", 4, 10, "another choice than `cull: early`")],
     ),
     ("buffer B from kplus_aray { }", &[("unknown-technique", 1, 15, "did you mean `kplus_array`?")]),
     ("buffer B {\n    keep 8;\n}", &[("missing-storage", 1, 8, "from kplus_array")]),
@@ -47,19 +47,19 @@ const CASES: &[(&str, &[Expected])] = &[
     ("buffer B from ab_ll {\n    keep all least |f| f.depth;\n}", &[("keep-mismatch", 2, 20, "where")]),
     (
         "buffer B from kplus_array {\n    sync: none;\n}",
-        &[("missing-capability", 1, 15, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
+        &[("missing-capability", 2, 11, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
     ),
     (
         "buffer B from kplus_array {\n    sync: slot_counter;\n}",
-        &[("missing-capability", 1, 15, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
+        &[("missing-capability", 2, 11, ""), ("missing-capability", 2, 11, "`sync: spin_lock`")],
     ),
     ("buffer B from ab_ll {\n    cull: early;\n}", &[("missing-capability", 2, 11, "`cull: none`")]),
-    ("buffer B from ab_ll {\n    sort: none;\n}", &[("missing-capability", 1, 15, "`sort: insertion`")]),
+    ("buffer B from ab_ll {\n    sort: none;\n}", &[("missing-capability", 2, 11, "`sort: insertion`")]),
     (
         "buffer B from kb {\n    keep 8 least |f| f.depth - f.color.w;\n}",
-        &[("missing-capability", 1, 15, "`sort: insertion`")],
+        &[("missing-capability", 2, 18, "`sort: insertion`")],
     ),
-    ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("missing-capability", 1, 15, "`color: rgba8`")]),
+    ("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[("missing-capability", 2, 16, "color: rgba8")]),
     ("buffer B from ab_ll {\n    fragment { color: rgba8, z: f32 }\n}", &[("missing-depth", 2, 16, "`depth: f32`")]),
     (
         "buffer B from ab_ll {\n    fragment { color: rgba8, depth: u32 }\n}",
@@ -86,13 +86,13 @@ const CASES: &[(&str, &[Expected])] = &[
     ),
     (
         "buffer B from kplus_array {\n    keep 8 least |f| f.depth - f.color.w;\n    cull: occupancy_early;\n}",
-        &[("missing-capability", 3, 11, "`cull: occupancy`")],
+        &[("missing-capability", 2, 18, "`cull: occupancy`")],
     ),
-    ("buffer B from z_buffer {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
-    ("buffer B from kb_sr {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
-    ("buffer B from kb_stream {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`samples: one`")]),
+    ("buffer B from z_buffer {\n    samples: coverage;\n}", &[("missing-capability", 2, 14, "`samples: one`")]),
+    ("buffer B from kb_sr {\n    samples: coverage;\n}", &[("missing-capability", 2, 14, "`samples: one`")]),
+    ("buffer B from kb_stream {\n    samples: coverage;\n}", &[("missing-capability", 2, 14, "`samples: one`")]),
     // The mask is a third word.
-    ("buffer B from kb_mdt64 {\n    samples: coverage;\n}", &[("missing-capability", 1, 15, "`storage: cascade`")]),
+    ("buffer B from kb_mdt64 {\n    samples: coverage;\n}", &[("missing-capability", 2, 14, "`storage: cascade`")]),
     ("buffer B from ab_ll {\n    samples: coverage { count: 3 };\n}", &[("invalid-option", 2, 32, "every device")]),
     (
         "buffer B from kplus_array {\n    samples: coverage;\n    cull: occupancy_early;\n}",
@@ -126,7 +126,7 @@ const CASES: &[(&str, &[Expected])] = &[
     // The farthest must be the worst, and the slots in the order of depth.
     (
         "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_last;\n    keep 8 least |f| f.color.x;\n}",
-        &[("missing-capability", 3, 15, "`overflow: tail_blend`")],
+        &[("missing-capability", 4, 18, "`overflow: tail_blend`")],
     ),
     (
         "buffer B from kplus_array {\n    cull: none;\n    overflow: merge_closest;\n}",
@@ -138,7 +138,7 @@ const CASES: &[(&str, &[Expected])] = &[
     ),
     (
         "buffer B from kplus_array {\n    fragment { depth: f32 }\n    cull: none;\n    overflow: merge_last;\n    resolve |f, u| { vec4(0.0, 0.0, 0.0, 1.0) }\n}",
-        &[("missing-capability", 4, 15, "`color: rgba8`")],
+        &[("missing-capability", 2, 16, "color: rgba8")],
     ),
     (
         "buffer B from ab_ll {\n    sync: spin_lock else slot_counter;\n    sort: nothing;\n    keep 0;\n}",

@@ -33,3 +33,16 @@ fn a_study_through_the_builder() {
     assert!(text.contains(&format!("examples/builder.rs:{}:{}", line + 1, column + 1)), "{text}");
     assert!(text.contains("did you mean `color`?"), "{text}");
 }
+
+/// A `Result` as the type of `main` prints an error in its `Debug` form, which is for programmers of the library.
+#[test]
+fn examples_print_the_display_of_errors() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    for file in ["builder.rs", "minimal.rs", "two_buffers.rs", "material/main.rs"] {
+        let source = std::fs::read_to_string(folder.join(file)).unwrap();
+        assert!(source.contains("fn main() -> ExitCode {") && source.contains("\"error: {error}\""), "{file}");
+    }
+    let found = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+    let examples = found.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).count();
+    assert_eq!(examples, 3, "an example that the list lacks");
+}

@@ -241,3 +241,75 @@ fn what_is_not_read_is_said_once() {
     let (_, text) = render("kb", "a.ply", &[], &folder);
     assert_eq!(text.matches("textures are not read").count(), 1, "{text}");
 }
+
+/// Elements and properties of a PLY that have no effect are named with their lines.
+#[test]
+fn names_of_a_ply_that_have_no_effect_are_named() {
+    let folder = folder("ply-names");
+    let heat = |attribute: &str| {
+        format!(
+            "buffer B from kb {{\n    fragment {{ color: rgba8, depth: f32, {attribute}: f32 }}\n    where |f| f.{attribute} > -9.0;\n}}"
+        )
+    };
+    let say = |model: &str, description: &str| {
+        std::fs::write(folder.join("a.ply"), model).unwrap();
+        std::fs::write(folder.join("b.fragbuf"), description).unwrap();
+        render("b.fragbuf", "a.ply", &[], &folder)
+    };
+    let plain = "buffer B from kb { }";
+    for (from, to, expected) in [
+        ("element face 1", "element faces 1", "a.ply:13: the element `faces` is not read: its name in PLY is `face`"),
+        (
+            "element vertex 3",
+            "element vertices 3",
+            "a.ply:3: the element `vertices` is not read: its name in PLY is `vertex`",
+        ),
+        ("element vertex 3", "element Vertex 3", "a.ply:3: the element `Vertex` is not read"),
+    ] {
+        let (code, text) = say(&PLY.replace(from, to), plain);
+        assert!(code == Some(1) && text.contains(expected), "{text}");
+    }
+    // It is a warning if an element has the right name.
+    let more = PLY.replace("end_header", "element faces 0\nproperty list uchar int vertex_indices\nend_header");
+    let (code, text) = say(&more, plain);
+    assert!(
+        code == Some(0)
+            && text.contains("warning[unknown-statement]")
+            && text.contains("a.ply:15: the element `faces`"),
+        "{text}"
+    );
+    let (code, text) = say(&PLY.replace("property float v\n", "property float u\n"), plain);
+    assert!(
+        code == Some(0) && text.contains("a.ply:8: the element `vertex` has the property `u` twice: the last is used"),
+        "{text}"
+    );
+    let of_face = PLY
+        .replace("vertex_indices\n", "vertex_indices\nproperty float quality\n")
+        .replace("3 0 1 2\n", "3 0 1 2 0.5\n");
+    let (code, text) = say(&of_face, &heat("quality"));
+    let expected = "the property `quality` belongs to the element `face`, and attributes are properties of `vertex`";
+    assert!(code == Some(1) && text.contains("a.ply:15: ") && text.contains(expected), "{text}");
+    let list = PLY
+        .replace("property float velz\n", "property float velz\nproperty list uchar float heat\n")
+        .replace("1 2 3\n", "1 2 3 1 0.5\n");
+    let (code, text) = say(&list, &heat("heat"));
+    let expected = "the property `heat` is a list, and attributes are single values";
+    assert!(code == Some(1) && text.contains("a.ply:13: ") && text.contains(expected), "{text}");
+}
+
+/// A loop without end on the CPU device is an error with the line of the loop, and says what to change.
+#[test]
+fn a_loop_without_end_has_its_line() {
+    let folder = folder("endless");
+    let storage = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/user_storage/first_k.wgsl");
+    let source = std::fs::read_to_string(storage).unwrap();
+    let body = "fn storage_insert(pixel: u32, entry: Packed) {\n    var i = 0u;\n    loop {\n        i += 2u;\n        if i == 1u { break; }\n    }\n";
+    let endless = source.replace("fn storage_insert(pixel: u32, entry: Packed) {\n", body);
+    let line = 1 + endless.lines().position(|line| line.trim() == "loop {").unwrap();
+    std::fs::write(folder.join("mine.wgsl"), endless).unwrap();
+    std::fs::write(folder.join("b.fragbuf"), "buffer B {\n    storage: wgsl(\"mine.wgsl\");\n    keep 8;\n}").unwrap();
+    let (code, text) = render("b.fragbuf", "builtin:cubes", &[], &folder);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.contains(&format!("mine.wgsl:{line}: pass `store` does not terminate")), "{text}");
+    assert!(text.contains("use another device"), "{text}");
+}

@@ -135,7 +135,7 @@ fn a_driver_draws_within_the_budget() {
     assert!(read(&whole) == read(&sliced));
     let (code, text, _) = render_on("llvmpipe", "ab_sb", &sliced, &["--size", SIZE, "--memory", "1MiB"]);
     assert_eq!(code, Some(3), "{text}");
-    assert!(text.contains(&format!("the image needs {} bytes", 24 * PIXELS)), "{text}");
+    assert!(text.contains(&format!("{} bytes are needed for the image", 24 * PIXELS)), "{text}");
 }
 
 #[test]

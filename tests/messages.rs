@@ -102,7 +102,7 @@ fn syntax_of_other_shading_languages_has_its_rust_syntax() {
         ("where |f| f.depth < 1.0f;", "write the suffix `f32` or none"),
         ("uniform heat: float;", "write `uniform { heat: f32 }`"),
         ("uniform float heat;", "write `uniform { heat: f32 }`"),
-        ("fragment vec3 normal;", "write `fragment { normal: f32 }`"),
+        ("fragment vec3 normal;", "write `fragment { normal: vec3, depth: f32 }`"),
         ("sort = none;", "`sort: …;`"),
         ("sort none;", "`sort: …;`"),
     ] {
@@ -140,7 +140,8 @@ fn every_code_is_explained() {
             }
             (None, None) => {
                 assert!(
-                    [codes::INVALID_ENCODING, codes::UNSUPPORTED_TARGET, codes::INTERNAL].contains(code),
+                    [codes::INVALID_ENCODING, codes::UNSUPPORTED_TARGET, codes::INTERNAL, codes::UNUSED_EFFECT]
+                        .contains(code),
                     "{section}"
                 );
                 continue;
@@ -349,7 +350,7 @@ fn a_target_without_support_is_an_error() {
         let output = fragbuf(arguments, &folder);
         let text = stderr(&output);
         assert!(output.status.code() == Some(1) && output.stdout.is_empty(), "{arguments:?}: {text}");
-        assert!(text.contains("error[unsupported-target]") && text.contains("glsl-es: "), "{text}");
+        assert!(text.contains("error[unsupported-target]") && text.contains("glsl-es"), "{text}");
         assert!(text.contains("choose a target that supports it (") && text.contains("spirv"), "{text}");
     }
     assert!(!folder.join("out").exists());
@@ -418,4 +419,57 @@ fn completions_and_manual_pages_have_every_command() {
     for page in ["fragbuf.1", "fragbuf-render.1", "fragbuf-explain.1"] {
         assert!(folder.join("pages").join(page).is_file(), "no {page}");
     }
+}
+
+/// An unsupported target is reported at what requires the feature, and every fix works: other targets, and alternatives after `else`.
+#[test]
+fn an_unsupported_target_points_to_its_cause() {
+    let folder = folder("cause");
+    let write = |items: &str, technique: &str| {
+        std::fs::write(folder.join("b.fragbuf"), format!("buffer B from {technique} {{\n    {items}\n}}\n")).unwrap();
+    };
+    let show = |arguments: &[&str]| fragbuf(&[&["show", "b.fragbuf"], arguments].concat(), &folder);
+    // An axis: the choice, and the value after `else` that makes it work.
+    write("sync: interlock;", "kplus_array");
+    let text = stderr(&show(&["--dump", "wgsl"]));
+    assert!(text.contains("b.fragbuf:2:11") && text.contains("`sync: interlock else spin_lock;`"), "{text}");
+    write("sync: interlock else spin_lock;", "kplus_array");
+    assert!(show(&["--dump", "wgsl"]).status.success());
+    // The count of fragments: no axis is named, because another value does not help.
+    write("keep 8;", "kb_sr");
+    let text = stderr(&show(&["--dump", "wgsl"]));
+    assert!(text.contains("b.fragbuf:2:10") && text.contains("choose a target that supports it ("), "{text}");
+    let output = fragbuf(&["check", "b.fragbuf", "--target", "wgsl"], &folder);
+    let text = stderr(&output);
+    assert!(
+        output.status.code() == Some(1) && text.contains("b.fragbuf:2:10") && text.contains("wgsl: `storage"),
+        "{text}"
+    );
+    // The preset.
+    write("keep 8;", "kb_mdt64");
+    let text = stderr(&show(&["--dump", "wgsl"]));
+    assert!(text.contains("b.fragbuf:1:15") && !text.contains("add an `else`"), "{text}");
+    // A technique has no file: the change is an option, which works.
+    let text = stderr(&fragbuf(&["check", "kplus_array", "--target", "wgsl", "--set", "sync=interlock"], &folder));
+    assert!(text.contains("--set:1:1") && text.contains("--set \"sync=interlock else spin_lock\""), "{text}");
+    let followed = ["show", "kplus_array", "--dump", "wgsl", "--set", "sync=interlock else spin_lock"];
+    assert!(fragbuf(&followed, &folder).status.success());
+}
+
+/// An option of another command is named with its commands, and the value of a uniform with the commands that set it.
+#[test]
+fn an_option_of_another_command_is_named() {
+    let folder = folder("commands");
+    let text = stderr(&fragbuf(&["check", "kb", "--uniform", "cut=1"], &folder));
+    assert!(text.contains("`--uniform` is an option of `render`, `compare`"), "{text}");
+    assert!(!text.contains("a similar argument") && !text.contains("-- --uniform"), "{text}");
+    let text = stderr(&fragbuf(&["check", "kb", "--set", "uniform.cut=1"], &folder));
+    assert!(text.contains("sets it in `render` and `compare`, and `check` chooses values itself"), "{text}");
+}
+
+/// The plan counts words in the singular and the plural.
+#[test]
+fn one_word_of_a_plan_is_singular() {
+    let plan = String::from_utf8(fragbuf(&["show", "kplus_array", "--dump", "plan"], &folder("plan")).stdout).unwrap();
+    assert!(!plan.contains("(1 words)") && plan.contains(" words)"), "{plan}");
 }

@@ -145,6 +145,11 @@ fn the_first_fix_makes_the_description_valid() {
                 continue;
             }
             sorted += 1;
+            if error.help.starts_with("remove the criterion") {
+                let text = format!("buffer B from {} {{\n    {}\n}}", technique.key, code(&error.help));
+                assert_eq!(found(&text, &[]), [], "{error}");
+                continue;
+            }
             let fix = error.help.split('`').skip(1).step_by(2).next().unwrap();
             assert_eq!(fix, "sort: insertion", "{error}");
             if error.help.starts_with("choose ") {
@@ -329,4 +334,212 @@ fn slips_are_one_error_each() {
         let error = only(text, &[]);
         assert!(error.code.name == code && error.help.contains(expected), "{text}: {error}");
     }
+}
+
+/// Returns the code of a suggestion in the place of the wrong part of a description, which then compiles.
+fn follow(text: &str, wrong: &str, suggestion: impl Fn(&str) -> String) {
+    let error = only(text, &[]);
+    let fixed = text.replacen(wrong, &suggestion(code(&error.help)), 1);
+    assert_eq!(found(&fixed, &[]), [], "{error}\n{fixed}");
+}
+
+/// A declaration without a colon, or with the type before it, names the attribute first and a type of the block.
+#[test]
+fn a_declaration_has_its_name_first() {
+    const EFFECT: &str = "resolve |fragments, u| { vec4(fragments[0].depth, u.cut, 0.0, 1.0) }";
+    for (block, wrong, expected) in [
+        ("fragment { color rgba8, depth: f32 }", "color rgba8", "color: rgba8"),
+        ("fragment { rgba8 color, depth: f32 }", "rgba8 color", "color: rgba8"),
+        ("fragment { float3 color, depth: f32 }", "float3 color", "color: vec3"),
+        ("fragment { depth float }", "depth float", "depth: f32"),
+        ("fragment { depth: f32, f32 heat }", "f32 heat", "heat: f32"),
+        ("fragment { normal octahedral, depth: f32 }", "normal octahedral", "normal: octahedral"),
+        ("fragment { f32: depth }", "f32: depth", "depth: f32"),
+        ("fragment { rgba8: color, depth: f32 }", "rgba8: color", "color: rgba8"),
+        ("uniform { float cut }", "float cut", "cut: f32"),
+        ("uniform { cut f32 }", "cut f32", "cut: f32"),
+        ("uniform { f32: cut }", "f32: cut", "cut: f32"),
+        ("uniform cut f32;", "uniform cut f32;", "uniform { cut: f32 }"),
+        ("fragment vec3 flow;", "fragment vec3 flow;", "fragment { flow: vec3, depth: f32 }"),
+    ] {
+        let text = format!("buffer B from kplus_array {{\n    {block}\n    {EFFECT}\n}}");
+        let errors: Vec<Diagnostic> = found(&text, &[]).into_iter().filter(|error| error.span.line == 2).collect();
+        let [error] = errors.as_slice() else { panic!("{block}: {errors:#?}") };
+        assert_eq!(code(&error.help), expected, "{block}: {error}");
+        let fixed = text.replace(wrong, expected);
+        let names = |errors: Vec<Diagnostic>| errors.iter().map(|error| error.code.name).collect::<Vec<_>>();
+        let left: Vec<&str> = names(found(&fixed, &[]));
+        assert!(
+            left.iter().all(|code| ["unused-attribute", "unknown-field", "missing-depth"].contains(code)),
+            "{fixed}: {left:?}"
+        );
+    }
+}
+
+/// The name of a buffer is one word: the help joins the words, in a file as in the builder.
+#[test]
+fn the_name_of_a_buffer_is_one_word() {
+    for (name, wrong) in [
+        ("My Heat", "buffer My Heat"),
+        ("my heat", "buffer my heat"),
+        ("My-Heat", "buffer My-Heat"),
+        ("My own heat", "buffer My own heat"),
+        ("Heat 2", "buffer Heat 2"),
+        ("\"My Heat\"", "buffer \"My Heat\""),
+    ] {
+        follow(&format!("buffer {name} from kplus_array {{ keep 4; }}"), wrong, str::to_owned);
+    }
+    let error = only("buffer My Heat {\n    storage: max_array;\n    keep 4;\n}", &[]);
+    assert_eq!((code(&error.help), error.span.line, error.span.column), ("buffer MyHeat", 1, 11));
+    let built = fragbuf::builder::Buffer::named("My Heat").from("kplus_array").draft().unwrap_err();
+    assert!(built.iter().any(|error| error.help == "a name is one word: write `MyHeat`"), "{built}");
+}
+
+/// A constant among the items, and in a closure, is an error with the whole replacement; its uses are no further errors.
+#[test]
+fn a_constant_is_a_function() {
+    for (constant, used) in [
+        ("const NEAR: f32 = 0.5;", "NEAR"),
+        ("const NEAR: float = -0.5;", "NEAR"),
+        ("let near = 0.5;", "near"),
+        ("let near: f32 = 0.25 + 0.25;", "near"),
+        ("static NEAR: f32 = 0.5;", "NEAR"),
+        ("let near = vec3(0.5, 0.5, 0.1);", "near.x"),
+    ] {
+        let text = |item: &str, used: &str| {
+            format!("buffer B from kplus_array {{\n    {item}\n    where |f| f.depth < {used};\n    keep 4;\n}}")
+        };
+        let error = only(&text(constant, used), &[]);
+        let call = error.help.split('`').nth(3).unwrap();
+        let name = used.split('.').next().unwrap();
+        let fixed = text(code(&error.help), &used.replacen(name, call, 1));
+        assert_eq!(found(&fixed, &[]), [], "{error}\n{fixed}");
+        assert_eq!(error.span.line, 2);
+    }
+    let text = "buffer B from kplus_array {\n    where |f| { const X: f32 = 0.5; f.depth < X };\n}";
+    follow(text, "const X: f32 = 0.5;", str::to_owned);
+}
+
+/// Slips of operators and parameters: the suggestion compiles in place of what is wrong.
+#[test]
+fn slips_of_operators_have_replacements_that_compile() {
+    for (closure, wrong) in [
+        ("where |f| f.depth = 0.5;", "f.depth = 0.5"),
+        ("where |f| f.depth > 0.2 && f.color.x = 0.5;", "f.depth > 0.2 && f.color.x = 0.5"),
+        ("where |f| { if f.id = 2 { return false; } true }", "f.id = 2"),
+        ("where |f| not (f.depth < 0.5);", "not (f.depth < 0.5)"),
+        ("where |f| not f.depth < 0.5;", "not f.depth < 0.5"),
+        ("where |f| f.depth > 0.5 && not f.depth < 0.5;", "not f.depth < 0.5"),
+        ("where |f| f.depth =< 0.5;", "=<"),
+        ("where |f| f.depth <> 0.5;", "<>"),
+        ("where |f| f.depth === 0.5;", "==="),
+        ("where |f| f.depth !== 0.5;", "!=="),
+        ("where |f| f.id == -1;", "f.id == -1"),
+        ("where |f| -1 < f.id;", "-1 < f.id"),
+        ("where |f| f.id + 2 >= -3;", "f.id + 2 >= -3"),
+        ("where |u, f| f.depth < u.cut;", "|u, f|"),
+        ("keep 4 least |u, f| f.depth * u.cut; sort: insertion;", "|u, f|"),
+        ("resolve |u, fragments| { vec4(u.cut, fragments[0].depth, 0.0, 1.0) }", "|u, fragments|"),
+        ("resolve |u, all| { let mut c = u.cut; for f in all { c += f.depth; } vec4(c, c, c, 1.0) }", "|u, all|"),
+        ("resolve |all| { let mut c = 0.0; for i in range(4) { c += 0.1; } vec4(c, c, c, 1.0) }", "range(4)"),
+        (
+            "resolve |all| { let mut c = 0.0; for i in range(1, all.len()) { c += all[i].depth; } vec4(c, c, c, 1.0) }",
+            "range(1, all.len())",
+        ),
+        (
+            "resolve |all| { let mut c = Vec4::ZERO; for f in all { c.xyz += f.color.xyz() * 0.5; } c }",
+            "c.xyz += f.color.xyz() * 0.5;",
+        ),
+        (
+            "resolve |all| { let mut c = Vec4::ZERO; for f in all { c.rgb = f.color.xyz(); } c }",
+            "c.rgb = f.color.xyz();",
+        ),
+        ("resolve |all| { let mut c = Vec4::ZERO; c.xy() *= 2.0; c }", "c.xy() *= 2.0;"),
+    ] {
+        let text = format!(
+            "buffer B from kplus_array {{\n    fragment {{ color: rgba8, depth: f32, id: u32 }}\n    uniform {{ cut: f32 }}\n    \
+             ties: attribute {{ by: id }};\n    where |f, u| f.color.x + f.depth < u.cut;\n    {closure}\n}}"
+        );
+        let errors = found(&text, &[]);
+        let [error] = errors.as_slice() else { panic!("{closure}: {errors:#?}") };
+        let last = error.help.split('`').skip(1).step_by(2);
+        // `=` assigns: write `==` to compare, `a == b`.
+        let suggestion =
+            last.filter(|part| !matches!(*part, "=" | "u32::MAX") && (*part != "==" || wrong == "===")).last().unwrap();
+        let fixed = text.replacen(wrong, suggestion, 1);
+        assert_eq!(found(&fixed, &[]), [], "{error}\n{fixed}");
+        assert_eq!(error.span.line, 6, "{error}");
+    }
+}
+
+/// Alternatives are separated by `else`, whatever separates them, also in `--set`.
+#[test]
+fn alternatives_are_separated_by_else() {
+    for separated in [
+        "interlock, spin_lock",
+        "interlock | spin_lock",
+        "interlock / spin_lock",
+        "interlock or spin_lock",
+        "interlock spin_lock",
+    ] {
+        let text = format!("buffer B from kplus_array {{\n    sync: {separated};\n}}");
+        let error = only(&text, &[]);
+        let suggestion = error.help.split('`').rev().nth(1).unwrap();
+        assert_eq!(suggestion, "interlock else spin_lock", "{error}");
+        assert_eq!(found(&text.replace(separated, suggestion), &[]), []);
+        let set = only("buffer B from kplus_array { }", &[("sync", separated)]);
+        assert!(set.help.contains("`interlock else spin_lock`"), "{set}");
+    }
+    // The next item follows a missing semicolon.
+    let error = only("buffer B from kplus_array {\n    sync: interlock else spin_lock\n    keep 4;\n}", &[]);
+    assert_eq!(error.help, "end the item with `;`");
+}
+
+/// The error of a choice is at the item that causes it, and its first suggestion compiles in place of this item.
+#[test]
+fn a_condition_points_to_the_item_that_violates_it() {
+    for (technique, items, at, line, expected) in [
+        ("ab_ll", "fragment { color: vec3, depth: f32 }", "vec3", 2, "fragment { color: rgba8, depth: f32 }"),
+        ("ab_ll", "fragment { colour: rgba8, depth: f32 }", "colour", 2, "fragment { color: rgba8, depth: f32 }"),
+        ("ab_ll", "fragment { albedo: vec4, depth: f32 }", "albedo", 2, "fragment { color: vec4, depth: f32 }"),
+        ("ab_ll", "fragment { depth: f32 }", "depth", 2, "fragment { color: rgba8, depth: f32 }"),
+        ("z_buffer", "keep 4;", "4", 2, "keep 1;"),
+        ("kb_sr", "keep 32;", "32", 2, "keep 8;"),
+        ("kb_sr", "keep 3;", "3", 2, "keep 2;"),
+        ("kb_sr", "keep 4 least |f| f.color.x;", "|f| f.color.x", 2, "keep 4;"),
+        ("kb_stream", "keep 4 least |f| f.color.x;", "|f| f.color.x", 2, "keep 4;"),
+        ("kb_mdt64", "fragment { color: vec4, depth: f32 }", "vec4", 2, "fragment { color: rgba8, depth: f32 }"),
+        (
+            "kb_mdt64",
+            "fragment { color: rgba8, depth: f32, heat: f32 }",
+            "heat",
+            2,
+            "fragment { color: rgba8, depth: f32 }",
+        ),
+        ("kb_mdt64", "keep 8 least |f| f.color.x;", "|f| f.color.x", 2, "keep 8;"),
+    ] {
+        let text = format!("buffer B from {technique} {{\n    {items}\n}}");
+        let errors = found(&text, &[]);
+        let error = errors.iter().find(|error| error.code.name == "missing-capability");
+        let error = error.unwrap_or_else(|| panic!("{technique}: {items}: {errors:#?}"));
+        let column = 5 + items.find(at).unwrap() as u32;
+        assert_eq!((error.span.line, error.span.column), (line, column), "{error}");
+        assert!(
+            error.labels.iter().any(|label| label.text.ends_with("is chosen here") && label.span.line == 1),
+            "{error}"
+        );
+        let suggestions: Vec<&str> = error.help.split('`').skip(1).step_by(2).collect();
+        assert!(suggestions.contains(&expected), "{error}");
+        assert_eq!(found(&text.replace(items, expected), &[]), [], "{error}");
+    }
+    // A closure that the storage cannot call.
+    let text = "buffer B from kb_stream {\n    resolve |fragments| { vec4(fragments[0].depth, 0.0, 0.0, 1.0) }\n}";
+    let error = only(text, &[]);
+    assert_eq!((error.code.name, error.span.line, error.span.column), ("missing-capability", 2, 13), "{error}");
+    assert!(error.help.contains("`resolve: stream` in place of the closure"), "{error}");
+    assert_eq!(found("buffer B from kb_stream {\n    resolve: stream;\n}", &[]), []);
+    // The closure that an effect of a missing colour suggests.
+    let error = only("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[]);
+    let closure = error.help.split('`').find(|part| part.starts_with("resolve |")).unwrap();
+    assert_eq!(found(&format!("buffer B from ab_ll {{\n    fragment {{ depth: f32 }}\n    {closure}\n}}"), &[]), []);
 }

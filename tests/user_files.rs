@@ -409,6 +409,12 @@ fn a_condition_of_the_users_own() {
         "{said}"
     );
     assert!(said.contains("= help: write `keep 4;`, and leave the payload out"), "{said}");
+    // The help is the author's, at the line that violates the condition.
+    let six = with_condition("//: when keep <= 6 -- write `keep 6;` or less");
+    let (unmet, _) = diagnostics(&with("condition_of_keep", DESCRIPTION, &six)).unwrap_err();
+    let unmet = unmet.iter().next().unwrap();
+    assert_eq!((unmet.span.line, unmet.span.column), (3, 10), "{unmet}");
+    assert!(unmet.help.starts_with("write `keep 6;` or less"), "{unmet}");
     let met = DESCRIPTION.replace("keep 8", "keep 4");
     assert_eq!(
         diagnostics(&with("condition_met", &met, &four)).map_err(|(diagnostics, _)| diagnostics.to_string()),
@@ -802,5 +808,34 @@ fn an_addressing_of_the_users_own() {
             diagnostics.iter().any(|diagnostic| diagnostic.message.contains(at) || diagnostic.help.contains("pixels")),
             "{diagnostics}"
         );
+    }
+}
+
+/// A row without a pass that computes the effect, and a buffer whose words nothing sets, are warnings at the row and at the buffer. The fix
+/// that the help prints removes them.
+#[test]
+fn what_a_row_leaves_out_is_a_warning() {
+    let file = example("first_k.wgsl");
+    let resolve = "//: pass resolve: taken read, slots read\n";
+    let clear = ", clear 0 -- fragments";
+    for (changed, code, at, fix) in [
+        (file.replace(resolve, ""), "unused-effect", "//: storage", resolve.trim_end()),
+        (file.replace(clear, " -- fragments"), "missing-clear", "//: buffer taken", "clear 0"),
+    ] {
+        assert_ne!(changed, file);
+        let folder = with(&format!("left-out-{code}"), DESCRIPTION, &changed);
+        let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+        let warnings = load(&description, &[], &[], &Registry::builtin()).variant.unwrap().warnings.clone();
+        let all: Vec<_> = warnings.iter().collect();
+        let [warning] = all.as_slice() else { panic!("{warnings}") };
+        let line = 1 + changed.lines().position(|line| line.starts_with(at)).unwrap() as u32;
+        assert_eq!((warning.code.name, warning.span.line), (code, line), "{warning}");
+        assert!(warning.span.file.ends_with("mine.wgsl") && warning.help.contains(&format!("`{fix}`")), "{warning}");
+    }
+    for persistent in [file.replace(clear, ", persistent -- fragments"), file.replace("clear 0", "clear 7"), file] {
+        let folder = with("left-out-nothing", DESCRIPTION, &persistent);
+        let description = Description::read(&folder.join("own.fragbuf")).unwrap();
+        let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap();
+        assert_eq!(variant.warnings.iter().count(), 0, "{}", variant.warnings);
     }
 }

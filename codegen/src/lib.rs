@@ -37,7 +37,7 @@ pub use plan::{Arrival, FIRST_BINDING, Part, Plan, PlannedResource, bucket, plan
 pub use program::{Notes, PassSource, Program, link};
 pub use source_map::{LineSource, SourceMap};
 pub use symbols::{PlanSymbol, PlanValue, Quantity, SymbolId, SymbolTable, Term, is_boolean};
-pub use user_file::{too_long, validate_user_row};
+pub use user_file::{too_long, user_row_warnings, validate_user_row};
 
 /// The name and version that are written on the first line of every generated file.
 pub const GENERATOR: &str = concat!("fragbuf ", env!("CARGO_PKG_VERSION"));

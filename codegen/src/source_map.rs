@@ -48,6 +48,17 @@ impl SourceMap {
         self.lines += lines;
     }
 
+    /// Returns the position in the description, a user file or a template that the first of these lines with an origin comes from.
+    /// Generated accessors are skipped.
+    pub fn location(&self, lines: &[usize]) -> Option<String> {
+        lines.iter().find_map(|line| match self.source(*line) {
+            LineSource::Source { name, line } if !name.starts_with("generated/") => Some(format!("{name}:{line}")),
+            LineSource::Description(span) => Some(span.to_string()),
+            LineSource::UserFile(span) => Some(format!("{}:{}", span.file, span.line)),
+            _ => None,
+        })
+    }
+
     /// Returns the origin of a line, counted from 1.
     pub fn source(&self, line: usize) -> LineSource {
         let index = self.runs.partition_point(|run| run.first <= line);

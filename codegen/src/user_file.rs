@@ -4,10 +4,12 @@
 //! kind and state of a pass come from a row of the registry that uses the same skeleton. A function is required if a row calls it;
 //! this source file names no function.
 
-use fragbuf_model::codes::{CONTRACT_MISMATCH, INVALID_ROW, INVALID_WGSL, UNKNOWN_AXIS, UNKNOWN_VALUE};
+use fragbuf_model::codes::{
+    CONTRACT_MISMATCH, INVALID_ROW, INVALID_WGSL, MISSING_CLEAR, UNKNOWN_AXIS, UNKNOWN_VALUE, UNUSED_EFFECT,
+};
 use fragbuf_model::{Diagnostic, Diagnostics, RowSpans, SourceSpan, UserRow, mangled};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Host, Kind, Pass, Row, State, Step};
+use fragbuf_templates::vocabulary::{Access, Capability, Element, Host, Init, Kind, Lifetime, Pass, Row, State, Step};
 
 use crate::link::{FunctionSignature, GrammarError, Item, grammar_errors, items, signatures, types};
 use crate::{CONTRACTS, Contract};
@@ -51,6 +53,43 @@ pub fn validate_user_row(user_row: UserRow, registry: &Registry) -> Result<Row, 
         }
     }
     diagnostics.into_result(row)
+}
+
+/// Returns the warnings about the row of a user file: no pass computes the effect, or a pass reads words that nothing wrote.
+pub fn user_row_warnings(user_row: &UserRow, registry: &Registry) -> Diagnostics {
+    let UserRow { row, spans } = user_row;
+    let kind = |pass: &Pass| kind_and_state(&pass.skeleton, registry).map(|(kind, _)| kind);
+    let passes = all_passes(&row.steps);
+    let mut warnings = Diagnostics::new();
+    let draws = |pass: &&Pass| kind(pass) == Some(Kind::Geometry);
+    if !passes.iter().any(draws) {
+        return warnings;
+    }
+    if !passes.iter().any(|pass| kind(pass) == Some(Kind::Fullscreen)) {
+        let uses: Vec<String> = row.resources.iter().map(|resource| format!("{} read", resource.name)).collect();
+        let message = format!("no pass of this {} computes the effect, so nothing is drawn", row.axis);
+        let help = format!("add `//: pass resolve: {}`", uses.join(", "));
+        warnings.push(Diagnostic::new(UNUSED_EFFECT, &spans.row, message, help));
+    }
+    for (resource, span) in row.resources.iter().zip(&spans.resources) {
+        let uses = passes.iter().flat_map(|pass| pass.uses.iter().map(move |usage| (pass, usage)));
+        let first = uses.into_iter().find(|(_, usage)| usage.resource == resource.name);
+        // Entries are guarded by words, and a plain or coherent access may be a store.
+        let is_word = resource.element == Element::Word && resource.lifetime == Lifetime::Frame;
+        let Some((pass, usage)) = first.filter(|_| is_word && resource.init == Init::Keep) else { continue };
+        let reads = usage.access == Access::Read || usage.access == Access::Atomic && draws(pass);
+        if reads {
+            let name = &resource.name;
+            let message = format!(
+                "pass `{}` reads words of `{name}` that nothing in the frame has set: they are those of an earlier frame",
+                pass.name
+            );
+            let help =
+                format!("add `clear 0` to its line, or `persistent` if `{name}` keeps its content across frames");
+            warnings.push(Diagnostic::new(MISSING_CLEAR, span, message, help));
+        }
+    }
+    warnings
 }
 
 /// A user file.

@@ -7,7 +7,7 @@ mod description;
 use std::collections::BTreeSet;
 
 use description::{Description, Random};
-use fragbuf_dsl::builder::{Buffer, Format, KeepCount, UniformType, value};
+use fragbuf_dsl::builder::{Buffer, Closure, Format, KeepCount, UniformType, value};
 use fragbuf_dsl::{CapturedTokens, Diagnostics, Draft, Parsed, Registry, SourceSpan, closure, function, parse};
 use proc_macro2::{TokenStream, TokenTree};
 
@@ -124,6 +124,55 @@ fn random_descriptions_are_the_same_in_every_front_end() {
     // The test must see descriptions with and without errors.
     assert!(accepted >= 25, "only {accepted} of {count} are variants");
     assert!((100..450).contains(&parsed), "{parsed} of {count} parse without an error");
+}
+
+/// Slips in closures and in the payload have the same message and help in every front end.
+#[test]
+fn slips_are_the_same_in_every_front_end() {
+    let registry = Registry::builtin();
+    for closure in [
+        "|f| f.depth = 0.5",
+        "|f| not (f.depth < 0.5)",
+        "|f| not f.depth < 0.5",
+        "|f| f.depth =< 0.5",
+        "|f| f.id == -1",
+        "|u, f| f.depth < u.cut",
+        "|f| { let mut c = f.color; c.xyz += f.color.xyz(); c.x < 0.5 }",
+        "|f| { const NEAR: f32 = 0.5; f.depth < NEAR }",
+        "|f| { let mut sum = 0.0; for i in range(4) { sum += f.depth; } sum < 0.5 }",
+    ] {
+        let source = format!(
+            "buffer B from kplus_array {{ fragment {{ color: rgba8, depth: f32, id: u32 }} uniform {{ cut: f32 }} where {closure}; }}"
+        );
+        let built = Buffer::named("B")
+            .from("kplus_array")
+            .attribute("color", Format::Rgba8)
+            .attribute("depth", Format::F32)
+            .attribute("id", Format::U32)
+            .uniform("cut", UniformType::F32)
+            .constraint(Closure::text(closure));
+        let file = parse(&source, "file").diagnostics;
+        assert_eq!(file.iter().count(), 1, "{closure}: {file}");
+        assert_eq!(without_spans(&file), without_spans(&built.parse().diagnostics), "{closure}");
+        assert_eq!(without_spans(&file), without_spans(&expand(&source).0.diagnostics), "{closure}");
+    }
+    for (source, built) in [
+        (
+            "buffer B from ab_ll { fragment { colour: rgba8, depth: f32 } }",
+            Buffer::named("B").from("ab_ll").attribute("colour", Format::Rgba8).attribute("depth", Format::F32),
+        ),
+        ("buffer B from kb_sr { keep 32; }", Buffer::named("B").from("kb_sr").keep(32)),
+        ("buffer B from z_buffer { keep 4; }", Buffer::named("B").from("z_buffer").keep(4)),
+    ] {
+        let file = parse(source, "file").check(&registry).unwrap_err();
+        let built = built.variant(&registry).unwrap_err();
+        assert_eq!(without_spans(&file), without_spans(&built), "{source}");
+        assert_eq!(without_spans(&file), without_spans(&expand(source).0.check(&registry).unwrap_err()), "{source}");
+        // The error of a builder is at the call that causes it, not at the technique.
+        assert!(built.iter().all(|error| error.labels.iter().any(|label| label.span != error.span)), "{built}");
+    }
+    let several = Buffer::named("B").from("kplus_array").choose("sync", "interlock, spin_lock").draft().unwrap_err();
+    assert!(several.to_string().contains("`value(\"interlock\").or_else(\"spin_lock\")`"), "{several}");
 }
 
 #[test]

@@ -6,6 +6,8 @@ pub mod scene;
 
 use std::cell::RefCell;
 use std::error::Error;
+use std::io::Write as _;
+use std::process::ExitCode;
 
 use fragbuf::{Form, Registry, Request, generate, parse, target};
 use fragbuf_runtime::headless::{BLENDED, Choice, Offscreen, adapter, open_device};
@@ -32,7 +34,18 @@ pub(crate) struct Picture<'a> {
     pub order: [usize; 3],
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // `Result` as the type of `main` prints the `Debug` form. There is no other stream to report a failure of this one on.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let technique = arguments.next().unwrap_or_else(|| "kplus_array".to_owned());
     let path = arguments.next().unwrap_or_else(|| "material.png".to_owned());

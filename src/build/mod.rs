@@ -26,11 +26,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use fragbuf_codegen::Form;
-use fragbuf_model::SourceSpan;
 use fragbuf_targets::{Generation, Request, TARGETS, Target, generate, target};
 use fragbuf_templates::Registry;
 
-use crate::load::{Description, load};
+use crate::load::{Description, alternatives, load};
 use crate::report::render;
 
 /// The descriptions to generate, in the order in which they were added.
@@ -169,12 +168,15 @@ impl Entry {
         let request = Request { targets, form: Form::Program, prefix: "", group };
         let generation = generate(&variant, &request, &registry).map_err(failed)?;
         if let Some((target, missing)) = generation.unsupported.first() {
-            let chosen = variant.choices.iter().find(|chosen| chosen.axis == missing.axis);
-            let span = chosen.map_or(SourceSpan::new(description.name(), 1, 1), |chosen| chosen.span.clone());
+            let span = variant.span_of(missing).unwrap_or(&variant.name.span);
             let message = format!("the target `{}` does not support the description: {missing}", target.name);
-            let help = "remove the target, or add an `else` alternative to the axis";
+            let others = alternatives(&description, &self.set, &registry, &generation.unsupported, &request);
+            let help = match others.first() {
+                Some((axis, value)) => format!("remove the target, or write `{axis}: {value};`"),
+                None => "remove the target".to_owned(),
+            };
             let code = fragbuf_model::codes::UNSUPPORTED_TARGET;
-            return Err(failed(fragbuf_model::Diagnostic::new(code, &span, message, help).into()));
+            return Err(failed(fragbuf_model::Diagnostic::new(code, span, message, help).into()));
         }
         Ok((rust::snake_case(&stem), generation))
     }

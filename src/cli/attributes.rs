@@ -6,7 +6,7 @@ use std::ops::Range;
 use fragbuf::Variant;
 use fragbuf_codegen::Plan;
 use fragbuf_model::{Format, nearest_name};
-use fragbuf_scene::{AttributeRequest, AvailableAttribute, Object, Scene};
+use fragbuf_scene::{AttributeRequest, AvailableAttribute, FilePosition, Object, Scene};
 
 use super::memory::Budget;
 use super::output::Failure;
@@ -118,7 +118,7 @@ pub(crate) fn model_attributes(
 
 /// Returns the failure for a scene without one of the attributes that it was opened with.
 pub(crate) fn missing(
-    scene: &str,
+    (scene, other): (&str, Option<&(FilePosition, String)>),
     request: &AttributeRequest,
     available: &[AvailableAttribute],
     attributes: &[ModelAttribute],
@@ -141,8 +141,13 @@ pub(crate) fn missing(
         .collect();
     let more = available.len().saturating_sub(MAX_LISTED);
     let more = if more == 0 { String::new() } else { format!("{more} more of the model, ") };
+    let (place, other) = match other {
+        Some((FilePosition::Line(line), reason)) => (format!("{scene}:{line}"), format!("{reason}; ")),
+        Some((_, reason)) => (scene.to_owned(), format!("{reason}; ")),
+        None => (scene.to_owned(), String::new()),
+    };
     Failure::Input(format!(
-        "{scene}: the scene has no `{name}: {format}` for the fragments: {nearest}it has {}{more}{}, and {DEPTH}; {}",
+        "{place}: the scene has no `{name}: {format}` for the fragments: {other}{nearest}it has {}{more}{}, and {DEPTH}; {}",
         of_model.concat(),
         scene_data(),
         advice(request)

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use fragbuf::{Form, Registry, Request, Target, source_file};
+use fragbuf::{Form, Registry, Request, TARGETS, Target, select, source_file};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
 use serde_json::{Value, json};
 
@@ -119,7 +119,7 @@ impl Check {
         let registry = Registry::builtin();
         let mut input = Input::read(description, &registry)?;
         let variant = input.variant_with_defaults(&self.set, &[COUNT_ALL], &registry)?;
-        let target = self.target(&variant)?;
+        let target = self.target(&input, &variant, &registry)?;
         let mut limits = self.limits();
         limits.entries = self.entries(&variant, &limits)?;
         let progress = ProgressLine::new(&format!("checking {description}"));
@@ -200,12 +200,19 @@ impl Check {
     }
 
     /// Returns the target of `--target`, or the first that supports the variant.
-    fn target(&self, variant: &fragbuf::Variant) -> Result<&'static Target, Failure> {
-        let Some(name) = &self.target else {
-            let supporting = targets::supporting(variant, &PROGRAM).first().copied();
-            return supporting.ok_or_else(|| Failure::Usage("no target supports the description".to_owned()));
+    fn target(
+        &self,
+        input: &Input,
+        variant: &fragbuf::Variant,
+        registry: &Registry,
+    ) -> Result<&'static Target, Failure> {
+        let targets = match &self.target {
+            Some(name) => vec![targets::named(name)?],
+            None => TARGETS.iter().collect(),
         };
-        targets::named(name)
+        let request = Request { targets: &targets, ..PROGRAM };
+        let found = targets.iter().find(|target| select(variant, target, &request).is_ok());
+        found.copied().ok_or_else(|| targets::unsupported(input, variant, &request, &self.set, registry))
     }
 }
 
@@ -314,8 +321,8 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
 
 /// Returns the notes of a report, and one about what is not checked.
 fn notes(report: &Report) -> Vec<&str> {
-    let unchecked = "which fragments are kept, and in which order, is not checked: the storage provides neither keeps-all nor keeps-best, and has no \
-         `keeps` line";
+    let unchecked = "which fragments are kept is not checked: the storage provides neither keeps-all nor keeps-best, and has no `keeps` line; their order is \
+         checked if it provides sorted";
     let unchecked = (!report.is_kept_set_checked).then_some(unchecked);
     report.notes.iter().map(String::as_str).chain(unchecked).collect()
 }

@@ -101,7 +101,7 @@ impl Generate {
         for (((argument, input), variant), generation) in inputs.into_iter().zip(&variants).zip(generations) {
             let generation = generation.map_err(|errors| input.failure(errors))?;
             if generation.plans.is_empty() && !self.all {
-                return Err(targets::unsupported(&argument, variant, &request, &generation));
+                return Err(targets::unsupported(&input, variant, &request, &self.set, &registry));
             }
             let folder = if self.all { self.out.join(&argument) } else { self.out.clone() };
             folders.push((folder, generation));

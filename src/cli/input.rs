@@ -66,6 +66,11 @@ impl Input {
         Input { is_module: true, ..self }
     }
 
+    /// Returns the description as given.
+    pub(crate) fn description(&self) -> &Description {
+        &self.description
+    }
+
     /// Returns the files that the last variant was read from; none if it is a technique.
     pub(crate) fn files(&self) -> &[PathBuf] {
         &self.files

@@ -38,7 +38,7 @@ impl Budget {
         let Budget { whole, left } = self;
         let rest = left.checked_sub(bytes).ok_or_else(|| {
             Failure::Device(format!(
-                "out of the memory budget: {what} needs {bytes} bytes, and {left} of {whole} bytes are left: use a smaller image \
+                "out of the memory budget: {bytes} bytes are needed for {what}, and {left} of {whole} bytes are left: use a smaller image \
                  or scene, or raise `--memory`"
             ))
         })?;
@@ -79,6 +79,6 @@ mod tests {
         assert_eq!(rest, Ok(Budget { whole: 100, left: 60 }));
         let failure = rest.map(|rest| rest.without(61, "the image"));
         let Ok(Err(Failure::Device(text))) = failure else { unreachable!("the budget has 60 bytes") };
-        assert!(text.contains("the image needs 61 bytes, and 60 of 100 bytes are left"), "{text}");
+        assert!(text.contains("61 bytes are needed for the image, and 60 of 100 bytes are left"), "{text}");
     }
 }

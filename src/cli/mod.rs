@@ -57,7 +57,7 @@ mod watch;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use output::{ColorChoice, Failure, MessageFormat};
 
@@ -114,7 +114,7 @@ enum Command {
 pub(crate) fn run() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| {
         let given: Vec<String> = std::env::args().collect();
-        usage::explained(error, &given).exit()
+        usage::explained(error, &given, &Arguments::command()).exit()
     });
     output::set_messages(arguments.message_format, arguments.message_color);
     let result = match arguments.command {

@@ -50,7 +50,7 @@ impl Show {
         let request = Request { targets, form: Form::Program, prefix: "", group: 0 };
         let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
         if !one.is_empty() && generation.plans.is_empty() {
-            return Err(targets::unsupported(&self.description, &variant, &request, &generation));
+            return Err(targets::unsupported(&input, &variant, &request, &self.set, &registry));
         }
         output::print(&match stage {
             "manifest" => output::json(&manifest(&generation, 0)),

@@ -1,8 +1,10 @@
 //! Finds targets by name, and refuses a description that none of the requested targets supports.
 
-use fragbuf::{Diagnostic, Form, Generation, Request, SourceSpan, TARGETS, Target, Variant, select, target};
-use fragbuf_model::codes;
+use fragbuf::load::{Description, alternatives};
+use fragbuf::{Diagnostic, Form, Registry, Request, SourceSpan, TARGETS, Target, Variant, select, target};
+use fragbuf_model::{MissingFeature, codes};
 
+use super::input::Input;
 use super::output::Failure;
 
 /// Returns the target of this name.
@@ -36,15 +38,28 @@ pub(crate) fn supporting(variant: &Variant, request: &Request<'_>) -> Vec<&'stat
     TARGETS.iter().filter(|target| select(variant, target, request).is_ok()).collect()
 }
 
-/// Returns the failure if none of the requested targets supports the description. The help names what works alone.
+/// Returns the failure if none of the requested targets supports the description: each with the feature that it lacks. The help names
+/// what works alone.
 pub(crate) fn unsupported(
-    description: &str,
+    input: &Input,
     variant: &Variant,
     request: &Request<'_>,
-    generation: &Generation,
+    set: &[(String, String)],
+    registry: &Registry,
 ) -> Failure {
-    let reasons: Vec<String> =
-        generation.unsupported.iter().map(|(target, missing)| format!("{}: {missing}", target.name)).collect();
+    let unsupported: Vec<(&'static Target, MissingFeature)> =
+        request.targets.iter().filter_map(|target| Some((*target, select(variant, target, request).err()?))).collect();
+    // Targets that lack the same feature are named together.
+    let mut reasons: Vec<(Vec<&str>, &MissingFeature)> = Vec::new();
+    for (target, missing) in &unsupported {
+        match reasons.iter_mut().find(|(_, other)| *other == missing) {
+            Some((targets, _)) => targets.push(target.name),
+            None => reasons.push((vec![target.name], missing)),
+        }
+    }
+    let spans: Vec<&SourceSpan> = reasons.iter().filter_map(|(_, missing)| variant.span_of(missing)).collect();
+    let described: Vec<String> =
+        reasons.iter().map(|(targets, missing)| format!("{}: {missing}", targets.join(", "))).collect();
     let others: Vec<&str> = supporting(variant, request).iter().map(|target| target.name).collect();
     let mut fixes: Vec<String> = Vec::new();
     if !others.is_empty() {
@@ -57,12 +72,22 @@ pub(crate) fn unsupported(
     if works(&Request { group: 0, ..*request }) {
         fixes.push("choose a `--group` from 0 to 3".to_owned());
     }
-    fixes.push("add an `else` alternative to the axis".to_owned());
-    let diagnostic = Diagnostic::new(
+    let alternatives = alternatives(input.description(), set, registry, &unsupported, request);
+    fixes.extend(alternatives.iter().map(|(axis, value)| match input.description() {
+        Description::Technique(_) => format!("add `--set \"{axis}={value}\"`"),
+        Description::Text { .. } => format!("write `{axis}: {value};`"),
+    }));
+    if fixes.is_empty() {
+        fixes.push("start from another technique: `fragbuf list` prints the features that each requires".to_owned());
+    }
+    let mut diagnostic = Diagnostic::new(
         codes::UNSUPPORTED_TARGET,
-        &SourceSpan::new(description, 1, 1),
-        format!("none of the targets supports the description: {}", reasons.join("; ")),
+        spans.first().copied().unwrap_or(&variant.name.span),
+        format!("none of the targets supports the description: {}", described.join("; ")),
         fixes.join(", or "),
     );
-    Failure::Description(diagnostic.into(), Vec::new())
+    for span in spans.iter().skip(1).filter(|span| **span != spans[0]) {
+        diagnostic = diagnostic.label(span, "requires another feature");
+    }
+    input.failure(diagnostic.into())
 }

@@ -141,8 +141,8 @@ impl View {
             Error::TooLarge { file, what, needed, left, .. } => {
                 Error::TooLarge { file, what, needed, left, limit: memory.whole() }.into()
             }
-            Error::MissingAttribute { scene, request, available } => {
-                attributes::missing(&scene, &request, &available, attributes)
+            Error::MissingAttribute { scene, request, available, other } => {
+                attributes::missing((&scene, other.as_ref()), &request, &available, attributes)
             }
             other => Failure::from(other),
         })?;

@@ -1,6 +1,6 @@
 //! Axis `resolve`: what is computed from the kept fragments.
 
-use crate::conditions::color;
+use crate::conditions::{ADD_COLOR, color};
 use crate::vocabulary::{Capability, Parameter, Row};
 
 /// The value that stands for the closure of the description.
@@ -12,7 +12,7 @@ pub(crate) fn rows() -> Vec<Row> {
             template: Some(template!("resolve/over")),
             calls: vec!["samples"],
             requires: vec![Capability::Sorted],
-            conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
+            conditions: vec![color(ADD_COLOR)],
             parameters: vec![Parameter::number(
                 "opaque",
                 "OPAQUE_THOUSANDTHS",
@@ -25,7 +25,7 @@ pub(crate) fn rows() -> Vec<Row> {
         Row {
             template: Some(template!("resolve/stream")),
             requires: vec![Capability::Streams],
-            conditions: vec![color(ADD_COLOR_OR_CLOSURE)],
+            conditions: vec![color(ADD_COLOR)],
             provides: vec![Capability::PairValues],
             ..Row::new(
                 "resolve",
@@ -52,6 +52,3 @@ pub(crate) fn rows() -> Vec<Row> {
         },
     ]
 }
-
-/// The fix for effects on colours, which a closure can replace.
-const ADD_COLOR_OR_CLOSURE: &str = "add `color: rgba8` to the fragment, or write `resolve |fragments, u| { … }`";

@@ -131,7 +131,7 @@ pub(crate) fn techniques() -> Vec<Technique> {
             key: "kb_mdt64".to_owned(),
             title: "KB-MDT₆₄",
             paper: "K15 §2; Liu et al. 2010",
-            summary: "the k nearest by 64-bit atomic minima of depth and color, equal depths included, in one pass",
+            summary: "the k nearest by 64-bit atomic minima of depth and colour, equal depths included, in one pass",
             keep: KeepDefault::Best(8),
             choices: vec![("storage", "wide_cascade"), ("sync", "slot_counter"), ("cull", "early"), ("sort", "walk")],
         },

@@ -69,7 +69,8 @@ fn resource(planned: &PlannedResource) -> String {
     };
     let lifetime = if resource.lifetime == Lifetime::Persistent { ", persistent" } else { "" };
     let (binding, name, words) = (planned.binding, &resource.name, &planned.words);
-    format!("@{binding} {name}{index}: {element} ({words} words), {init}{lifetime} — {}", resource.summary)
+    let plural = if words.to_string() == "1" { "word" } else { "words" };
+    format!("@{binding} {name}{index}: {element} ({words} {plural}), {init}{lifetime} — {}", resource.summary)
 }
 
 fn commands(f: &mut Formatter<'_>, plan: &Plan) -> Result {

@@ -2,6 +2,7 @@
 //! which rows are compatible follows from the capabilities that they require and provide, and from their conditions.
 
 mod capabilities;
+mod causes;
 mod choices;
 mod extra_words;
 mod option_minimums;
@@ -36,13 +37,15 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         let given = description_values(&attributes, criterion, keep);
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
-    let warnings = unused::warnings(draft, &choices);
+    let mut warnings = unused::warnings(draft, &choices);
+    warnings.extend(draft.file_warnings.clone());
     let variant = Variant::new(Description {
         name: draft.name.clone(),
         technique: technique.map(|technique| technique.key.clone()),
         attributes,
         uniforms: draft.uniforms.clone(),
         keep,
+        keep_span: draft.keep.as_ref().map(|keep| keep.count.span.clone()),
         criterion: criterion.cloned(),
         constraints: draft.constraints.clone(),
         resolve: draft.resolve.clone(),

@@ -228,5 +228,7 @@ codes! {
         UNUSED_UNIFORM "unused-uniform" "No closure reads the uniform.";
         UNUSED_FUNCTION "unused-function" "No closure calls the function.";
         UNUSED_VARIABLE "unused-variable" "No expression reads the variable.";
+        UNUSED_EFFECT "unused-effect" "No pass of the user file computes the effect, so nothing is drawn.";
+        MISSING_CLEAR "missing-clear" "A pass reads words of a buffer that no earlier pass writes and no `clear` sets.";
     }
 }

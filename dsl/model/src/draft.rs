@@ -3,7 +3,7 @@
 //! Each front end of the language (file, macro, builder) makes a [`Draft`]; equal descriptions make equal drafts. User
 //! closures are already type-checked and lowered to WGSL, because all front ends share one type checker.
 
-use crate::{SourceSpan, Spanned};
+use crate::{Diagnostics, SourceSpan, Spanned};
 
 /// The description of one fragment buffer, unchecked.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,8 @@ pub struct Draft {
     pub helpers: Vec<UserFunction>,
     /// Names that no closure uses, in the order of the source.
     pub unused: Vec<Spanned<Unused>>,
+    /// Warnings about the user files that the draft names.
+    pub file_warnings: Diagnostics,
     /// The parts that the source has and the draft lacks, because they have errors.
     pub incomplete: Incomplete,
 }
@@ -107,6 +109,7 @@ impl Draft {
             resolve: None,
             helpers: Vec::new(),
             unused: Vec::new(),
+            file_warnings: Diagnostics::new(),
             incomplete: Incomplete::default(),
         }
     }

@@ -52,7 +52,11 @@ impl Draft {
             _ if name == "k" => self.set_k(value, span),
             Some(("fragment", attribute)) => self.set_format(attribute, value, span),
             Some(("uniform", uniform)) => {
-                Err(unknown("uniform", span, format!("`--uniform {uniform}={value}` sets the value of a uniform")))
+                let help = format!(
+                    "a description does not have the value of a uniform: `--uniform {uniform}={value}` sets it in `render` and `compare`, and \
+                     `check` chooses values itself"
+                );
+                Err(unknown("uniform", span, help))
             }
             Some((axis, option)) => {
                 self.set_option(axis, option, value, span);

@@ -28,6 +28,8 @@ pub struct Description {
     pub uniforms: Vec<Uniform>,
     /// The number of fragments that a pixel keeps; `None`: all.
     pub keep: Option<u32>,
+    /// The span of this number, if the description gives it.
+    pub keep_span: Option<SourceSpan>,
     /// h(f); `None`: depth.
     pub criterion: Option<UserFunction>,
     /// A fragment is admitted iff all return true.
@@ -105,6 +107,21 @@ impl Variant {
             }
         }
         Ok(Selection { rows })
+    }
+}
+
+impl Variant {
+    /// Returns the span of what requires a feature that a target lacks: the `keep` line if the row requires it for this k only, else the
+    /// choice; `None`: no axis of the description requires it.
+    pub fn span_of(&self, missing: &MissingFeature) -> Option<&SourceSpan> {
+        let chosen = self.choices.iter().find(|chosen| chosen.axis == missing.axis)?;
+        let selected = chosen.alternatives.iter().find(|selected| selected.row.key == missing.value);
+        let depends_on_k = selected.is_some_and(|selected| {
+            let mut conditional = selected.row.needs_if.iter();
+            !selected.row.needs.contains(&missing.feature)
+                && conditional.any(|(when, feature)| *feature == missing.feature && when.mentions("keep"))
+        });
+        Some(self.keep_span.as_ref().filter(|_| depends_on_k).unwrap_or(&chosen.span))
     }
 }
 

@@ -31,6 +31,11 @@ pub(crate) fn uniforms(declarations: Vec<Declaration>, report: &mut Report) -> (
     (known.into_iter().map(|(name, kind)| Uniform { name, kind }).collect(), invalid)
 }
 
+/// Whether a name of a type of another language is more often that of an attribute.
+pub(crate) fn is_usual_name(word: &str) -> bool {
+    matches!(word, "color" | "colour" | "normal")
+}
+
 /// What a block declares.
 struct Declared {
     name: &'static str,
@@ -50,6 +55,17 @@ fn resolve_types<T: Copy>(
     let mut seen: Vec<Spanned<String>> = Vec::new();
     let (mut known, mut invalid) = (Vec::new(), Vec::new());
     for Declaration { name, type_name } in declarations {
+        let is_type = |word: &str| types.iter().any(|(keyword, _)| *keyword == word);
+        if is_type(&name.value)
+            && !is_type(&type_name.value)
+            && foreign(&type_name.value).is_none_or(|_| is_usual_name(&type_name.value))
+        {
+            let message = format!("unknown {what} type `{}`", type_name.value);
+            let help = format!("the name is before the colon: write `{}: {}`", type_name.value, name.value);
+            report.error(codes::UNKNOWN_FORMAT, &type_name.span, message, help);
+            invalid.push(type_name.value);
+            continue;
+        }
         let name = names::declared(&name, what, report);
         if let Some(first) = seen.iter().find(|other| other.value == name.value) {
             let message = format!("duplicate {what} `{}`", name.value);

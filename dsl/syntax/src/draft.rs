@@ -97,7 +97,7 @@ fn environment(items: &Items, report: &mut Report) -> Environment {
             helpers.push(signature(name, raw, report));
         }
     }
-    Environment { attributes, uniforms, helpers, incomplete: items.incomplete }
+    Environment { attributes, uniforms, helpers, constants: items.constants.clone(), incomplete: items.incomplete }
 }
 
 fn signature(name: &str, raw: &RawFunction, report: &mut Report) -> Signature {

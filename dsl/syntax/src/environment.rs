@@ -12,6 +12,8 @@ pub(crate) struct Environment {
     pub attributes: Vec<(String, Type)>,
     pub uniforms: Vec<(String, Type)>,
     pub helpers: Vec<Signature>,
+    /// The names of constants among the items, which are errors.
+    pub constants: Vec<String>,
     /// The lists that lack names with errors.
     pub incomplete: Incomplete,
 }

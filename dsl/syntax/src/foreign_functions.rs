@@ -107,6 +107,11 @@ const ROWS: &[Row] = &[
 
 /// Returns the help for a call of a function of another language that is not a type; `None`: no language has it.
 pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
+    match (name, given) {
+        ("range" | "xrange", given) => return Some(range(given)),
+        ("not", [operand]) => return Some(format!("write `!{}`", operand.source)),
+        _ => {}
+    }
     let is_method = methods::is_method(name);
     // A method of this name has another number of arguments: `atan(y, x)`.
     let is_row = |row: &&Row| row.names.contains(&name) && (!is_method || given.len() == row.arguments.len());
@@ -124,6 +129,15 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
             Some(format!("write `{expression}`"))
         }
         None => Some(each_component(&filled(row.number, &components(given)))),
+    }
+}
+
+/// Returns the help for a range of another language.
+fn range(given: &[Given]) -> String {
+    match given {
+        [to] => format!("write `0..{}`", to.source),
+        [from, to] => format!("write `{}..{}`", from.source, to.source),
+        _ => "write `a..b`: the step of a range is 1, and `(a..b).rev()` counts down".to_owned(),
     }
 }
 

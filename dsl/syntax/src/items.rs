@@ -32,6 +32,8 @@ pub(crate) struct Items {
     pub functions: Vec<RawFunction>,
     /// The tokens of the same functions, including those that do not parse.
     pub function_tokens: Vec<FunctionTokens>,
+    /// The names of constants, which are errors: their uses are not reported.
+    pub constants: Vec<String>,
     /// The parts with errors that are not in this list.
     pub incomplete: Incomplete,
     fragment_block: Option<SourceSpan>,

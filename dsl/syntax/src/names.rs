@@ -41,6 +41,14 @@ const RESERVED: [&str; 13] =
 
 /// Returns the buffer's name, which becomes the name of a type.
 pub(crate) fn buffer(written: &Spanned<String>, report: &mut Report) -> Spanned<String> {
+    // Only the builder can pass several words as one name.
+    if written.value.contains([' ', '-']) && written.value.is_ascii() {
+        let name = upper_camel(&written.value);
+        let message = format!("expected an identifier, found `{}`", written.value);
+        let help = format!("a name is one word: write `{name}`");
+        report.error(codes::UNEXPECTED_TOKEN, &written.span, message, help);
+        return Spanned::new(name, written.span.clone());
+    }
     let name = declared(written, "buffer", report);
     if name.value.starts_with(|first: char| first.is_ascii_lowercase() || first == '_') {
         let message = format!("the buffer name `{}` is not in UpperCamelCase", name.value);
@@ -64,8 +72,8 @@ fn other(name: &str) -> String {
 }
 
 /// Returns the name in UpperCamelCase.
-fn upper_camel(name: &str) -> String {
-    let parts = name.split('_').filter(|part| !part.is_empty());
+pub(crate) fn upper_camel(name: &str) -> String {
+    let parts = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|part| !part.is_empty());
     let camel: String = parts
         .map(|part| {
             let mut letters = part.chars();

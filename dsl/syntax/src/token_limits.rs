@@ -144,6 +144,25 @@ pub(crate) fn spaced(tokens: &TokenStream) -> String {
     out.trim_end().to_string()
 }
 
+/// Removes the spaces that are not usual from tokens separated by spaces.
+pub(crate) fn compact(spaced: &str) -> String {
+    let mut out = String::with_capacity(spaced.len());
+    for token in spaced.split(' ') {
+        let last = out.chars().next_back();
+        let is_word = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == ')';
+        let is_joined = matches!(token, "." | "," | ";" | ")" | "]" | "::" | "..")
+            || matches!(last, None | Some('(' | '[' | '.'))
+            || out.ends_with("::")
+            || (matches!(token, "(" | "[") && last.is_some_and(is_word) && !out.ends_with(" if"));
+        if !is_joined {
+            out.push(' ');
+        }
+        out.push_str(token);
+    }
+    // A sign belongs to its operand.
+    if let Some(rest) = out.strip_prefix("- ") { format!("-{rest}") } else { out }
+}
+
 fn write_spaced(tokens: &TokenStream, out: &mut String) {
     for token in tokens.clone() {
         match token {

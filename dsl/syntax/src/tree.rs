@@ -216,6 +216,12 @@ impl Operator {
         matches!(self, Operator::BitAnd | Operator::BitOr | Operator::BitXor)
     }
 
+    /// Returns whether this is one of `== != < <= > >=`.
+    pub(crate) fn is_comparison(self) -> bool {
+        use Operator::*;
+        matches!(self, Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual)
+    }
+
     /// Returns whether this is `&&` or `||`.
     pub(crate) fn is_logical(self) -> bool {
         matches!(self, Operator::And | Operator::Or)

@@ -2,7 +2,7 @@
 //!
 //! The features of this device decide the alternatives of each `else`, as for every target.
 
-use fragbuf_codegen::{Form, Linking, Plan, Profile, Stage, link, plan};
+use fragbuf_codegen::{Form, Linking, PassSource, Plan, Profile, Stage, link, plan};
 use fragbuf_interpreter::{Bytecode, Marker, Options};
 use fragbuf_model::Variant;
 use fragbuf_targets::{Checked, check};
@@ -18,6 +18,8 @@ pub struct Code {
     pub plan: Plan,
     /// The programs, in the order of the passes.
     pub(crate) passes: Vec<PassCode>,
+    /// Their sources, which errors locate instructions in.
+    sources: Vec<PassSource>,
 }
 
 /// The programs of one pass.
@@ -59,11 +61,25 @@ impl Code {
         let selection = variant.select(FEATURES).map_err(Error::MissingFeature)?;
         let plan = plan(variant, &selection, registry)?;
         let linking = Linking { profile: Profile::Native, form: Form::Program, prefix: String::new(), group: 0 };
-        let mut passes = Vec::new();
+        let (mut passes, mut sources) = (Vec::new(), Vec::new());
         for source in link(&plan, &linking, registry)?.passes {
-            passes.push(compiled(&check(source, linking.profile, &variant.name.span)?)?);
+            let checked = check(source, linking.profile, &variant.name.span)?;
+            passes.push(compiled(&checked)?);
+            sources.push(checked.pass().clone());
         }
-        Ok(Code { plan, passes })
+        Ok(Code { plan, passes, sources })
+    }
+
+    /// Returns the error for an invocation of a pass that reached the limit of backward jumps at an instruction.
+    pub(crate) fn endless(&self, pass: usize, program: &Bytecode, at: u32) -> Error {
+        let source = &self.sources[pass];
+        let lines = program.trace(at).into_iter().map(|span| span.location(&source.text).line_number as usize);
+        let location = source.lines.location(&lines.collect::<Vec<_>>());
+        Error::NotTerminating {
+            pass: source.name.clone(),
+            reason: "an invocation loops without end, or too long",
+            location,
+        }
     }
 }
 

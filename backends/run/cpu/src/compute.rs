@@ -14,12 +14,20 @@ use crate::view::View;
 /// The workgroups that one thread takes at a time.
 const CHUNK: u64 = 16;
 
-/// Runs a dispatch; returns an access out of bounds, if there was one. `Err`: the reason why it does not terminate.
+/// Why a dispatch does not terminate.
+pub(crate) enum ComputeError {
+    /// An invocation reached the limit of backward jumps at this instruction.
+    Endless(u32),
+    /// Some invocations of a workgroup wait at a barrier that the others do not reach.
+    DivergentBarrier,
+}
+
+/// Runs a dispatch; returns an access out of bounds, if there was one.
 pub(crate) fn compute(
     program: &Bytecode,
     view: &View<'_>,
     groups: [u32; 3],
-) -> Result<Option<OutOfBoundsAccess>, &'static str> {
+) -> Result<Option<OutOfBoundsAccess>, ComputeError> {
     let total: u64 = groups.iter().map(|count| u64::from(*count)).product();
     let out_of_bounds: Mutex<Option<OutOfBoundsAccess>> = Mutex::default();
     (0..total.div_ceil(CHUNK)).into_par_iter().try_for_each(|chunk| {
@@ -31,10 +39,8 @@ pub(crate) fn compute(
                 DispatchEnd::OutOfBounds(new) => {
                     out_of_bounds.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(new);
                 }
-                DispatchEnd::Endless => return Err("an invocation loops without end"),
-                DispatchEnd::DivergentBarrier => {
-                    return Err("some invocations wait at a barrier that the others do not reach");
-                }
+                DispatchEnd::Endless(at) => return Err(ComputeError::Endless(at)),
+                DispatchEnd::DivergentBarrier => return Err(ComputeError::DivergentBarrier),
             }
         }
         Ok(())

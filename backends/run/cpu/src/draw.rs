@@ -3,7 +3,6 @@
 //! Tiles run in parallel; instances and batches of triangles run one after the other.
 
 use std::sync::PoisonError;
-use std::sync::atomic::Ordering;
 
 use fragbuf_interpreter::OutOfBoundsAccess;
 use rayon::prelude::*;
@@ -28,8 +27,12 @@ pub(crate) struct DrawResult {
 
 /// Why a draw call cannot run.
 pub(crate) enum DrawError {
-    /// An unsupported construct, or a shader that does not terminate.
+    /// An unsupported construct.
     Shader(String),
+    /// A vertex shader reached the limit of backward jumps at this instruction.
+    EndlessVertex(u32),
+    /// A fragment shader reached the limit of backward jumps at this instruction.
+    EndlessFragment(u32),
     /// The triangles, or the lists of the tiles, do not fit into the memory of a draw call with a shuffled order. The number of bytes that
     /// they need, as far as it is known.
     Shuffled(u64),
@@ -82,8 +85,8 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
                 };
                 let part = share * bins.sorted as f64 / all / bins.tiles.len().max(1) as f64;
                 run(&tiles, &|| done(part));
-                if results.endless.load(Ordering::Relaxed) > 0 {
-                    return Err(DrawError::Shader("a fragment shader that does not terminate".to_owned()));
+                if let Some(at) = results.endless.at() {
+                    return Err(DrawError::EndlessFragment(at));
                 }
                 rest = rest.get(bins.sorted..).unwrap_or_default();
             }

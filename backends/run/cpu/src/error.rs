@@ -33,6 +33,8 @@ pub enum Error {
         pass: String,
         /// The reason.
         reason: &'static str,
+        /// The position of the loop in the description, a user file or a template; `None`: it is not known.
+        location: Option<String>,
     },
 }
 
@@ -58,7 +60,13 @@ impl fmt::Display for Error {
                     "out of memory allocating {what} ({bytes} bytes): use a smaller frame or keep fewer fragments"
                 )
             }
-            Error::NotTerminating { pass, reason } => write!(f, "pass `{pass}` does not terminate: {reason}"),
+            Error::NotTerminating { pass, reason, location } => {
+                let location = location.as_ref().map_or(String::new(), |location| format!("{location}: "));
+                write!(
+                    f,
+                    "{location}pass `{pass}` does not terminate: {reason}: give the loop a smaller limit, or use another device"
+                )
+            }
         }
     }
 }

@@ -20,8 +20,24 @@ use crate::view::View;
 #[derive(Default)]
 pub(crate) struct TileResults {
     pub(crate) samples: AtomicU64,
-    pub(crate) endless: AtomicU64,
+    pub(crate) endless: FirstEndless,
     pub(crate) out_of_bounds: Mutex<Option<OutOfBoundsAccess>>,
+}
+
+/// The instruction at which the first invocation reached the limit of backward jumps: one more than its index; 0: none did.
+#[derive(Default)]
+pub(crate) struct FirstEndless(AtomicU64);
+
+impl FirstEndless {
+    /// Returns the instruction of the first invocation that does not terminate.
+    pub(crate) fn at(&self) -> Option<u32> {
+        self.0.load(Ordering::Relaxed).checked_sub(1).map(|at| at as u32)
+    }
+
+    /// Sets the instruction, unless another thread did.
+    pub(crate) fn set(&self, at: u32) {
+        let _ = self.0.compare_exchange(0, u64::from(at) + 1, Ordering::Relaxed, Ordering::Relaxed);
+    }
 }
 
 /// The state that the tiles of a batch of triangles share.
@@ -43,7 +59,7 @@ impl<'a> FragmentBatch<'a> {
             Some(order) => self.interleaved(bin, view, order, &mut samples),
             None => self.for_each_fragment(bin, |triangle, position| {
                 // A fragment that does not terminate takes seconds; the others would too.
-                if self.results.endless.load(Ordering::Relaxed) == 0 {
+                if self.results.endless.at().is_none() {
                     samples += u64::from(self.shade(machine, view, triangle, position));
                 }
             }),
@@ -169,7 +185,7 @@ impl<'a> FragmentBatch<'a> {
                 });
             }
             let Some((_, position)) = fragments.first() else { continue };
-            if self.results.endless.load(Ordering::Relaxed) > 0 {
+            if self.results.endless.at().is_some() {
                 return;
             }
             let seed = seed ^ (u64::from(position.y) << 32 | u64::from(position.x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -186,7 +202,7 @@ impl<'a> FragmentBatch<'a> {
 
     fn record_exit(&self, machine: &mut Machine<'_>, exit: Exit) {
         if exit == Exit::Endless {
-            self.results.endless.fetch_add(1, Ordering::Relaxed);
+            self.results.endless.set(machine.at());
         }
         if let Some(out_of_bounds) = machine.out_of_bounds.take() {
             self.results.out_of_bounds.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(out_of_bounds);

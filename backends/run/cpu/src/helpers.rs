@@ -5,7 +5,6 @@
 //! helper invocations too, but those run at pixels of the slice, where fragments run as well.
 
 use std::ops::Range;
-use std::sync::atomic::Ordering;
 
 use fragbuf_interpreter::{Access, Event, Exit, Machine, Operation, Reply, SharedMemory, WordAddress};
 
@@ -58,13 +57,13 @@ impl<'a> FragmentBatch<'a> {
         machine.is_helper = true;
         self.for_each_fragment(bin, |triangle, position| {
             for [x, y] in outside_of_slice([position.x, position.y], width, rows) {
-                if self.results.endless.load(Ordering::Relaxed) > 0 {
+                if self.results.endless.at().is_some() {
                     return;
                 }
                 let weights = triangle.weights(x, y, PIXEL_CENTRE);
                 self.stage.begin(machine, triangle, &FragmentPosition { x, y, weights, mask: 0, ..position });
                 if machine.run(&mut Unchanged(view)) == Exit::Endless {
-                    self.results.endless.fetch_add(1, Ordering::Relaxed);
+                    self.results.endless.set(machine.at());
                 }
                 machine.out_of_bounds = None;
             }

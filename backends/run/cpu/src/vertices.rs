@@ -4,6 +4,7 @@ use fragbuf_interpreter::{Bytecode, Exit, Machine};
 use naga::BuiltIn;
 use rayon::prelude::*;
 
+use crate::draw::DrawError;
 use crate::view::View;
 
 /// The vertices that one thread takes at a time.
@@ -22,18 +23,18 @@ pub(crate) fn stride(program: &Bytecode) -> usize {
     program.inputs.iter().filter(|input| input.location().is_some()).map(|input| input.words.len()).sum()
 }
 
-/// Runs `count` vertices of an instance. `Err`: an input without a source, or a vertex that does not terminate.
+/// Runs `count` vertices of an instance.
 pub(crate) fn run(
     (program, view): (&Bytecode, &View<'_>),
     vertices: &[u32],
     count: usize,
     instance: u32,
-) -> Result<Vec<u32>, String> {
+) -> Result<Vec<u32>, DrawError> {
     let inputs = vertex_inputs(program)?;
     let stride = stride(program);
     let words = program.result.len();
     let mut results = vec![0; words * count];
-    let ended: Vec<bool> = results
+    let endless: Vec<Option<u32>> = results
         .par_chunks_mut((words * CHUNK).max(1))
         .enumerate()
         .map(|(chunk, results)| {
@@ -53,17 +54,16 @@ pub(crate) fn run(
                     }
                 }
                 if machine.run(&mut view) != Exit::Ended {
-                    return false;
+                    return Some(machine.at());
                 }
                 result.copy_from_slice(machine.result());
             }
-            true
+            None
         })
         .collect();
-    if ended.into_iter().all(|ended| ended) {
-        Ok(results)
-    } else {
-        Err("a vertex shader that does not terminate".to_owned())
+    match endless.into_iter().flatten().next() {
+        None => Ok(results),
+        Some(at) => Err(DrawError::EndlessVertex(at)),
     }
 }
 

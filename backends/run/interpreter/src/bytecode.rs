@@ -201,9 +201,9 @@ impl Bytecode {
         one.iter().zip(other).zip(live).all(|((one, other), word)| one == other || counters.contains(&word))
     }
 
-    /// Returns the first instruction of every loop that has a retry counter.
+    /// Returns the jump back of every loop that has a retry counter.
     pub fn retry_loops(&self) -> impl Iterator<Item = u32> {
-        self.retry_loops.iter().map(|retry| retry.instructions.start)
+        self.retry_loops.iter().map(|retry| retry.instructions.end.saturating_sub(1))
     }
 
     /// Returns whether the program calls a marker function.

@@ -13,8 +13,8 @@ use crate::memory::{Event, Reply, Sequential, SharedMemory, WordAddress};
 pub enum DispatchEnd {
     /// All invocations ended.
     Ended,
-    /// An invocation reached the limit of backward jumps.
-    Endless,
+    /// An invocation reached the limit of backward jumps at this instruction, for [`Bytecode::trace`].
+    Endless(u32),
     /// Some invocations of a workgroup wait at a barrier that the others do not reach.
     DivergentBarrier,
     /// The dispatch ended after an access out of bounds.
@@ -70,7 +70,7 @@ pub fn workgroup<S: SharedMemory>(
             match machine.run(&mut BarrierSegment { shared, has_passed: is_first }) {
                 Exit::Stopped(_) => waiting += 1,
                 Exit::Ended | Exit::Discarded => *ended = true,
-                Exit::Endless => return DispatchEnd::Endless,
+                Exit::Endless => return DispatchEnd::Endless(machine.at()),
             }
             if let Some(access) = machine.out_of_bounds.take() {
                 outcome = DispatchEnd::OutOfBounds(access);
@@ -97,7 +97,7 @@ fn run_without_barriers<S: SharedMemory>(
         machine.restart();
         set_invocation_ids(machine, index, group, groups);
         if machine.run(shared) == Exit::Endless {
-            return DispatchEnd::Endless;
+            return DispatchEnd::Endless(machine.at());
         }
         if let Some(access) = machine.out_of_bounds.take() {
             outcome = DispatchEnd::OutOfBounds(access);

@@ -44,6 +44,8 @@ pub enum Error {
         request: AttributeRequest,
         /// The attributes that can be requested.
         available: Vec<AvailableAttribute>,
+        /// The position of something of this name in the file, and why it is no attribute of vertices.
+        other: Option<(FilePosition, String)>,
     },
     /// `builtin:…` names an unknown scene or parameter, or an invalid value.
     Unknown(String),
@@ -67,11 +69,15 @@ impl fmt::Display for Error {
             Error::Malformed { file, position, message } => located(f, file, *position, message),
             Error::TooLarge { file, what, needed, left, limit } => write!(
                 f,
-                "{file}: out of the memory budget: {what} needs {needed} bytes or more, and {left} of {limit} bytes are left: use a smaller model or a larger budget"
+                "{file}: out of the memory budget: {needed} bytes or more are needed for {what}, and {left} of {limit} bytes are left: use a smaller model or a larger budget"
             ),
-            Error::MissingAttribute { scene, request: AttributeRequest { name, components, .. }, .. } => {
+            Error::MissingAttribute { scene, request: AttributeRequest { name, components, .. }, other, .. } => {
                 let plural = if *components == 1 { "" } else { "s" };
-                write!(f, "{scene}: vertices have no attribute `{name}` with {components} component{plural}")
+                let message = format!("vertices have no attribute `{name}` with {components} component{plural}");
+                match other {
+                    Some((position, reason)) => located(f, scene, *position, &format!("{message}: {reason}")),
+                    None => write!(f, "{scene}: {message}"),
+                }
             }
             Error::Unknown(message) => f.write_str(message),
         }
@@ -99,7 +105,7 @@ pub(crate) enum FileError {
     /// A part of the scene exceeds the limits.
     TooLarge { what: String, needed: u64, left: u64, limit: u64 },
     /// Vertices do not have an attribute that the caller requested.
-    MissingAttribute(AttributeRequest, Vec<AvailableAttribute>),
+    MissingAttribute(AttributeRequest, Vec<AvailableAttribute>, Option<(FilePosition, String)>),
 }
 
 impl FileError {
@@ -126,8 +132,8 @@ impl FileError {
             FileError::Malformed(position, message) => Error::Malformed { file, position, message },
             FileError::InElement { message, .. } => Error::Malformed { file, position: FilePosition::Whole, message },
             FileError::TooLarge { what, needed, left, limit } => Error::TooLarge { file, what, needed, left, limit },
-            FileError::MissingAttribute(request, available) => {
-                Error::MissingAttribute { scene: file, request, available }
+            FileError::MissingAttribute(request, available, other) => {
+                Error::MissingAttribute { scene: file, request, available, other }
             }
         }
     }

@@ -88,7 +88,7 @@ pub fn load_with(
 /// Checks that no attribute is required of a scene that has none.
 fn none_of(attributes: &[AttributeRequest]) -> Result<(), FileError> {
     match attributes.iter().find(|request| !request.is_optional) {
-        Some(request) => Err(FileError::MissingAttribute(request.clone(), Vec::new())),
+        Some(request) => Err(FileError::MissingAttribute(request.clone(), Vec::new(), None)),
         None => Ok(()),
     }
 }

@@ -212,7 +212,7 @@ impl<'s> Frame<'s> {
                     (&runnable.pass.name, |at| code_location(&runnable.program, at, &runnable.source));
                 match end {
                     DispatchEnd::Ended => {}
-                    DispatchEnd::Endless => return Err(format!("pass `{name}` does not end")),
+                    DispatchEnd::Endless(_) => return Err(format!("pass `{name}` does not end")),
                     DispatchEnd::DivergentBarrier => {
                         return Err(format!(
                             "some invocations of pass `{name}` wait at a barrier that others do not reach"

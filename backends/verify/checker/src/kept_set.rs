@@ -90,6 +90,11 @@ impl KeptSet {
         self.kept_of(fragments)
     }
 
+    /// Returns whether entries are read in the order of their keys, if the rows declare an order.
+    pub(crate) fn has_keys_in_order(&self, entries: &[Vec<u32>]) -> bool {
+        !self.is_sorted || entries.is_sorted_by_key(|entry| entry.first().copied())
+    }
+
     /// Returns whether entries are read in the order of their deciding words, if the rows declare an order.
     pub(crate) fn is_in_order(&self, entries: &[Vec<u32>]) -> bool {
         // Where arrival decides, `is_exact` compares the sequences.

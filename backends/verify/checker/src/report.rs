@@ -3,7 +3,7 @@
 //! Input: steps of a search. Output: one line per step, with the fragment, what it did to which word, and the template line
 //! that did it. This is plain data; the command line prints it.
 
-use fragbuf_codegen::{FIRST_BINDING, LineSource};
+use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
 use fragbuf_interpreter::{Access, Atomic, Buffer, Bytecode, Event, Machine, Operation, Reply};
 use fragbuf_templates::COUNTERS;
@@ -206,13 +206,8 @@ fn function_name(function: Atomic) -> String {
 pub(crate) fn code_location(program: &Bytecode, at: u32, source: &CheckedSource) -> String {
     let lines = program.trace(at).into_iter().map(|span| span.location(&source.text).line_number as usize);
     let lines: Vec<usize> = lines.collect();
-    for line in &lines {
-        match source.lines.source(*line) {
-            LineSource::Source { name, line } if !name.starts_with("generated/") => return format!("{name}:{line}"),
-            LineSource::Description(span) => return span.to_string(),
-            LineSource::UserFile(span) => return format!("{}:{}", span.file, span.line),
-            _ => {}
-        }
+    if let Some(location) = source.lines.location(&lines) {
+        return location;
     }
     let file = if source.file.is_empty() { "generated" } else { &source.file };
     lines.first().map_or_else(String::new, |line| format!("{file}:{line}"))

@@ -110,7 +110,13 @@ impl Specification {
     /// Describes what violates the specification, hazards aside.
     fn violation(&self, kept: &[Vec<u32>], counts: Counts) -> Option<String> {
         if self.kept_set.is_unknown() {
-            return self.unknown_entry(kept).or_else(|| self.counter_mismatch(kept.len() as u32, counts));
+            let out_of_order = || {
+                let is_in_order = self.kept_set.has_keys_in_order(kept);
+                (!is_in_order)
+                    .then(|| format!("the entries are not in order: {}", listed(&kept.iter().collect::<Vec<_>>())))
+            };
+            let unknown = self.unknown_entry(kept).or_else(out_of_order);
+            return unknown.or_else(|| self.counter_mismatch(kept.len() as u32, counts));
         }
         let survivors = self.certain_survivors(kept);
         let missing = self.missing_sets(counts.dropped()).filter(|out| out & survivors == 0);

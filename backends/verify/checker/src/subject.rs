@@ -64,9 +64,10 @@ impl Subject {
         let mut provides = target.provides.to_vec();
         provides.push(Feature::OwnEntryPoints);
         let mut selection = variant.select(&provides).map_err(|missing| {
-            let help = "choose another target, or add an `else` to the axis";
+            let span = variant.span_of(&missing).unwrap_or(&variant.name.span);
+            let help = format!("choose another target, or another value of `{}` after `else`", missing.axis);
             let message = format!("{} cannot express it: {missing}", target.name);
-            Diagnostics::from(Diagnostic::new(codes::UNSUPPORTED_TARGET, &variant.name.span, message, help))
+            Diagnostics::from(Diagnostic::new(codes::UNSUPPORTED_TARGET, span, message, help))
         })?;
         if retries == RetryLimit::Minimum && !minimise_retries(&mut selection) {
             return Ok(None);

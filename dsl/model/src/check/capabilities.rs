@@ -2,8 +2,9 @@
 //! combination of one alternative per axis. The help is computed: the single changes that make the description legal.
 
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Condition, DescriptionValues, Row};
+use fragbuf_templates::vocabulary::{Capability, Condition, DescriptionValues, Formula, Row};
 
+use super::causes::{Cause, Items};
 use crate::user_row::value_source;
 use crate::variant::{AxisChoice, with_extra_words};
 use crate::{Diagnostic, Diagnostics, Draft, SourceSpan, codes};
@@ -101,6 +102,9 @@ fn has_size_in_k(row: &Row) -> bool {
     row.resources.iter().any(|resource| resource.mentions("k"))
 }
 
+/// An effect that every payload has.
+const CLOSURE: &str = "resolve |fragments| { vec4(fragments[0].depth, 0.0, 0.0, 1.0) }";
+
 /// Values of k that a help text suggests, the most useful first.
 const SUGGESTED_K: [u32; 4] = [8, 4, 2, 1];
 
@@ -147,20 +151,64 @@ impl Context<'_> {
     /// Reports a capability that `combination[index]` requires and no row provides.
     fn missing(&self, index: usize, capability: Capability, combination: &Combination<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
+        // Rows that would provide it if the description met a condition, and other choices on axes with rows that provide it.
+        let implied = combination.iter().flat_map(|row| row.implies.iter().map(move |implied| (row, implied)));
+        let cause = implied
+            .filter(|(_, (_, implied))| *implied == capability)
+            .find_map(|(row, (when, _))| Some((row, when, self.cause(when, combination)?)));
         let help = match self.fixes(index, combination) {
             Some(fixes) => format!("choose {fixes}"),
-            None => self.more_changes(index, capability, combination),
+            None => cause
+                .as_ref()
+                .and_then(|(_, _, cause)| cause.help.clone())
+                .unwrap_or_else(|| self.more_changes(index, capability, combination)),
         };
         let message =
             format!("{} requires {}, but no choice provides it", name(combination[index]), capability.meaning());
-        let mut diagnostic = Diagnostic::new(codes::MISSING_CAPABILITY, &chosen.span, message, help);
-        for (other, row) in self.choices.iter().zip(combination) {
-            let could = self.registry.rows_of(&other.axis).any(|row| row.provides.contains(&capability));
-            if could && other.span != chosen.span {
-                diagnostic = diagnostic.label(&other.span, format!("{} does not provide it", name(row)));
-            }
+        let could = |axis: &str| self.registry.rows_of(axis).any(|row| row.provides.contains(&capability));
+        let others: Vec<(&AxisChoice, &&Row)> = self
+            .choices
+            .iter()
+            .zip(combination)
+            .filter(|(other, _)| could(&other.axis) && other.span != chosen.span)
+            .collect();
+        let others_given = || others.iter().map(|(other, _)| &other.span).find(|span| self.is_given(span));
+        let is_given = self.is_given(&chosen.span);
+        let span = match &cause {
+            Some((_, _, cause)) if !is_given => &cause.span,
+            None if !is_given => others_given().unwrap_or(&chosen.span),
+            _ => &chosen.span,
+        };
+        let mut diagnostic = Diagnostic::new(codes::MISSING_CAPABILITY, span, message, help);
+        if span != &chosen.span {
+            diagnostic = diagnostic.label(&chosen.span, format!("{} is chosen here", name(combination[index])));
+        }
+        if let Some((row, when, cause)) = &cause {
+            let text = format!("{} provides it only if `{when}` holds", name(row));
+            diagnostic = diagnostic.label(&cause.span, text);
+        }
+        for (other, row) in others {
+            diagnostic = diagnostic.label(&other.span, format!("{} does not provide it", name(row)));
         }
         diagnostic
+    }
+
+    /// Returns whether a span is of an item that the description gives, not of its preset or name.
+    fn is_given(&self, span: &SourceSpan) -> bool {
+        *span != self.draft.name.span && self.draft.preset.as_ref().is_none_or(|preset| preset.span != *span)
+    }
+
+    /// Returns the item of the description that does not meet a formula.
+    fn cause(&self, formula: &Formula, combination: &Combination<'_>) -> Option<Cause> {
+        let items = Items { draft: self.draft, choices: self.choices, given: self.given };
+        let cause = items.cause(formula, &|given| Rules::new(combination, given).is_legal());
+        let is_payload = ["payload_words", "entry_words", "value_words"].iter().any(|words| formula.mentions(words));
+        if cause.as_ref().is_some_and(|cause| cause.help.is_some()) || !is_payload || !self.given.meets(formula) {
+            return cause;
+        }
+        // Without the words that rows add, the payload fits.
+        let adding = self.choices.iter().zip(combination).find(|(_, row)| !row.extra_words.is_empty());
+        adding.map(|(chosen, _)| Cause { span: chosen.span.clone(), help: None }).or(cause)
     }
 
     /// Returns the help if no single change makes the combination legal: the rows that provide the capability.
@@ -194,13 +242,29 @@ impl Context<'_> {
     /// Reports a condition of `combination[index]` that the description does not meet.
     fn unmet(&self, index: usize, condition: &Condition, combination: &Combination<'_>) -> Diagnostic {
         let row = name(combination[index]);
-        let or_else = self.fixes(index, combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
-        Diagnostic::new(
+        let chosen = &self.choices[index].span;
+        let cause = self.cause(&condition.formula, combination);
+        // A change that is printed whole is first. The author of a user file knows more about a condition than its symbols say.
+        let is_of_user = combination[index].template.as_ref().is_some_and(|template| template.user_file.is_some());
+        let change = cause.as_ref().filter(|_| !is_of_user).and_then(|cause| cause.help.as_ref());
+        let help = match (change, self.fixes(index, combination)) {
+            (Some(fix), Some(fixes)) => format!("{fix}, or choose {fixes}"),
+            (Some(fix), None) => fix.clone(),
+            (None, Some(fixes)) if cause.is_some() && !is_of_user => format!("choose {fixes}, or {}", condition.help),
+            (None, Some(fixes)) => format!("{}, or choose {fixes}", condition.help),
+            (None, None) => condition.help.to_string(),
+        };
+        let span = cause.as_ref().map_or(chosen, |cause| &cause.span);
+        let diagnostic = Diagnostic::new(
             codes::MISSING_CAPABILITY,
-            &self.choices[index].span,
+            span,
             format!("{row} requires {}, but the description does not have it", condition.meaning),
-            format!("{}{or_else}", condition.help),
-        )
+            help,
+        );
+        match span == chosen {
+            true => diagnostic,
+            false => diagnostic.label(chosen, format!("{row} is chosen here")),
+        }
     }
 
     /// Returns the rows that make the combination legal if one of them replaces the row of its axis, those that change the least first.
@@ -211,11 +275,18 @@ impl Context<'_> {
         indices.sort_by_key(|index| (self.extent_of_change(&self.choices[*index].axis), *index != at_fault));
         for index in indices {
             let axis = &self.choices[index].axis;
-            for row in self.registry.rows_of(axis).filter(|row| row.key != Registry::CLOSURE) {
+            let has_closure = axis == Registry::CLOSURE_AXIS && self.draft.resolve.is_some();
+            for row in self.registry.rows_of(axis) {
                 let mut other = combination.clone();
                 other[index] = row;
-                if Rules::new(&other, self.given).is_legal() {
-                    fixes.push(name(row));
+                if !Rules::new(&other, self.given).is_legal() {
+                    continue;
+                }
+                match (row.key == Registry::CLOSURE, has_closure) {
+                    (false, false) => fixes.push(name(row)),
+                    (false, true) => fixes.push(format!("{} in place of the closure", name(row))),
+                    (true, false) => fixes.push(format!("a closure as the effect, `{CLOSURE}`")),
+                    (true, true) => {}
                 }
             }
         }

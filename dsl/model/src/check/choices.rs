@@ -186,7 +186,11 @@ fn default_choice(
         .find(|(name, _)| *name == axis.key)
         .map(|(_, value)| value.as_ref());
     let value = closure.or(preset).or(suggested).or(axis.default);
-    let span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
+    let preset_span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
+    let span = match &draft.resolve {
+        Some(function) if closure.is_some() => &function.span,
+        _ => preset_span,
+    };
     let rows: Option<Vec<&Row>> =
         value.and_then(|value| value.split(" else ").map(|value| registry.row(axis.key, value)).collect());
     let Some(rows) = rows else {
@@ -242,7 +246,8 @@ fn selected_row(
             codes::UNKNOWN_VALUE,
             &value.span,
             format!("the axis `{}` has no value `{}`", axis.value, value.value),
-            suggestion(&value.value, &known, &format!("the values of `{}` are", axis.value)),
+            several_values(&value.value, &known)
+                .unwrap_or_else(|| suggestion(&value.value, &known, &format!("the values of `{}` are", axis.value))),
         ));
         return None;
     };
@@ -252,6 +257,14 @@ fn selected_row(
         .filter_map(|(name, value)| option_number(row, attributes, (name, value), registry, diagnostics))
         .collect();
     Some(SelectedRow { row: Arc::new(row.clone()), options })
+}
+
+/// Returns the help for several values in place of one, as `--set` can have them: `a,b`, `a|b` or `a or b`.
+fn several_values(value: &str, known: &[&str]) -> Option<String> {
+    let text = value.replace(" or ", ",");
+    let values: Vec<&str> = text.split([',', '|', '/', ' ']).map(str::trim).filter(|part| !part.is_empty()).collect();
+    let is_known = values.len() > 1 && values.iter().all(|value| known.contains(value));
+    is_known.then(|| format!("alternatives are separated by `else`: `{}`", values.join(" else ")))
 }
 
 /// Returns the number of an option that the row has; for an attribute, its index.

@@ -32,7 +32,8 @@ fn closures(draft: &Draft) -> impl Iterator<Item = &UserFunction> {
     criterion.into_iter().chain(&draft.constraints).chain(&draft.resolve)
 }
 
-fn is_read(attribute: &Attribute, index: usize, draft: &Draft, choices: &[AxisChoice]) -> bool {
+/// Tests whether a closure or a choice reads an attribute.
+pub(super) fn is_read(attribute: &Attribute, index: usize, draft: &Draft, choices: &[AxisChoice]) -> bool {
     let name = &attribute.name.value;
     closures(draft).any(|closure| closure.reads.attributes.contains(name))
         || choices.iter().flat_map(|chosen| &chosen.alternatives).any(|selected| reads(selected, name, index))

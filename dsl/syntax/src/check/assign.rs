@@ -6,16 +6,41 @@ use fragbuf_model::{Diagnostic, SourceSpan, codes};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
+use super::given::{source, source_of_operand};
+use crate::foreign_names;
 use crate::tree::{Expr, Kind, Operator};
 use crate::types::Type;
 
 impl Checker<'_, '_, '_> {
     pub(super) fn assign(&mut self, assign: &syn::ExprAssign) -> Expr {
         let span = self.at(assign.span());
+        if let Some(error) = self.swizzled_place(&assign.left, "=", &assign.right) {
+            return error;
+        }
         let place = self.place(&assign.left);
         let value = self.value(&assign.right, place.ty);
         let kind = Kind::Assign { place: Box::new(place), operator: None, value: Box::new(value) };
         Expr::new(kind, Type::Unit, span)
+    }
+
+    /// Reports an assignment in place of a comparison: `a = b` where a `bool` is expected.
+    pub(super) fn assignment_for_comparison(&mut self, assign: &syn::ExprAssign) -> Expr {
+        // `a && b = c` is an assignment to `a && b`; `a && b == c` compares `b` and `c`.
+        let comparison = format!("{} == {}", source(&assign.left), source(&assign.right));
+        let span = self.at(assign.eq_token.span());
+        let message = "mismatched types: expected `bool`, found an assignment";
+        self.report.error(
+            codes::TYPE_MISMATCH,
+            &span,
+            message,
+            format!("`=` assigns: write `==` to compare, `{comparison}`"),
+        );
+        // Both sides are checked for other errors, unless operators around the comparison are part of them.
+        if !matches!(*assign.left, syn::Expr::Binary(_)) {
+            self.expr(&assign.left, None);
+            self.expr(&assign.right, None);
+        }
+        Expr::error(span)
     }
 
     pub(super) fn compound(
@@ -25,6 +50,9 @@ impl Checker<'_, '_, '_> {
         right: &syn::Expr,
         span: SourceSpan,
     ) -> Expr {
+        if let Some(error) = self.swizzled_place(left, &format!("{}=", operator.symbol()), right) {
+            return error;
+        }
         let place = self.place(left);
         let value = self.expr(right, None);
         let ty = self.operation(operator, &place, &value);
@@ -35,6 +63,51 @@ impl Checker<'_, '_, '_> {
         }
         let kind = Kind::Assign { place: Box::new(place), operator: Some(operator), value: Box::new(value) };
         Expr::new(kind, Type::Unit, span)
+    }
+
+    /// Reports an assignment to several components, `v.xyz = …` or `v.xyz() += …`; `None`: it is another place.
+    fn swizzled_place(&mut self, left: &syn::Expr, operator: &str, right: &syn::Expr) -> Option<Expr> {
+        let (base, letters) = match left {
+            syn::Expr::Paren(inner) => return self.swizzled_place(&inner.expr, operator, right),
+            syn::Expr::Field(field) => match &field.member {
+                syn::Member::Named(name) => (&*field.base, name.to_string()),
+                syn::Member::Unnamed(_) => return None,
+            },
+            syn::Expr::MethodCall(call) if call.args.is_empty() => (&*call.receiver, call.method.to_string()),
+            _ => return None,
+        };
+        let xyzw = foreign_names::swizzle(&letters).unwrap_or(letters);
+        if !(2..=4).contains(&xyzw.len()) || !xyzw.chars().all(|letter| "xyzw".contains(letter)) {
+            return None;
+        }
+        let errors = self.report.count();
+        let vector = self.expr(base, None);
+        let Type::Vector(size) = self.inference.resolve(vector.ty) else {
+            return (self.report.count() > errors).then(|| Expr::error(vector.span));
+        };
+        let span = self.at(left.span());
+        let value = self.expr(right, None);
+        let value_type = self.inference.resolve(value.ty);
+        let is_vector = matches!(value_type, Type::Vector(_));
+        let (base, value) = (source(base), source_of_operand(right));
+        let parts: Vec<String> = xyzw
+            .chars()
+            .zip("xyzw".chars())
+            .map(|(to, from)| match is_vector {
+                true => format!("{base}.{to} {operator} {value}.{from}"),
+                false => format!("{base}.{to} {operator} {value}"),
+            })
+            .collect();
+        let is_inside = xyzw.chars().all(|letter| "xyzw".find(letter).is_some_and(|at| at < usize::from(size)));
+        let help = match is_inside {
+            true => format!("assign each component: `{};`", parts.join("; ")),
+            false => {
+                let components = "x, y, z, w".get(..usize::from(size) * 3 - 2).unwrap_or_default();
+                format!("the components of `Vec{size}` are {components}")
+            }
+        };
+        self.report.error(codes::NOT_MUTABLE, &span, "cannot assign to several components at once", help);
+        Some(Expr::error(span))
     }
 
     /// Checks the left side of an assignment.

@@ -4,14 +4,16 @@
 //! `;` is the value, and a block with a diverging statement needs no value.
 
 use fragbuf_model::{SourceSpan, codes};
+use proc_macro2::TokenStream;
+use quote::ToTokens;
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
 use super::mismatch::quoted;
 use super::written_types::written_type;
-use crate::names;
 use crate::tree::{Block, Expr, Kind, Statement, VariableId};
 use crate::types::Type;
+use crate::{names, token_limits};
 
 impl Checker<'_, '_, '_> {
     /// Checks a block in a new scope. If a type is expected, the value must have it.
@@ -78,6 +80,18 @@ impl Checker<'_, '_, '_> {
                     None => self.expr(expr, None),
                 };
                 Some(Statement::Expr(checked))
+            }
+            syn::Stmt::Item(syn::Item::Const(constant)) => {
+                let source = |tokens: TokenStream| token_limits::compact(&token_limits::spaced(&tokens));
+                let (ty, value) = (source(constant.ty.to_token_stream()), source(constant.expr.to_token_stream()));
+                let help = format!("write `let {}: {ty} = {value};`", constant.ident);
+                self.unsupported(
+                    self.at(constant.const_token.span),
+                    "constants inside functions are not supported",
+                    help,
+                );
+                self.declare(&constant.ident, false, true, Type::Error);
+                None
             }
             syn::Stmt::Item(item) => {
                 let help = "declare it next to the closure: `fn name(x: f32) -> f32 { … }`";

@@ -53,6 +53,7 @@ impl Checker<'_, '_, '_> {
             syn::Expr::If(branch) => self.branch(branch, expected),
             syn::Expr::Block(block) if block.label.is_none() => self.block_expr(&block.block, expected),
             syn::Expr::ForLoop(each) if each.label.is_none() => self.for_loop(each),
+            syn::Expr::Assign(assign) if expected == Some(Type::Bool) => self.assignment_for_comparison(assign),
             syn::Expr::Assign(assign) => self.assign(assign),
             syn::Expr::Return(leave) => self.return_expr(leave),
             syn::Expr::Break(end) => self.break_expr(end),

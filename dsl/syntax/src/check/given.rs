@@ -14,38 +14,25 @@ const LONGEST: usize = 80;
 
 /// Returns an argument with its source.
 pub(super) fn given(argument: &syn::Expr, ty: Type, is_literal: bool) -> Given {
-    let text = compact(&token_limits::spaced(&argument.to_token_stream()));
-    let source = match text.chars().count() > LONGEST {
-        true => "…".to_owned(),
-        false if is_primary(argument) => text,
-        false => format!("({text})"),
-    };
-    Given { source, ty, is_literal }
+    Given { source: source_of_operand(argument), ty, is_literal }
+}
+
+/// Returns the source of an expression.
+pub(super) fn source(expr: &syn::Expr) -> String {
+    let text = token_limits::compact(&token_limits::spaced(&expr.to_token_stream()));
+    if text.chars().count() > LONGEST { "…".to_owned() } else { text }
+}
+
+/// Returns the source of an expression, in parentheses unless it is a name, a literal or a call.
+pub(super) fn source_of_operand(expr: &syn::Expr) -> String {
+    let source = source(expr);
+    if is_primary(expr) || source == "…" { source } else { format!("({source})") }
 }
 
 /// Whether an expression needs no parentheses before a method call.
 fn is_primary(expr: &syn::Expr) -> bool {
     use syn::Expr::{Call, Field, Index, Lit, MethodCall, Paren, Path};
     matches!(expr, Call(_) | Field(_) | Index(_) | Lit(_) | MethodCall(_) | Paren(_) | Path(_))
-}
-
-/// Removes the spaces that are not usual from tokens separated by spaces.
-fn compact(spaced: &str) -> String {
-    let mut out = String::with_capacity(spaced.len());
-    for token in spaced.split(' ') {
-        let last = out.chars().next_back();
-        let is_word = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == ')';
-        let is_joined = matches!(token, "." | "," | ";" | ")" | "]" | "::" | "..")
-            || matches!(last, None | Some('(' | '[' | '.'))
-            || out.ends_with("::")
-            || (matches!(token, "(" | "[") && last.is_some_and(is_word) && !out.ends_with(" if"));
-        if !is_joined {
-            out.push(' ');
-        }
-        out.push_str(token);
-    }
-    // A sign belongs to its operand.
-    if let Some(rest) = out.strip_prefix("- ") { format!("-{rest}") } else { out }
 }
 
 #[cfg(test)]

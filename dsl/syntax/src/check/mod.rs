@@ -19,7 +19,7 @@ mod paths;
 mod unsupported;
 mod written_types;
 
-use fragbuf_model::{Diagnostic, codes};
+use fragbuf_model::{Diagnostic, Spanned, codes};
 
 use crate::environment::Environment;
 use crate::fold;
@@ -36,6 +36,7 @@ pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut
     let before = report.count();
     let (expected, result) = signature(&raw, environment);
     let mut checker = Checker::new(environment, report, result);
+    let expected = checker.with_swapped_parameters(&raw, expected);
     let parameters = checker.parameters(&raw, &expected);
     checker.written_result(&raw);
     let body = checker.body(&raw.body);
@@ -78,6 +79,45 @@ impl Checker<'_, '_, '_> {
             ids.push(self.declare_parameter(parameter, ty));
         }
         ids
+    }
+
+    /// Reports parameters of a closure in the wrong order, `|u, f|`, and returns their types in the order of the closure.
+    fn with_swapped_parameters(&mut self, raw: &RawFunction, expected: Vec<Type>) -> Vec<Type> {
+        let names: Vec<&Spanned<String>> = raw.parameters.iter().filter_map(|each| each.name.as_ref()).collect();
+        let ([first, second], [kept, uniforms]) = (names.as_slice(), expected.as_slice()) else { return expected };
+        if matches!(raw.role, Role::Helper(_)) || !self.are_swapped(raw, &first.value, &second.value) {
+            return expected;
+        }
+        let what = if *kept == Type::Fragments { "the fragments are" } else { "the fragment is" };
+        let message = format!("the parameters are swapped: {what} the first, and the uniforms are the second");
+        let help = format!("write `|{}, {}|`", second.value, first.value);
+        self.report.error(codes::TYPE_MISMATCH, &first.span, message, help);
+        vec![*uniforms, *kept]
+    }
+
+    /// Tests whether the body uses the first parameter only as the uniforms, or the second only as a fragment or the list of fragments.
+    fn are_swapped(&self, raw: &RawFunction, first: &str, second: &str) -> bool {
+        let tokens: Vec<&str> = raw.rust.split(' ').collect();
+        let has = |list: &[(String, Type)], name: &str| list.iter().any(|(other, _)| other == name);
+        let (attributes, uniforms) = (&self.environment.attributes, &self.environment.uniforms);
+        // `name . field`, `name [`, and `in name`; after the parameters.
+        let uses = |name: &str| {
+            let name = name.to_owned();
+            tokens.windows(3).filter_map(move |window| match *window {
+                [base, ".", field] if base == name => Some(field.to_owned()),
+                [base, "[", _] if base == name => Some("[".to_owned()),
+                ["in", base, _] if base == name => Some("in".to_owned()),
+                _ => None,
+            })
+        };
+        let is_list = raw.role == Role::Resolve;
+        let is_kept = |field: &str| match is_list {
+            true => matches!(field, "[" | "in" | "len" | "iter" | "is_empty"),
+            false => has(attributes, field) && !has(uniforms, field),
+        };
+        let is_uniform = |field: &str| has(uniforms, field) && (is_list || !has(attributes, field));
+        let is_right = uses(first).any(|field| is_kept(&field)) || uses(second).any(|field| is_uniform(&field));
+        !is_right && (uses(first).any(|field| is_uniform(&field)) || uses(second).any(|field| is_kept(&field)))
     }
 
     fn declare_parameter(&mut self, parameter: &RawParameter, ty: Type) -> VariableId {

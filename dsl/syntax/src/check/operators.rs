@@ -8,6 +8,7 @@ use syn::spanned::Spanned;
 use syn::{BinOp, UnOp};
 
 use super::checker::Checker;
+use super::given::{source, source_of_operand};
 use super::mismatch::{fix, quoted};
 use super::written_types::written_type;
 use crate::tree::{Expr, Kind, Operator};
@@ -119,6 +120,11 @@ impl Checker<'_, '_, '_> {
         }
         let left = self.expr(&binary.left, None);
         let right = self.expr(&binary.right, None);
+        if operator.is_comparison()
+            && let Some(error) = self.unsigned_and_negative(binary, operator, &left, &right)
+        {
+            return error;
+        }
         match self.operation(operator, &left, &right) {
             Some(ty) => Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, span),
             None => {
@@ -126,6 +132,35 @@ impl Checker<'_, '_, '_> {
                 Expr::error(span)
             }
         }
+    }
+
+    /// Reports the comparison of an unsigned number with a negative literal, `f.id == -1`; `None`: it is another comparison.
+    fn unsigned_and_negative(
+        &mut self,
+        binary: &syn::ExprBinary,
+        operator: Operator,
+        left: &Expr,
+        right: &Expr,
+    ) -> Option<Expr> {
+        let is_negative =
+            |expr: &Expr| matches!(&expr.kind, Kind::Negate(inner) if matches!(inner.kind, Kind::Integer(_)));
+        let is_unsigned = |expr: &Expr| matches!(self.inference.resolve(expr.ty), Type::U32 | Type::Usize);
+        let symbol = operator.symbol();
+        let (unsigned, negative, converted) = if is_negative(right) && is_unsigned(left) {
+            let converted = format!("({} as i32) {symbol} {}", source_of_operand(&binary.left), source(&binary.right));
+            (left, right, converted)
+        } else if is_negative(left) && is_unsigned(right) {
+            let converted = format!("{} {symbol} ({} as i32)", source(&binary.left), source_of_operand(&binary.right));
+            (right, left, converted)
+        } else {
+            return None;
+        };
+        let ty = quoted(self.inference.name(unsigned.ty));
+        let message = format!("cannot compare {ty} with a negative number");
+        let help =
+            format!("convert it: `{converted}`; an unsigned number is never below 0, and the greatest is `u32::MAX`");
+        self.report.error(codes::TYPE_MISMATCH, &negative.span, message, help);
+        Some(Expr::error(self.at(binary.span())))
     }
 
     /// Returns the type of `left operator right`, or `None` if Rust has no such operation.
@@ -160,7 +195,7 @@ impl Checker<'_, '_, '_> {
         let (a, b) = (self.inference.name(left.ty), self.inference.name(right.ty));
         let message = format!("cannot apply `{}` to {} and {}", operator.symbol(), quoted(a), quoted(b));
         let (a, b) = (self.inference.resolve(left.ty), self.inference.resolve(right.ty));
-        let comparison = !operator.is_arithmetic() && !operator.is_shift() && !operator.is_bitwise();
+        let comparison = operator.is_comparison() || operator.is_logical();
         let (span, help) = match (a, b) {
             (Type::Vector(_), _) | (_, Type::Vector(_)) if comparison => {
                 (span, "compare components, `a.x < b.x`, or lengths".to_string())

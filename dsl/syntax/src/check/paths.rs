@@ -35,6 +35,9 @@ impl Checker<'_, '_, '_> {
             let message = format!("the function `{name}` is not a value");
             return self.unsupported(span, message, format!("call it: `{name}(…)`"));
         }
+        if self.environment.constants.iter().any(|constant| constant == name) {
+            return self.without_declaration(span);
+        }
         let uniforms = self.variables.iter().any(|variable| variable.ty == Type::Uniforms);
         let help = match name {
             // The names that the examples use.

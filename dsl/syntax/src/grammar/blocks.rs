@@ -2,24 +2,91 @@
 //!
 //! Input: a block in braces. Output: its declarations as written.
 
-use fragbuf_model::{Format, Spanned};
+use fragbuf_model::{Format, Spanned, UniformType};
 use proc_macro2::TokenTree;
 
 use super::cursor::Cursor;
-use crate::declarations::Declaration;
+use crate::declarations::{self, Declaration};
 use crate::report::{Report, Stop};
 use crate::{foreign_names, names};
 
-/// Parses a block in braces; `shape` is an example of it.
-pub(super) fn declarations(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<Vec<Declaration>, Stop> {
+/// The two blocks of declarations.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum DeclarationBlock {
+    /// `fragment { … }`
+    Fragment,
+    /// `uniform { … }`
+    Uniform,
+}
+
+impl DeclarationBlock {
+    /// Returns an example of the block.
+    fn shape(self) -> &'static str {
+        match self {
+            DeclarationBlock::Fragment => "fragment { color: rgba8, depth: f32 }",
+            DeclarationBlock::Uniform => "uniform { cut: f32 }",
+        }
+    }
+
+    /// Returns whether a word is a type of the block.
+    fn has_type(self, word: &str) -> bool {
+        match self {
+            DeclarationBlock::Fragment => Format::ALL.iter().any(|format| format.keyword() == word),
+            DeclarationBlock::Uniform => UniformType::ALL.iter().any(|ty| ty.keyword() == word),
+        }
+    }
+
+    /// Returns the help for a type of another language.
+    fn foreign(self, word: &str) -> Option<String> {
+        match self {
+            DeclarationBlock::Fragment => foreign_names::attribute_format(word),
+            DeclarationBlock::Uniform => foreign_names::uniform_type(word),
+        }
+    }
+
+    /// Returns how surely a word is a type: 2 a type of the block, 1 a type of another language, 0 a name. Words such as `color` are names
+    /// of attributes first.
+    fn certainty(self, word: &str) -> u32 {
+        match word {
+            _ if self.has_type(word) => 2,
+            _ if declarations::is_usual_name(word) => 0,
+            _ => u32::from(self.foreign(word).is_some()),
+        }
+    }
+
+    /// Returns the type of the block for a word that may be a type of another language.
+    fn own_type(self, word: &str) -> String {
+        if self.has_type(word) {
+            return word.to_owned();
+        }
+        let foreign = self.foreign(word);
+        let own = foreign.as_deref().and_then(|help| help.strip_prefix("write `")?.split('`').next());
+        own.unwrap_or("f32").to_owned()
+    }
+
+    /// Returns the declaration of two words, of which either may be the type: in other languages the type is first.
+    pub(super) fn declaration(self, first: &str, second: &str) -> String {
+        match self.certainty(first) > self.certainty(second) {
+            true => format!("{second}: {}", self.own_type(first)),
+            false => format!("{first}: {}", self.own_type(second)),
+        }
+    }
+}
+
+/// Parses a block in braces.
+pub(super) fn declarations(
+    cursor: &mut Cursor,
+    block: DeclarationBlock,
+    report: &mut Report,
+) -> Result<Vec<Declaration>, Stop> {
     let Some(group) = cursor.take_braces() else {
-        return Err(cursor.expected("`{`", format!("write `{shape}`"), report));
+        return Err(cursor.expected("`{`", format!("write `{}`", block.shape()), report));
     };
     cursor.take_punct(';');
     let mut inner = Cursor::inside(&group);
     let mut rows = Vec::new();
     while !inner.is_done() {
-        match declaration(&mut inner, shape, report) {
+        match declaration(&mut inner, block, report) {
             Ok(row) => rows.push(row),
             Err(Stop) => inner.skip_past_comma(),
         }
@@ -27,15 +94,15 @@ pub(super) fn declarations(cursor: &mut Cursor, shape: &str, report: &mut Report
     Ok(rows)
 }
 
-fn declaration(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<Declaration, Stop> {
-    let help = || format!("write `{shape}`");
+fn declaration(cursor: &mut Cursor, block: DeclarationBlock, report: &mut Report) -> Result<Declaration, Stop> {
+    let help = || format!("write `{}`", block.shape());
     let Some(name) = cursor.take_identifier() else { return Err(cursor.expected("a name", help(), report)) };
     let name = names::written(&name, report);
     if !cursor.take_punct(':') {
-        // In other languages the type is first.
         let help = match cursor.peek() {
-            Some(TokenTree::Ident(second)) if is_type(&name.value) => format!("write `{second}: {}`", name.value),
-            Some(TokenTree::Ident(second)) => format!("write `{}: {second}`", name.value),
+            Some(TokenTree::Ident(second)) => {
+                format!("write `{}`", block.declaration(&name.value, &second.to_string()))
+            }
             _ => help(),
         };
         return Err(cursor.expected("`:`", help, report));
@@ -53,9 +120,4 @@ fn declaration(cursor: &mut Cursor, shape: &str, report: &mut Report) -> Result<
         return Err(cursor.expected("`,`", help, report));
     }
     Ok(Declaration { name, type_name })
-}
-
-/// Whether a name is a type of this or another language.
-fn is_type(name: &str) -> bool {
-    Format::ALL.iter().any(|format| format.keyword() == name) || foreign_names::attribute_format(name).is_some()
 }

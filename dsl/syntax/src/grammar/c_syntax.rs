@@ -2,13 +2,15 @@
 //!
 //! Input: tokens that are not Rust. Output: the help of the error, if they look like another language.
 
+use std::borrow::Cow;
+
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 use super::cursor::is_punct;
-use crate::foreign_names;
+use crate::{foreign_names, token_limits};
 
 /// Returns the help for the first part that another language has.
-pub(super) fn help(tokens: &TokenStream) -> Option<&'static str> {
+pub(super) fn help(tokens: &TokenStream) -> Option<Cow<'static, str>> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     (0..tokens.len()).find_map(|at| {
         let rest = tokens.get(at..).unwrap_or_default();
@@ -19,7 +21,31 @@ pub(super) fn help(tokens: &TokenStream) -> Option<&'static str> {
     })
 }
 
-fn pattern(tokens: &[TokenTree]) -> Option<&'static str> {
+fn pattern(tokens: &[TokenTree]) -> Option<Cow<'static, str>> {
+    if matches!(tokens.first(), Some(TokenTree::Ident(word)) if word == "not") {
+        return Some(format!("write `!{}`", operand(tokens.get(1..).unwrap_or_default())).into());
+    }
+    fixed_pattern(tokens).map(Cow::Borrowed)
+}
+
+/// Returns the operand that follows `not`, up to the next logical operator: `not` of other languages precedes a whole comparison.
+fn operand(tokens: &[TokenTree]) -> String {
+    let is_part = |token: &&TokenTree| match token {
+        TokenTree::Ident(word) => word != "and" && word != "or",
+        TokenTree::Group(group) => group.delimiter() != Delimiter::Brace,
+        TokenTree::Punct(punct) => !matches!(punct.as_char(), '&' | '|' | ',' | ';' | '?'),
+        TokenTree::Literal(_) => true,
+    };
+    let parts: Vec<TokenTree> = tokens.iter().take_while(is_part).cloned().collect();
+    let is_path = parts.iter().all(|token| !matches!(token, TokenTree::Punct(_)) || is_punct(Some(token), '.'));
+    match token_limits::compact(&token_limits::spaced(&parts.into_iter().collect())) {
+        source if source.is_empty() => "x".to_owned(),
+        source if is_path => source,
+        source => format!("({source})"),
+    }
+}
+
+fn fixed_pattern(tokens: &[TokenTree]) -> Option<&'static str> {
     let ident = |at: usize| match tokens.get(at) {
         Some(TokenTree::Ident(name)) => Some(name.to_string()),
         _ => None,
@@ -38,7 +64,17 @@ fn pattern(tokens: &[TokenTree]) -> Option<&'static str> {
     match ident(0).as_deref() {
         Some("and") => return Some("write `&&`"),
         Some("or") => return Some("write `||`"),
-        Some("not") => return Some("write `!`"),
+        _ => {}
+    }
+    // Comparisons of other languages. `=>` is also in a `match`, which is described elsewhere.
+    let second = |character: char| is_punct(tokens.get(1), character);
+    if (joint('=') || is_punct(tokens.first(), '!') && second('=')) && is_punct(tokens.get(2), '=') {
+        return Some(if joint('=') { "write `==`" } else { "write `!=`" });
+    }
+    match tokens.first() {
+        Some(TokenTree::Punct(punct)) if punct.as_char() == '=' && second('<') => return Some("write `<=`"),
+        Some(TokenTree::Punct(punct)) if punct.as_char() == '=' && second('!') => return Some("write `!=`"),
+        Some(TokenTree::Punct(punct)) if punct.as_char() == '<' && second('>') => return Some("write `!=`"),
         _ => {}
     }
     // `.5` after an operator.

@@ -9,7 +9,7 @@ use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spa
 use proc_macro2::{Delimiter, Group, TokenTree};
 
 use super::cursor::Cursor;
-use super::recovery::end_of_item_or;
+use super::recovery::{end_of_item_or, starts_item};
 use crate::names;
 use crate::report::{FIRST, Report, Stop};
 
@@ -52,8 +52,20 @@ fn help_after(choice: &Choice, cursor: &Cursor) -> String {
             ',' | '|' | '/' => format!("alternatives are separated by `else`: `{last} else {next}`"),
             _ => "end the item with `;`".to_owned(),
         },
+        // `a or b`, and `a b` in place of `a else b`.
+        (Some(TokenTree::Ident(word)), Some(TokenTree::Ident(next))) if is_separator(&word.to_string()) => {
+            format!("alternatives are separated by `else`: `{last} else {next}`")
+        }
+        (Some(TokenTree::Ident(next)), _) if !starts_item(cursor) => {
+            format!("end the item with `;`, or separate alternatives by `else`: `{last} else {next}`")
+        }
         _ => "end the item with `;`".to_owned(),
     }
+}
+
+/// Whether a word separates alternatives in other languages.
+fn is_separator(word: &str) -> bool {
+    matches!(word, "or" | "and" | "then" | "otherwise")
 }
 
 /// Returns a choice that a builder made, after the same checks of its names.
@@ -73,9 +85,28 @@ pub(crate) fn from_builder(choice: &Choice, report: &mut Report) -> Result<Choic
             };
             options.push((names::identifier(name, report), value));
         }
+        reject_several(&alternative.value, report)?;
         alternatives.push(Alternative { value: names::identifier(&alternative.value, report), options });
     }
     Ok(without_duplicates(Choice { axis, alternatives }, report))
+}
+
+/// Rejects several values in one string, which only a builder can pass: `choose("sync", "interlock, spin_lock")`.
+fn reject_several(value: &Spanned<String>, report: &mut Report) -> Result<(), Stop> {
+    let text = value.value.replace(" or ", ",").replace(" else ", ",");
+    let values: Vec<&str> = text.split([',', '|', '/']).map(str::trim).collect();
+    let [first, second, ..] = values.as_slice() else { return Ok(()) };
+    // A user file is one value, and its path may have a `/`.
+    if value.value.starts_with("wgsl:") || !values.iter().all(|value| syn::parse_str::<syn::Ident>(value).is_ok()) {
+        return Ok(());
+    }
+    let message = format!("expected one value, found `{}`", value.value);
+    let help = format!(
+        "alternatives are separated by `else`: `{}`, or `value(\"{first}\").or_else(\"{second}\")` in a program",
+        values.join(" else ")
+    );
+    report.error(codes::UNEXPECTED_TOKEN, &value.span, message, help);
+    Err(Stop)
 }
 
 /// Returns the choice without duplicate alternatives and options, which are reported.

@@ -228,7 +228,7 @@ fn parse<T: syn::parse::Parse>(tokens: &TokenStream, end: Span, report: &mut Rep
     };
     syn::parse::Parser::parse2(parser, TokenTree::from(group).into()).map_err(|error| {
         let message = format!("invalid Rust syntax: {error}");
-        let help = c_syntax::help(tokens).unwrap_or_else(|| syntax_help(&error.to_string()));
+        let help = c_syntax::help(tokens).unwrap_or_else(|| syntax_help(&error.to_string()).into());
         report.error(codes::UNEXPECTED_TOKEN, &report.at(error.span()), message, help);
         Stop
     })

@@ -43,6 +43,11 @@ impl Cursor {
         self.tokens.get(self.next + 2)
     }
 
+    /// Returns the tokens that are not taken.
+    pub(super) fn rest(&self) -> &[TokenTree] {
+        self.tokens.get(self.next..).unwrap_or_default()
+    }
+
     /// Returns the token after the second `|`, if a closure begins here.
     pub(super) fn after_parameters(&self) -> Option<&TokenTree> {
         let rest = self.tokens.get(self.next..)?;

@@ -5,9 +5,10 @@
 use fragbuf_model::{Incomplete, SourceSpan, codes, nearest_name};
 use proc_macro2::{Delimiter, TokenTree};
 
+use super::blocks::{self, DeclarationBlock};
 use super::cursor::{Cursor, is_punct};
 use super::recovery::{end_of_item, recover, starts_item};
-use super::{blocks, choices, closures};
+use super::{choices, closures, constants};
 use crate::items::Items;
 use crate::raw_function::Role;
 use crate::report::{Report, Stop};
@@ -83,21 +84,26 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
         return Ok(());
     }
     match keyword.as_str() {
+        "const" | "let" | "static" if constants::starts(cursor) => {
+            let name = constants::reject(cursor, report);
+            items.constants.extend(name);
+        }
         "fragment" | "uniform" if !matches!(cursor.peek_second(), Some(TokenTree::Group(_))) => {
             items.incomplete = items.incomplete.or(part_of_item(cursor));
-            without_braces(&keyword, cursor, report);
+            let block = if keyword == "fragment" { DeclarationBlock::Fragment } else { DeclarationBlock::Uniform };
+            without_braces(&keyword, block, cursor, report);
         }
         "fragment" => {
             cursor.take();
             let errors = report.count();
-            let rows = blocks::declarations(cursor, "fragment { color: rgba8, depth: f32 }", report)?;
+            let rows = blocks::declarations(cursor, DeclarationBlock::Fragment, report)?;
             items.incomplete.attributes |= report.count() > errors;
             items.add_attributes(rows, &span, report);
         }
         "uniform" => {
             cursor.take();
             let errors = report.count();
-            let rows = blocks::declarations(cursor, "uniform { cut: f32 }", report)?;
+            let rows = blocks::declarations(cursor, DeclarationBlock::Uniform, report)?;
             items.incomplete.uniforms |= report.count() > errors;
             items.add_uniforms(rows, &span, report);
         }
@@ -123,15 +129,23 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
 }
 
 /// Reports a declaration without braces, `uniform cut: f32;`, and moves behind it.
-fn without_braces(keyword: &str, cursor: &mut Cursor, report: &mut Report) {
+fn without_braces(keyword: &str, block: DeclarationBlock, cursor: &mut Cursor, report: &mut Report) {
     cursor.take();
     let found = cursor.describe();
     let span = cursor.source_span(report);
     let first = cursor.take_identifier();
-    let second = if cursor.take_punct(':') { None } else { cursor.take_identifier() };
-    // In other languages the type is first.
-    let name = second.or(first).map_or("cut".to_owned(), |name| name.to_string());
-    let help = format!("write `{keyword} {{ {name}: f32 }}`, all in one block");
+    cursor.take_punct(':');
+    let second = cursor.take_identifier();
+    let declaration = match (first, second) {
+        (Some(first), Some(second)) => block.declaration(&first.to_string(), &second.to_string()),
+        (Some(name), None) => format!("{name}: f32"),
+        _ => "cut: f32".to_owned(),
+    };
+    let depth = match block {
+        DeclarationBlock::Fragment if !declaration.starts_with("depth:") => ", depth: f32",
+        _ => "",
+    };
+    let help = format!("write `{keyword} {{ {declaration}{depth} }}`, all in one block");
     report.error(codes::UNEXPECTED_TOKEN, &span, format!("expected `{{`, found {found}"), help);
     while !cursor.is_done() && !starts_item(cursor) && !cursor.take_punct(';') {
         cursor.take();

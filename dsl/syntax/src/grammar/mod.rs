@@ -8,6 +8,7 @@ mod blocks;
 mod c_syntax;
 mod choices;
 mod closures;
+mod constants;
 mod cursor;
 mod items;
 mod recovery;
@@ -78,11 +79,51 @@ fn name_of_buffer(cursor: &mut Cursor, report: &mut Report) -> Spanned<String> {
     let name = if cursor.at_keyword("from") { None } else { cursor.take_identifier() };
     let Some(name) = name else {
         let message = format!("expected a buffer name, found {}", cursor.describe());
+        if let Some(TokenTree::Literal(quoted)) = cursor.peek() {
+            let name = names::upper_camel(quoted.to_string().trim_matches('"'));
+            let help = format!("a name is one word without quotes: write `buffer {name}`");
+            report.error(codes::UNEXPECTED_TOKEN, &span, message, help);
+            cursor.take();
+            return Spanned::new(name, span);
+        }
         report.error(codes::UNEXPECTED_TOKEN, &span, message, "write `buffer Name { … }`");
         return Spanned::new("Unnamed".to_string(), span);
     };
     let name = names::written(&name, report);
+    if let Some(words) = further_words(cursor) {
+        let name = names::upper_camel(&format!("{} {}", name.value, words.join(" ")));
+        let (span, message) =
+            (cursor.source_span(report), format!("expected `from` or `{{`, found {}", cursor.describe()));
+        let help = format!("a name is one word: write `buffer {name}`");
+        report.error(codes::UNEXPECTED_TOKEN, &span, message, help);
+        while !cursor.is_done() && !is_end_of_name(cursor) {
+            cursor.take();
+        }
+        return Spanned::new(name, span);
+    }
     names::buffer(&name, report)
+}
+
+/// Returns whether the name of a buffer ends here: at `from`, `:` or a block.
+fn is_end_of_name(cursor: &Cursor) -> bool {
+    cursor.at_keyword("from") || cursor.at_punct(':') || matches!(cursor.peek(), Some(TokenTree::Group(_)))
+}
+
+/// Returns the further words of a name that is more than one word: `My Heat`, `My-Heat`, `my heat from`. A lower-case word before a block
+/// may be a technique without `from`.
+fn further_words(cursor: &Cursor) -> Option<Vec<String>> {
+    let before_end = cursor.rest().iter().take_while(|token| {
+        matches!(token, TokenTree::Ident(word) if word != "from")
+            || matches!(token, TokenTree::Punct(punct) if punct.as_char() == '-')
+            || matches!(token, TokenTree::Literal(number) if number.to_string().starts_with(|digit: char| digit.is_ascii_digit()))
+    });
+    let tokens: Vec<&TokenTree> = before_end.collect();
+    let words: Vec<String> =
+        tokens.iter().filter(|token| !matches!(token, TokenTree::Punct(_))).map(ToString::to_string).collect();
+    let is_upper = words.first()?.starts_with(|first: char| first.is_ascii_uppercase() || first.is_ascii_digit());
+    let is_hyphenated = matches!(tokens.first(), Some(TokenTree::Punct(_)));
+    let is_before_from = matches!(cursor.rest().get(tokens.len()), Some(TokenTree::Ident(_)));
+    (is_upper || is_hyphenated || is_before_from).then_some(words)
 }
 
 /// Parses `from technique`. `Err`: it has an error and is not known.
@@ -134,7 +175,8 @@ fn without_from(cursor: &mut Cursor, report: &mut Report) -> bool {
     };
     let help = match &technique {
         Some(_) if nearest_name(&word, &["from"]).is_some() => "did you mean `from`?".to_owned(),
-        technique => format!("write `from {}`", technique.as_ref().unwrap_or(&word)),
+        Some(technique) => format!("write `from {technique}`"),
+        None => format!("write `from {word}` to start from this technique; the name of a buffer is one word"),
     };
     if technique.is_some() {
         cursor.take();

@@ -87,6 +87,7 @@ impl TestDraw<'_> {
         match draw(&call, &|_| {}) {
             Ok(drawn) => Ok(drawn.samples),
             Err(DrawError::Shader(what)) => Err(what),
+            Err(DrawError::EndlessVertex(_) | DrawError::EndlessFragment(_)) => Err("does not terminate".to_owned()),
             Err(DrawError::Shuffled(bytes)) => panic!("{bytes} bytes in the order of submission"),
         }
     }

@@ -16,7 +16,7 @@ use crate::Error;
 use crate::attachment::Attachments;
 use crate::bound_texture::BoundTexture;
 use crate::code::PassCode;
-use crate::compute::compute;
+use crate::compute::{ComputeError, compute};
 use crate::draw::{BATCH_BYTES, DrawError, DrawResult, draw};
 use crate::draw_call::{DrawArguments, DrawCall};
 use crate::interface::VertexOutputLayout;
@@ -44,14 +44,20 @@ impl Frame<'_> {
             (PassCode::Compute(program), Kind::Compute { .. }) => {
                 let counts = workgroups(self, pass, &values)?;
                 let view = self.view(program, &uniforms)?;
-                compute(program, &view, counts)
-                    .map_err(|reason| Error::NotTerminating { pass: pass.name.clone(), reason })?
+                compute(program, &view, counts).map_err(|error| match error {
+                    ComputeError::Endless(instruction) => code.endless(at, program, instruction),
+                    ComputeError::DivergentBarrier => Error::NotTerminating {
+                        pass: pass.name.clone(),
+                        reason: "some invocations wait at a barrier that the others do not reach",
+                        location: None,
+                    },
+                })?
             }
             (PassCode::Draw { vertex, fragment }, Kind::Geometry | Kind::Fullscreen) => {
                 let stages = (vertex, fragment);
                 let drawn = match pass.objects {
                     Objects::Boxes => self.draw_boxes(run.pass, &values, stages, &uniforms)?,
-                    _ => self.draw_scene(pass, &values, stages, &uniforms)?,
+                    _ => self.draw_scene(run.pass, &values, stages, &uniforms)?,
                 };
                 self.samples[at] = drawn.samples;
                 drawn.out_of_bounds
@@ -72,11 +78,12 @@ impl Frame<'_> {
     /// Draws the scene, or a triangle over the whole frame.
     fn draw_scene(
         &self,
-        pass: &PlannedPass,
+        id: PassId,
         values: &Values,
         stages: StagePrograms<'_>,
         uniforms: &Words,
     ) -> Result<DrawResult, Error> {
+        let pass = &self.code.plan.passes[id.0];
         let (vertices, indices) = match pass.kind {
             Kind::Geometry => (self.mesh.vertices, Some(self.mesh.indices)),
             _ => (&[][..], None),
@@ -94,7 +101,7 @@ impl Frame<'_> {
             let before = done.fetch_add((1.0e6 * part) as u64, Ordering::Relaxed);
             (self.progress)(PassProgress { pass: &pass.name, share: 1.0e-6 * before as f64 + part });
         };
-        draw(&call, &report).map_err(|error| draw_error(pass, &call, error))
+        draw(&call, &report).map_err(|error| self.draw_error(id, stages, call.triangle_count(), call.memory, error))
     }
 
     /// Draws the box of every object that is not dropped, and keeps the result per object for the cursor.
@@ -116,7 +123,7 @@ impl Frame<'_> {
             let is_queried = !self.cursor.is_dropped(&self.code.plan, query, number);
             let Some(corners) = self.corners(object, stride).filter(|_| is_queried) else { continue };
             let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, BOX_CORNERS, 0);
-            let transformed = transformed.map_err(|what| shader_error(pass, what))?;
+            let transformed = transformed.map_err(|error| self.draw_error(query, stages, 0, 0, error))?;
             let crosses = transformed.chunks(layout.stride).any(|vertex| {
                 let [_, _, z, w] = layout.position_in(vertex);
                 is_cut_by_near_plane(z, w)
@@ -131,13 +138,32 @@ impl Frame<'_> {
                 fragment: empty.fragment.clone(),
                 ..empty
             };
-            let drawn = draw(&call, &|_| {}).map_err(|error| draw_error(pass, &call, error))?;
+            let drawn = draw(&call, &|_| {});
+            let drawn =
+                drawn.map_err(|error| self.draw_error(query, stages, call.triangle_count(), call.memory, error))?;
             all.samples += drawn.samples;
             all.out_of_bounds = all.out_of_bounds.or(drawn.out_of_bounds);
             visible[number] = u32::from(drawn.samples > 0 || crosses);
         }
         self.objects = visible;
         Ok(all)
+    }
+
+    /// Returns the error of a draw call with this many triangles and this memory.
+    fn draw_error(
+        &self,
+        id: PassId,
+        (vertex, fragment): StagePrograms<'_>,
+        triangles: u64,
+        memory: u64,
+        error: DrawError,
+    ) -> Error {
+        match error {
+            DrawError::Shader(what) => shader_error(&self.code.plan.passes[id.0], what),
+            DrawError::EndlessVertex(at) => self.code.endless(id.0, vertex, at),
+            DrawError::EndlessFragment(at) => self.code.endless(id.0, fragment, at),
+            DrawError::Shuffled(needed) => shuffled_error(triangles, memory, needed),
+        }
     }
 
     /// Returns a draw call of the pass without triangles.
@@ -213,26 +239,19 @@ fn check_shuffled(call: &DrawCall<'_>) -> Result<(), Error> {
     if call.order == FragmentOrder::Submission || needed <= call.memory {
         return Ok(());
     }
-    Err(shuffled_error(call, needed))
+    Err(shuffled_error(call.triangle_count(), call.memory, needed))
 }
 
-fn shuffled_error(call: &DrawCall<'_>, needed: u64) -> Error {
+fn shuffled_error(triangles: u64, memory: u64, needed: u64) -> Error {
     fragbuf_frame::Error::TooLarge {
-        what: format!("a shuffled order of {} triangles", call.triangle_count()),
+        what: format!("a shuffled order of {triangles} triangles"),
         needed,
-        limit: call.memory,
+        limit: memory,
         limit_name: "the greater of the rest of the memory budget and the size of one batch, in bytes",
         help: "use the order of submission, a smaller scene, lower slices or a larger budget",
         shrinks_with_rows: true,
     }
     .into()
-}
-
-fn draw_error(pass: &Pass, call: &DrawCall<'_>, error: DrawError) -> Error {
-    match error {
-        DrawError::Shader(what) => shader_error(pass, what),
-        DrawError::Shuffled(needed) => shuffled_error(call, needed),
-    }
 }
 
 fn shader_error(pass: &Pass, what: String) -> Error {

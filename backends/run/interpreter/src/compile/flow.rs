@@ -136,7 +136,7 @@ impl<'m> Compiler<'m> {
         continuing: &'m Block,
         break_if: Option<Handle<Expression>>,
     ) -> Result<()> {
-        let start = self.next_index();
+        let (start, site) = (self.next_index(), self.site);
         self.callee.loops.push(PendingJumps { is_loop: true, ..PendingJumps::default() });
         self.block(body);
         let continues = self.callee.loops.last_mut().map(|jumps| std::mem::take(&mut jumps.continues));
@@ -149,6 +149,8 @@ impl<'m> Compiler<'m> {
             breaks.push(self.push(Op::Jump { to: 0 }));
             self.patch_to_here(&[next]);
         }
+        // The jump back is at the span of the loop, which messages name by it.
+        self.site = site;
         self.push(Op::Jump { to: start });
         breaks.extend(self.callee.loops.pop().map(|jumps| jumps.breaks).unwrap_or_default());
         self.patch_to_here(&breaks);

@@ -65,7 +65,7 @@ pub(super) fn existing(root: &Root, attributes: &[AttributeRequest]) -> Result<V
             }
         }
     }
-    Err(FileError::MissingAttribute(request.clone(), available))
+    Err(FileError::MissingAttribute(request.clone(), available, None))
 }
 
 impl<'a> Reader<'a> {

@@ -6,7 +6,8 @@
 
 use super::header::Element;
 use crate::attribute::{AttributeRequest, AvailableAttribute, MAX_COMPONENTS};
-use crate::error::FileError;
+use crate::error::{FileError, FilePosition};
+use crate::text::quoted;
 
 /// The endings of the names of components.
 const ENDINGS: [[&str; MAX_COMPONENTS]; 6] = [
@@ -41,12 +42,21 @@ pub(super) struct Component {
     pub(super) index: usize,
 }
 
-/// Returns the components that each property is. `Err`: an attribute has no properties.
-pub(super) fn find(element: &Element, attributes: &[AttributeRequest]) -> Result<Vec<Vec<Component>>, FileError> {
+/// Returns the components that each property of `element` is. `Err`: an attribute has no properties; other elements of the file may have
+/// them.
+pub(super) fn find(
+    element: &Element,
+    elements: &[Element],
+    attributes: &[AttributeRequest],
+) -> Result<Vec<Vec<Component>>, FileError> {
     let mut found = vec![Vec::new(); element.properties.len()];
     for (attribute, request) in attributes.iter().enumerate() {
         let Some(properties) = properties(element, request) else {
-            return Err(FileError::MissingAttribute(request.clone(), available(element)));
+            return Err(FileError::MissingAttribute(
+                request.clone(),
+                available(element),
+                other(elements, element, request),
+            ));
         };
         for (index, property) in properties.into_iter().enumerate() {
             if let Some(components) = found.get_mut(property) {
@@ -55,6 +65,28 @@ pub(super) fn find(element: &Element, attributes: &[AttributeRequest]) -> Result
         }
     }
     Ok(found)
+}
+
+/// Returns where the file has properties of this name that are no attribute of vertices: a list, or properties of another element.
+fn other(elements: &[Element], vertices: &Element, request: &AttributeRequest) -> Option<(FilePosition, String)> {
+    let name = &request.name;
+    if let Some(list) = vertices.properties.iter().find(|property| property.list.is_some() && property.name == *name) {
+        let reason = format!("the property {} is a list, and attributes are single values", quoted(&list.name));
+        return Some((FilePosition::Line(list.line), reason));
+    }
+    let is_other = |element: &&Element| element.name != vertices.name;
+    let named = |element: &Element| {
+        let list = element.properties.iter().position(|property| property.name == *name);
+        properties(element, request).and_then(|found| found.first().copied()).or(list)
+    };
+    let (element, index) = elements.iter().filter(is_other).find_map(|element| Some((element, named(element)?)))?;
+    let property = element.properties.get(index)?;
+    let reason = format!(
+        "the property {} belongs to the element {}, and attributes are properties of `vertex`",
+        quoted(&property.name),
+        quoted(&element.name)
+    );
+    Some((FilePosition::Line(property.line), reason))
 }
 
 /// Returns the requests without those that are optional and that no element has.
@@ -96,11 +128,12 @@ fn property(element: &Element, name: &str, ending: &str) -> Option<usize> {
         let (first, last) = found.split_at_checked(name.len()).unwrap_or_default();
         is_equal(first, name) && is_equal(last, ending)
     };
-    let find = |is_equal: fn(&str, &str) -> bool| {
-        let mut properties = element.properties.iter();
-        properties.position(|property| property.list.is_none() && is_named(&property.name, is_equal))
-    };
-    find(|a, b| a == b).or_else(|| find(str::eq_ignore_ascii_case))
+    let properties = || element.properties.iter().enumerate().filter(|(_, property)| property.list.is_none());
+    // The last of equal names counts, as for positions.
+    let equal = properties().filter(|(_, property)| is_named(&property.name, |a, b| a == b)).last();
+    let found =
+        equal.or_else(|| properties().find(|(_, property)| is_named(&property.name, str::eq_ignore_ascii_case)));
+    found.map(|(index, _)| index)
 }
 
 /// Returns the attributes that can be requested of vertices.

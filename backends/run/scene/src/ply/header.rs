@@ -38,6 +38,8 @@ pub(super) struct Property {
     pub(super) kind: Kind,
     /// The type of the length of a list; `None`: a single value.
     pub(super) list: Option<Kind>,
+    /// The line of its declaration.
+    pub(super) line: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +90,31 @@ impl Kind {
             Kind::U32 => u32::MAX.into(),
             Kind::F32 | Kind::F64 => 1.0,
         }
+    }
+}
+
+/// The names of elements that are read, and names that writers use in their place.
+const ELEMENTS: [(&str, &[&str]); 3] = [
+    ("vertex", &["vertices", "vertexes", "verts", "vert", "point", "points"]),
+    ("face", &["faces", "polygon", "polygons", "triangle", "triangles"]),
+    ("tristrips", &["tristrip", "tri_strips", "strips", "triangle_strips"]),
+];
+
+impl Element {
+    /// Returns the name that an element with another name of vertices, faces or strips has in the format.
+    pub(super) fn right_name(&self) -> Option<&'static str> {
+        let name = self.name.to_ascii_lowercase();
+        let is_meant = |(right, others): &&(&str, &[&str])| {
+            self.name != *right && (name == *right || others.contains(&name.as_str()))
+        };
+        ELEMENTS.iter().find(is_meant).map(|(right, _)| *right)
+    }
+
+    /// Returns the properties that have the name of an earlier one.
+    pub(super) fn duplicates(&self) -> impl Iterator<Item = &Property> {
+        let properties = self.properties.iter().enumerate();
+        let has_earlier = |index: usize, name: &str| self.properties.iter().take(index).any(|other| other.name == name);
+        properties.filter(move |(index, property)| has_earlier(*index, &property.name)).map(|(_, property)| property)
     }
 }
 
@@ -198,9 +225,9 @@ fn property(words: &[&str], line: usize) -> Result<Property, FileError> {
             if matches!(length, Kind::F32 | Kind::F64) {
                 return Err(FileError::line(line, "the length of a list must be an integer"));
             }
-            Ok(Property { name: (*name).to_owned(), kind: kind(item)?, list: Some(length) })
+            Ok(Property { name: (*name).to_owned(), kind: kind(item)?, list: Some(length), line })
         }
-        [single, name] => Ok(Property { name: (*name).to_owned(), kind: kind(single)?, list: None }),
+        [single, name] => Ok(Property { name: (*name).to_owned(), kind: kind(single)?, list: None, line }),
         _ => Err(FileError::line(line, "expected `property TYPE NAME` or `property list TYPE TYPE NAME`")),
     }
 }

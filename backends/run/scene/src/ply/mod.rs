@@ -35,6 +35,7 @@ pub(crate) fn parse(
     if let Some(line) = header.texture {
         warnings.line(WarningKind::NotRead, "TextureFile", line, || "textures are not read".to_owned());
     }
+    check_names(&header, warnings)?;
     budget.take(1, OBJECT, "the scene's objects")?;
     let mut body = Body::new(&header, bytes);
     let mut object = ModelObject::new(String::new(), attributes.len());
@@ -42,7 +43,11 @@ pub(crate) fn parse(
     let mut face_elements = Vec::new();
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => Vertices::of(element, (color, attributes))?.read(&mut body, (&mut object, budget), warnings)?,
+            "vertex" => Vertices::of((element, &header.elements), (color, attributes))?.read(
+                &mut body,
+                (&mut object, budget),
+                warnings,
+            )?,
             "face" | "tristrips" => {
                 face_elements.push((element, body.clone()));
                 skip(element, &mut body)?;
@@ -56,6 +61,27 @@ pub(crate) fn parse(
         faces.read(element, &mut body)?;
     }
     Ok((vec![object], attributes.to_vec()))
+}
+
+/// Rejects a file whose vertices or faces have another name, and warns of other elements and properties with names that have no effect.
+fn check_names(header: &Header, warnings: FileWarnings<'_>) -> Result<(), FileError> {
+    for element in &header.elements {
+        if let Some(right) = element.right_name() {
+            let message = format!("the element {} is not read: its name in PLY is `{right}`", quoted(&element.name));
+            if !header.elements.iter().any(|other| other.name == right) {
+                return Err(FileError::line(element.line, message));
+            }
+            warnings.line(WarningKind::UnknownStatement, &element.name, element.line, || message);
+        }
+        for property in element.duplicates() {
+            let message = || {
+                let (property, element) = (quoted(&property.name), quoted(&element.name));
+                Message::new(format!("the element {element} has the property {property} twice"), "the last is used")
+            };
+            warnings.line(WarningKind::UnknownStatement, &property.name, property.line, message);
+        }
+    }
+    Ok(())
 }
 
 /// The names of the properties of a vertex.
@@ -117,7 +143,10 @@ struct Vertices<'a> {
 }
 
 impl<'a> Vertices<'a> {
-    fn of(element: &'a Element, (color, attributes): ([f32; 4], &'a [AttributeRequest])) -> Result<Self, FileError> {
+    fn of(
+        (element, elements): (&'a Element, &[Element]),
+        (color, attributes): ([f32; 4], &'a [AttributeRequest]),
+    ) -> Result<Self, FileError> {
         let slots = slots(element);
         if let Some(name) = PROPERTIES.iter().take(3).zip(0..).find(|(_, axis)| !slots.contains(&Some(*axis))) {
             return Err(FileError::line(element.line, format!("vertices have no `{}`", name.0)));
@@ -126,7 +155,7 @@ impl<'a> Vertices<'a> {
         let [r, g, b, a] = color;
         // A colour without alpha is opaque.
         let color = [r, g, b, if has_colors { 1.0 } else { a }];
-        Ok(Vertices { element, slots, color, attributes, components: attributes::find(element, attributes)? })
+        Ok(Vertices { element, slots, color, attributes, components: attributes::find(element, elements, attributes)? })
     }
 
     fn read(

@@ -57,7 +57,7 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
     }
     let programs: Vec<&Bytecode> = std::iter::once(&source.program).chain(&source.holds).collect();
     let memory = memory::memory(&programs, shader)?;
-    let mut check = ShaderCheck { source: &source, memory, limits, report: Report::new(limits) };
+    let mut check = ShaderCheck { source: &source, memory, limits, report: Report::new(limits), has_change: false };
     source.notes().into_iter().for_each(|note| check.note(note));
     let mut all: Vec<Invocations> = Vec::new();
     for &count in &limits.fragments {
@@ -73,6 +73,9 @@ pub fn check_shader(shader: &Shader<'_>, limits: &Limits) -> Result<Report, Erro
             break;
         }
     }
+    if !check.has_change && check.report.failure.is_none() {
+        source.without_effect().into_iter().for_each(|note| check.note(note));
+    }
     Ok(check.report)
 }
 
@@ -82,6 +85,8 @@ struct ShaderCheck<'a> {
     memory: Memory,
     limits: &'a Limits,
     report: Report,
+    /// Whether a final state differs from the initial memory.
+    has_change: bool,
 }
 
 /// What one search of a set of invocations has found.
@@ -93,6 +98,8 @@ struct Found {
     /// Where an index was out of bounds.
     out_of_bounds: BTreeSet<String>,
     has_forgotten: bool,
+    /// Whether a final state differs from the initial memory.
+    has_change: bool,
 }
 
 impl ShaderCheck<'_> {
@@ -116,6 +123,7 @@ impl ShaderCheck<'_> {
                     "a word gets one value more than {REPEATED} times: loads that observe earlier writes of the word are not checked"
                 ));
             }
+            self.has_change |= found.has_change;
             for place in &found.out_of_bounds {
                 self.note(format!(
                     "the index at {place} may be out of bounds: the access was dropped, then clamped; a device may reach any word of \
@@ -177,6 +185,7 @@ impl ShaderCheck<'_> {
             resource: &|buffer: &Buffer, word: u32| source.word_name(buffer, word),
             value: &|value| value.to_string(),
         };
+        let mut has_change = true;
         let (result, schedule) = match context.start(words, invocations.machines(program)) {
             Err((fragment, error)) => {
                 let failure = Some(Failure { steps: Vec::new(), kind: FailureKind::Step(fragment, error) });
@@ -186,11 +195,12 @@ impl ShaderCheck<'_> {
             }
             Ok(first) => {
                 let holds = source.holds.as_ref();
-                let mut property = HoldsProperty { holds, initial: memory, context: &context };
+                let mut property = HoldsProperty { holds, initial: memory, context: &context, has_change: false };
                 let result = match limits.random_schedules {
                     Some(seeds) => walk(&context, &first, &mut property, seeds),
                     None => explore_reduced(&context, first.clone(), &mut property, states),
                 };
+                has_change = property.has_change;
                 let result = result.decided();
                 let schedule = result.failure.as_ref();
                 let schedule =
@@ -209,7 +219,7 @@ impl ShaderCheck<'_> {
         });
         let known = context.out_of_bounds.take().map(RefCell::into_inner).unwrap_or_default();
         let out_of_bounds = known.iter().map(|at| code_location(program, *at, &source.text)).collect();
-        Found { has_forgotten: context.has_forgotten.get(), result, failure, is_of_part, out_of_bounds }
+        Found { has_forgotten: context.has_forgotten.get(), result, failure, is_of_part, out_of_bounds, has_change }
     }
 }
 
@@ -235,6 +245,8 @@ struct HoldsProperty<'a, 'p> {
     holds: Option<&'a Bytecode>,
     initial: &'a Memory,
     context: &'a SearchContext<'p>,
+    /// Whether a final state differs from the initial memory.
+    has_change: bool,
 }
 
 impl Property for HoldsProperty<'_, '_> {
@@ -243,6 +255,9 @@ impl Property for HoldsProperty<'_, '_> {
     }
 
     fn final_state(&mut self, words: &[u32]) -> StateVerdict {
+        let mut buffers = self.context.state_buffers();
+        self.has_change |=
+            buffers.any(|(index, first, count)| self.initial[index][..count] != words[first..first + count]);
         let Some(holds) = self.holds else { return StateVerdict::Correct };
         let mut memory = self.initial.clone();
         for (index, first, count) in self.context.state_buffers() {

@@ -92,6 +92,33 @@ impl<'a> ShaderSource<'a> {
         notes
     }
 
+    /// Returns a note for a check in which no invocation changes memory: the buffers that decide so may lack their words. `None`: the
+    /// program has no buffer to write.
+    pub(super) fn without_effect(&self) -> Option<String> {
+        let buffers = || self.program.buffers.iter().filter(|buffer| buffer.space != Space::Workgroup);
+        let named = |is_written: bool| -> Vec<String> {
+            let is_filled = |name: &str| self.shader.fill.iter().any(|(filled, _)| filled == name);
+            let named = buffers().filter(|buffer| buffer.is_written == is_written);
+            named
+                .filter(|buffer| is_written || !is_filled(&buffer.name))
+                .map(|buffer| format!("`{}`", buffer.name))
+                .collect()
+        };
+        let (written, zero) = (named(true), named(false));
+        if written.is_empty() {
+            return None;
+        }
+        let reason = match zero.first() {
+            Some(first) => format!(
+                ": {} hold only 0 here; give the words of a frame with `--fill`, as `--fill {}=1,1`",
+                zero.join(", "),
+                first.trim_matches('`')
+            ),
+            None => String::new(),
+        };
+        Some(format!("no invocation changes a word of {}, so the check covers little{reason}", written.join(", ")))
+    }
+
     /// Returns a note on functions that stand for what WGSL does not have.
     fn marker_note(&self) -> Option<String> {
         let names: Vec<String> = MARKERS
