@@ -52,6 +52,16 @@ impl<'s> Frame<'s> {
         Ok(frame)
     }
 
+    /// Returns whether everything but the subject is equal.
+    pub(crate) fn is_same(&self, other: &Frame<'_>) -> bool {
+        self.memory == other.memory
+            && self.values == other.values
+            && (self.allocation_limit, self.requested) == (other.allocation_limit, other.requested)
+            && self.cursor == other.cursor
+            && self.flipped == other.flipped
+            && self.samples == other.samples
+    }
+
     /// Allocates every resource whose size is known by now, and updates the uniform buffer of the frame.
     fn allocate(&mut self) -> Result<(), String> {
         let plan = &self.subject.plan;

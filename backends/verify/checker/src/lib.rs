@@ -28,6 +28,7 @@
 //! ```
 
 mod case;
+mod case_check;
 mod case_run;
 mod case_setup;
 mod context;
@@ -39,6 +40,7 @@ mod fragments;
 mod frame;
 mod frame_memory;
 mod graph;
+mod in_order;
 mod kept_set;
 mod memory;
 mod merging;
@@ -55,6 +57,7 @@ mod reduced;
 mod reduction;
 mod relaxed;
 mod report;
+mod runner;
 mod sampled;
 mod search;
 mod sequential;
@@ -65,6 +68,7 @@ mod stream;
 mod subject;
 #[cfg(test)]
 mod test_program;
+mod turn;
 mod verdict;
 mod watched;
 mod word_name;
