@@ -247,3 +247,6 @@ impl<'s> CaseCheck<'s> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests;

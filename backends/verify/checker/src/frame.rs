@@ -5,7 +5,7 @@
 
 use fragbuf_codegen::{FIRST_BINDING, PassId, ResourceId, SymbolId};
 use fragbuf_frame::{Cursor, FrameStep, HostWait, PassRun, Readbacks, Values, WordRange, resource_bytes};
-use fragbuf_interpreter::{DispatchEnd, Exit, dispatch};
+use fragbuf_interpreter::{DispatchEnd, Exit};
 use fragbuf_templates::vocabulary::Kind;
 
 use crate::memory::{Memory, STALE, WIDTH, with_buffers};
@@ -216,7 +216,7 @@ impl<'s> Frame<'s> {
                     *count = groups.map_err(|error| error.to_string())?;
                 }
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {
-                    dispatch(&runnable.program, counts, buffers)
+                    self.subject.dispatches.run(runnable, counts, buffers)
                 });
                 let (name, location) =
                     (&runnable.pass.name, |at| code_location(&runnable.program, at, &runnable.source));

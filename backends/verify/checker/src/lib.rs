@@ -32,6 +32,7 @@ mod case_check;
 mod case_run;
 mod case_setup;
 mod context;
+mod dispatches;
 mod explore;
 mod final_state;
 mod fingerprint;
