@@ -69,6 +69,7 @@ mod stream;
 mod subject;
 #[cfg(test)]
 mod test_program;
+mod trail;
 mod turn;
 mod verdict;
 mod watched;

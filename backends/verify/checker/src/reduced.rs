@@ -20,6 +20,7 @@ use crate::reduction::independent;
 use crate::runner::Runner;
 use crate::search::{Failure, FailureKind, Property, SearchResult, Step};
 use crate::state::{State, Status};
+use crate::trail::Trail;
 use crate::turn::Allowance;
 use crate::watched::WatchedWords;
 
@@ -33,7 +34,7 @@ pub(crate) fn explore_reduced(
     if !context.is_reduced || context.by_submission || context.one_by_one {
         return explore(context, first, property, limit);
     }
-    let (found, result) = ReducedSearch::new(context, property).search(&first, property, limit);
+    let (found, result) = ReducedSearch::new(context, property, first.fragments.len()).search(&first, property, limit);
     let found = match found {
         None => return result,
         Some(Undecided(found)) => found,
@@ -75,29 +76,12 @@ struct ReducedSearch<'a, 'p> {
     /// The states on the way to the present one.
     stack: Vec<Visit>,
     /// The steps that are followed in those states.
-    trail: Vec<Followed>,
+    trail: Trail,
     fragments: usize,
-    /// Per state on the stack, fragment and other fragment, the last step of the other that happens before the next of the
-    /// fragment. A step's number is its depth plus one.
-    clocks: Vec<u32>,
-    /// Per state on the stack and fragment, the clock of the step that is followed.
-    step_clocks: Vec<u32>,
     result: SearchResult,
 }
 
 const DONE: u32 = u32::MAX;
-
-/// The steps that are followed in a state on the stack. They are compared with every later step.
-struct Followed {
-    /// The fragments that can take a step, and those to follow, a bit each.
-    able: u32,
-    to_follow: u32,
-    /// Whether the step of one fragment can come first, so that no other need be followed.
-    is_alone: bool,
-    /// The fragment that is followed, and the footprint of its step.
-    fragment: u8,
-    footprint: Footprint,
-}
 
 /// A state on the stack.
 struct Visit {
@@ -122,7 +106,7 @@ struct Visit {
 }
 
 impl<'a, 'p> ReducedSearch<'a, 'p> {
-    fn new(context: &'a SearchContext<'p>, property: &dyn Property) -> Self {
+    fn new(context: &'a SearchContext<'p>, property: &dyn Property, fragments: usize) -> Self {
         ReducedSearch {
             context,
             runner: Runner::new(context),
@@ -132,21 +116,16 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
             incomplete: HashMap::new(),
             graph: StateGraph::default(),
             has_cycle: false,
-            summaries: Summaries::new(0),
+            summaries: Summaries::new(fragments),
             stack: Vec::new(),
-            trail: Vec::new(),
-            fragments: 0,
-            clocks: Vec::new(),
-            step_clocks: Vec::new(),
+            trail: Trail::new(fragments),
+            fragments,
             result: SearchResult::default(),
         }
     }
 
     /// Searches from `first`. Also returns whether the search of all interleavings must decide.
     fn search(mut self, first: &State, property: &mut dyn Property, limit: usize) -> (Option<Undecided>, SearchResult) {
-        self.fragments = first.fragments.len();
-        self.summaries = Summaries::new(self.fragments);
-        self.clocks = vec![0; self.fragments * self.fragments];
         self.visit(first.clone(), None);
         let end = self.run(property, &mut Allowance::new(self.context.turn.as_ref(), limit));
         let undecided = match end {
@@ -179,20 +158,7 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
         let alone = independent(self.context, &self.watched, &state, &running).map(|(fragment, _)| fragment);
         let first = alone.map(|fragment| 1 << fragment);
         let first = first.or(last.map(|last| able & 1 << last).filter(|last| *last != 0));
-        if let Some(last) = last {
-            let (count, top) = (self.fragments, self.stack.len() - 1);
-            self.clocks.extend_from_within(top * count * count..);
-            let row = (top + 1) * count * count + last * count;
-            self.clocks[row..row + count].copy_from_slice(&self.step_clocks[top * count..]);
-        }
-        self.step_clocks.resize(self.step_clocks.len() + self.fragments, 0);
-        self.trail.push(Followed {
-            able,
-            to_follow: first.unwrap_or(able & able.wrapping_neg()),
-            is_alone: alone.is_some(),
-            fragment: 0,
-            footprint: Footprint::LOCAL,
-        });
+        self.trail.push(able, first.unwrap_or(able & able.wrapping_neg()), alone.is_some());
         self.stack.push(Visit {
             number,
             followed: 0,
@@ -215,7 +181,7 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
             if top > DEEPEST {
                 return Err(Undecided(None));
             }
-            if self.trail[top].able == 0 && self.stack[top].has_moved {
+            if self.trail.steps[top].able == 0 && self.stack[top].has_moved {
                 self.end(top, property)?;
             }
             if self.stack[top].choice < self.stack[top].choices {
@@ -245,9 +211,10 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
         if let Some(depth) = self.stack[top].returns_to.take()
             && !self.stack[top].has_exit
         {
-            self.follow_all(depth);
+            // What follows these states is not known when they are left.
+            self.trail.follow_all(depth);
         }
-        let (visit, trail) = (&mut self.stack[top], &mut self.trail[top]);
+        let (visit, trail) = (&mut self.stack[top], &mut self.trail.steps[top]);
         // A fragment that has only waited decides nothing.
         if trail.to_follow & !visit.followed == 0 && !visit.has_moved {
             trail.is_alone = false;
@@ -266,55 +233,24 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
         visit.followed |= 1 << fragment;
         visit.choice = 0;
         visit.choices = self.context.choices(&visit.state, fragment);
-        (trail.fragment, trail.footprint) = (fragment as u8, footprint);
         let is_helper = self.context.helper == Some(fragment);
         if is_helper && self.context.helper_waits(&mut self.runner, &self.stack[top].state, fragment) {
             return Err(Undecided(None));
         }
-        self.set_clock(top, fragment, footprint);
-        let row = (top * self.fragments + fragment) * self.fragments;
-        let known = &self.clocks[row..row + self.fragments];
-        Self::follow_before(&mut self.trail[..top], fragment, known, |earlier| earlier.conflicts(footprint));
+        self.trail.follow(fragment, footprint);
         self.summaries.add(self.stack[top].number, fragment, footprint);
         Ok(true)
     }
 
-    /// Computes the clock of a step that a fragment takes in the topmost state.
-    fn set_clock(&mut self, top: usize, fragment: usize, footprint: Footprint) {
-        let count = self.fragments;
-        let row = (top * count + fragment) * count;
-        let (earlier_clocks, clock) = self.step_clocks.split_at_mut(top * count);
-        clock.copy_from_slice(&self.clocks[row..row + count]);
-        for (earlier, other) in self.trail[..top].iter().zip(earlier_clocks.chunks_exact(count)) {
-            // A step that can come first does not order the steps that conflict with it.
-            if !earlier.is_alone && earlier.footprint.conflicts(footprint) {
-                clock.iter_mut().zip(other).for_each(|(one, other)| *one = (*one).max(*other));
-            }
-        }
-        clock[fragment] = top as u32 + 1;
-    }
-
     /// Returns the steps that lead to the state at a depth.
     fn steps_to(&self, depth: usize) -> Vec<Step> {
-        let steps = self.stack[..depth].iter().zip(&self.trail);
+        let steps = self.stack[..depth].iter().zip(&self.trail.steps);
         steps.map(|(visit, trail)| (usize::from(trail.fragment), visit.choice - 1)).collect()
-    }
-
-    /// Lets a fragment be followed in every state whose step conflicts with a later step of the fragment, unless the one happens
-    /// before the other. `clock`: the steps that happen before the later one, per fragment.
-    fn follow_before(trail: &mut [Followed], fragment: usize, clock: &[u32], conflicts: impl Fn(Footprint) -> bool) {
-        for (depth, earlier) in trail.iter_mut().enumerate() {
-            let other = usize::from(earlier.fragment);
-            if other != fragment && !earlier.is_alone && clock[other] <= depth as u32 && conflicts(earlier.footprint) {
-                let is_able = earlier.able >> fragment & 1 == 1;
-                earlier.to_follow |= if is_able { 1 << fragment } else { earlier.able };
-            }
-        }
     }
 
     /// Takes the next step in the topmost state.
     fn take(&mut self, top: usize, property: &mut dyn Property) -> Result<(), Undecided> {
-        let fragment = usize::from(self.trail[top].fragment);
+        let fragment = usize::from(self.trail.steps[top].fragment);
         let visit = &mut self.stack[top];
         let (choice, number) = (visit.choice, visit.number);
         visit.choice += 1;
@@ -350,21 +286,13 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
 
     /// Compares the steps after a state that has been visited with those that lead to it now.
     fn pass_known(&mut self, top: usize, next: u32) {
-        let count = self.fragments;
-        let stepped = usize::from(self.trail[top].fragment);
         let unknown = self.incomplete.get(&next).copied();
-        for fragment in 0..count {
+        for fragment in 0..self.fragments {
             let summaries = &self.summaries;
-            if unknown.is_none() && !summaries.has_steps(next, fragment) {
-                continue;
+            if unknown.is_some() || summaries.has_steps(next, fragment) {
+                let conflicts = |earlier: Footprint| unknown.is_some() || summaries.conflicts(next, fragment, earlier);
+                self.trail.follow_later(fragment, conflicts);
             }
-            let row = (top * count + fragment) * count;
-            let known = match fragment == stepped {
-                true => &self.step_clocks[top * count..],
-                false => &self.clocks[row..row + count],
-            };
-            let conflicts = |earlier: Footprint| unknown.is_some() || summaries.conflicts(next, fragment, earlier);
-            Self::follow_before(&mut self.trail, fragment, known, conflicts);
         }
         if let Some(depth) = unknown {
             self.depend_on(depth as usize);
@@ -375,8 +303,8 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
     /// Handles a step from the topmost state to one on the stack.
     fn close_cycle(&mut self, top: usize, depth: usize) {
         self.has_cycle = true;
-        let fragment = self.trail[top].fragment;
-        let mut steps = self.stack[depth..].iter().zip(&self.trail[depth..]);
+        let fragment = self.trail.steps[top].fragment;
+        let mut steps = self.stack[depth..].iter().zip(&self.trail.steps[depth..]);
         let is_idle = steps.all(|(visit, trail)| trail.fragment == fragment && !visit.has_effect);
         // A fragment that comes back by one choice, such as a weak exchange that fails, and goes on by another: all its steps
         // come before those of the other choice too.
@@ -384,17 +312,10 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
             let returns_to = &mut self.stack[top].returns_to;
             *returns_to = Some(returns_to.map_or(depth, |other| other.min(depth)));
         } else {
-            self.follow_all(depth);
+            // What follows these states is not known when they are left.
+            self.trail.follow_all(depth);
         }
         self.depend_on(depth);
-    }
-
-    /// Follows every fragment in the states of a cycle: what follows them is not known when they are left.
-    fn follow_all(&mut self, depth: usize) {
-        for trail in &mut self.trail[depth..] {
-            trail.is_alone = false;
-            trail.to_follow |= trail.able;
-        }
     }
 
     /// Records that what follows the states above a depth is not known before the state there is left.
@@ -407,10 +328,7 @@ impl<'a, 'p> ReducedSearch<'a, 'p> {
     /// Leaves the topmost state.
     fn leave(&mut self) {
         let Some(visit) = self.stack.pop() else { return };
-        let (depth, count) = (self.stack.len(), self.fragments);
-        self.trail.truncate(depth);
-        self.clocks.truncate(depth * count * count);
-        self.step_clocks.truncate(depth * count);
+        self.trail.pop();
         self.depths[visit.number as usize] = DONE;
         match self.stack.get_mut(visit.depends_on as usize) {
             Some(lower) => {
