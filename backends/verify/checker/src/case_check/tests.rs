@@ -65,11 +65,11 @@ fn an_equal_case_has_the_same_result() {
             let violation = outcome.failure.map(|failure| failure.violation);
             (outcome.states, outcome.is_exhaustive, outcome.has_hazard, violation)
         };
-        for number in 0..tasks.len() {
+        for (number, task) in tasks.iter().enumerate() {
             match checked.run_task(number, false) {
                 Outcome::SameAs(other) => {
                     assert!(other < number);
-                    assert_eq!(result(number), result(other), "{key}: {}", tasks[number].case.description);
+                    assert_eq!(result(number), result(other), "{key}: {}", task.case.description);
                     equal += 1;
                 }
                 _ => searched += 1,
