@@ -47,7 +47,7 @@ struct Begun<'s> {
 
 /// The result of a task.
 enum Outcome {
-    Searched(CaseOutcome),
+    Searched(Box<CaseOutcome>),
     /// The result is that of an earlier task.
     SameAs(usize),
     /// An earlier task ends the check.
@@ -110,7 +110,7 @@ impl<'s> CaseCheck<'s> {
                         let (states, is_exhaustive) = counts[other];
                         CaseOutcome { states, is_exhaustive, failure: None, has_hazard: false, hazard: None }
                     }
-                    Some(Outcome::Searched(outcome)) => outcome,
+                    Some(Outcome::Searched(outcome)) => *outcome,
                 };
                 counts.push((outcome.states, outcome.is_exhaustive));
                 let wants_hazard = report.failure.is_none() && outcome.has_hazard && outcome.failure.is_none();
@@ -177,7 +177,7 @@ impl<'s> CaseCheck<'s> {
             return Outcome::SameAs(other);
         }
         match self.search(run, number, || wants_hazard && self.turns.turn(number).is_first_hazard()) {
-            Ok(outcome) => Outcome::Searched(outcome),
+            Ok(outcome) => Outcome::Searched(Box::new(outcome)),
             Err(text) => Outcome::Error(text),
         }
     }
