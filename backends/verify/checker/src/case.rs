@@ -13,7 +13,7 @@ use crate::pool_case::{AllocationDemand, PoolCase, pool_cases};
 use crate::subject::Subject;
 
 /// One case.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) k: Option<u32>,
     /// In order of arrival.

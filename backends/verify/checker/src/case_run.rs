@@ -19,11 +19,13 @@ use crate::reduced::explore_reduced;
 use crate::search::{Failure, FailureKind, Property, SearchResult, StateVerdict, Step};
 use crate::sequential::machine_with;
 use crate::state::{State, StepError};
+use crate::turn::Turn;
 
 /// A case, and the iterations of its pass.
 pub(crate) struct CaseRun<'s> {
     pub(crate) setup: CaseSetup<'s>,
     pub(crate) iterations: Vec<Iteration<'s>>,
+    turn: Turn,
 }
 
 /// One iteration of the pass under test.
@@ -33,7 +35,7 @@ pub(crate) struct Iteration<'s> {
     /// The iteration before, and its steps.
     pub(crate) before: Option<(usize, Vec<Step>)>,
     /// The frame before the pass.
-    frame: Frame<'s>,
+    pub(crate) frame: Frame<'s>,
 }
 
 /// The result of all searches of a case.
@@ -51,6 +53,17 @@ struct FirstHazard<'a> {
     property: &'a mut dyn Property,
     /// Whether it was found. Otherwise the failure is another one.
     is_found: bool,
+}
+
+/// The result of a search for the shortest schedule of a declared hazard.
+#[derive(Default)]
+pub(crate) struct HazardSearch {
+    pub(crate) states: usize,
+    /// The hazard, or another failure that was found first.
+    pub(crate) failure: Option<Failure>,
+    /// Whether it is a hazard.
+    pub(crate) is_found: bool,
+    pub(crate) has_forgotten: bool,
 }
 
 impl Property for FirstHazard<'_> {
@@ -75,9 +88,9 @@ impl Property for FirstHazard<'_> {
 
 impl<'s> CaseRun<'s> {
     /// Runs everything that comes before the fragments under test.
-    pub(crate) fn new(setup: CaseSetup<'s>, options: &SearchOptions) -> Result<Self, String> {
+    pub(crate) fn new(setup: CaseSetup<'s>, options: &SearchOptions, turn: Turn) -> Result<Self, String> {
         let frame = setup.frame()?;
-        let mut run = CaseRun { setup, iterations: Vec::new() };
+        let mut run = CaseRun { setup, iterations: Vec::new(), turn };
         run.begin(frame, None, options)?;
         Ok(run)
     }
@@ -102,6 +115,7 @@ impl<'s> CaseRun<'s> {
         context.wants_shortest = options.wants_shortest;
         context.has_weak_exchange = subject.has_weak_exchange && options.model == Model::Relaxed;
         context.counts_samples = runnable.is_awaited;
+        context.turn = Some(self.turn.clone());
         context.helper = case.has_helper.then(|| case.new.len() - 1);
         let new = case.new.iter().map(|fragment| at_pixel(fragment, &runnable.program, case.pixel));
         let machines = new.map(|fragment| machine_with(&runnable.program, &fragment.inputs)).collect();
@@ -148,22 +162,27 @@ impl<'s> CaseRun<'s> {
         let mut property = FinalStateProperty::new(&self.setup, context, iteration.frame.clone());
         let result = match options.random_schedules {
             Some(count) => walk(context, first, &mut property, count),
-            None => {
-                let mut result = explore_reduced(context, first.clone(), &mut property, options.limit);
-                if options.wants_hazard && result.failure.is_none() && result.hazard.is_some() {
-                    let mut first_hazard = FirstHazard { property: &mut property, is_found: false };
-                    let shortest = explore(context, first.clone(), &mut first_hazard, options.limit);
-                    result.states += shortest.states;
-                    match first_hazard.is_found {
-                        true => result.hazard = shortest.failure.or(result.hazard),
-                        false => result.failure = shortest.failure,
-                    }
-                }
-                result
-            }
+            None => explore_reduced(context, first.clone(), &mut property, options.limit),
         };
         let mut result = result.decided();
         result.is_exhaustive &= !context.has_forgotten.get();
         (result, property.next_iterations)
+    }
+
+    /// Searches for the shortest schedule of a declared hazard in one iteration.
+    pub(crate) fn shortest_hazard(&self, at: usize, limit: usize) -> HazardSearch {
+        let iteration = &self.iterations[at];
+        let context = &iteration.context;
+        let Ok(first) = &iteration.first else { return HazardSearch::default() };
+        let mut property = FinalStateProperty::new(&self.setup, context, iteration.frame.clone());
+        let mut first_hazard = FirstHazard { property: &mut property, is_found: false };
+        let result = explore(context, first.clone(), &mut first_hazard, limit);
+        let is_found = first_hazard.is_found;
+        HazardSearch {
+            states: result.states,
+            failure: result.failure,
+            is_found,
+            has_forgotten: context.has_forgotten.get(),
+        }
     }
 }

@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-use fragbuf_templates::vocabulary::Capability;
+use fragbuf_templates::vocabulary::{Capability, Kind};
 
 use crate::case::Case;
 use crate::fragments::{Fragment, at_pixel, farthest};
@@ -29,9 +29,7 @@ pub(crate) struct SearchOptions {
     pub(crate) one_by_one: bool,
     /// Whether steps that do not affect each other are followed in one order only.
     pub(crate) is_reduced: bool,
-    /// Whether the shortest schedule of a declared hazard is wanted.
-    pub(crate) wants_hazard: bool,
-    /// Whether the shortest schedule of a failure is wanted.
+    /// Whether the shortest schedule of a failure or declared hazard is wanted.
     pub(crate) wants_shortest: bool,
 }
 
@@ -49,7 +47,7 @@ pub(crate) struct CaseSetup<'s> {
     pub(crate) neighbour: Fragment,
     /// The greatest depth of the pixel under test, and a fragment behind it that every pass draws. `None`: no shader reads
     /// opaque depth.
-    occluded: Option<(f32, Fragment)>,
+    pub(crate) occluded: Option<(f32, Fragment)>,
     pub(crate) specification: Specification,
     /// Fragments of the pixel that a pass counts, where the rows provide that.
     counted: Option<usize>,
@@ -103,6 +101,19 @@ impl<'s> CaseSetup<'s> {
     /// Returns the new fragments that are no helper invocations.
     pub(crate) fn real_fragments(&self) -> &[Fragment] {
         &self.case.new[..self.case.new.len() - usize::from(self.case.has_helper)]
+    }
+
+    /// Returns the case as far as its result depends on it: not on its description and, where nothing depends on their arrival
+    /// order, not on the order of the prior fragments.
+    pub(crate) fn identity(&self) -> Case {
+        let subject = self.subject;
+        let mut case = Case { description: String::new(), ..self.case.clone() };
+        let geometry = subject.passes.iter().rposition(|pass| pass.pass.kind == Kind::Geometry);
+        let is_last = geometry == Some(case.pass) && subject.plan.frame.loops.is_empty();
+        if is_last && subject.stream.is_none() && self.specification.kept_set.is_order_free() {
+            case.prior.sort_by(|one, other| (&one.words, &one.inputs).cmp(&(&other.words, &other.inputs)));
+        }
+        case
     }
 
     /// Returns the specification in a frame, whose k a host step may have decided.

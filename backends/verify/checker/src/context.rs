@@ -10,6 +10,7 @@ use fragbuf_interpreter::{Buffer, Bytecode, Event, Space, WordAddress};
 
 use crate::memory::{TexelLayout, memory_index};
 use crate::model::Model;
+use crate::turn::Turn;
 
 /// What every state of a search shares.
 #[derive(Debug)]
@@ -53,6 +54,8 @@ pub(crate) struct SearchContext<'p> {
     pub(crate) one_by_one: bool,
     /// Whether a loop waits for the samples of the pass, so that a discarded fragment has another final state.
     pub(crate) counts_samples: bool,
+    /// The turn of the search, if searches of other cases run at the same time.
+    pub(crate) turn: Option<Turn>,
 }
 
 /// The location of a buffer.
@@ -132,6 +135,7 @@ impl<'p> SearchContext<'p> {
             by_submission: false,
             one_by_one: false,
             counts_samples: false,
+            turn: None,
         };
         if program.buffers.iter().any(|buffer| buffer.is_mixed) {
             context.mixed = context.each_ordered(|buffer, _| buffer.is_mixed);

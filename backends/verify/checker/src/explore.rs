@@ -8,15 +8,15 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::hash::BuildHasherDefault;
 
-use fragbuf_interpreter::Machine;
-
 use crate::context::SearchContext;
 use crate::fingerprint::{Identity, fingerprint};
 use crate::graph::StateGraph;
 use crate::progress::RunOn;
 use crate::reduction::independent;
+use crate::runner::Runner;
 use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, Step};
 use crate::state::State;
+use crate::turn::Allowance;
 use crate::watched::WatchedWords;
 
 /// Searches from `first`, up to `limit` states.
@@ -28,7 +28,7 @@ pub(crate) fn explore(
 ) -> SearchResult {
     let mut exploration = Exploration {
         context,
-        machine: Machine::new(context.program),
+        runner: Runner::new(context),
         watched: WatchedWords::new(context, property),
         first: first.clone(),
         numbers: HashMap::default(),
@@ -39,14 +39,15 @@ pub(crate) fn explore(
     };
     let running = context.running(&first);
     exploration.visit(first, None);
-    let failure = exploration.run(property, limit, &running);
+    let mut allowance = Allowance::new(context.turn.as_ref(), limit);
+    let failure = exploration.run(property, &mut allowance, &running);
     let is_exhaustive = failure.is_some() || (exploration.queue.is_empty() && exploration.undecided.is_empty());
     SearchResult { is_exhaustive, failure, ..exploration.result }
 }
 
 struct Exploration<'a, 'p> {
     context: &'a SearchContext<'p>,
-    machine: Machine<'p>,
+    runner: Runner<'p>,
     watched: WatchedWords,
     first: State,
     /// The number of each visited state, by its fingerprint.
@@ -89,13 +90,18 @@ impl Exploration<'_, '_> {
     }
 
     /// Follows every state. Where no final state can be reached, loops run on to their limits.
-    fn run(&mut self, property: &mut dyn Property, limit: usize, running: &[usize]) -> Option<Failure> {
+    fn run(
+        &mut self,
+        property: &mut dyn Property,
+        allowance: &mut Allowance<'_>,
+        running: &[usize],
+    ) -> Option<Failure> {
         loop {
             while let Some((state, number)) = self.queue.pop_front() {
                 if let Some(failure) = self.follow(&state, number, property) {
                     return Some(failure);
                 }
-                if self.result.states >= limit {
+                if allowance.is_used_up(self.result.states) {
                     return None;
                 }
             }
@@ -125,7 +131,7 @@ impl Exploration<'_, '_> {
             return self.result.record(verdict, &words, || self.graph.path(number));
         }
         if let Some(helper) = self.context.helper.filter(|helper| running.contains(helper))
-            && self.context.helper_waits(&mut self.machine, state, helper)
+            && self.context.helper_waits(&mut self.runner, state, helper)
         {
             return self.failure(number, None, FailureKind::Deadlock(vec![helper]));
         }
@@ -161,7 +167,7 @@ impl Exploration<'_, '_> {
         for &fragment in fragments {
             for choice in 0..self.context.choices(state, fragment) {
                 let step = (fragment, choice);
-                let stepped = match self.context.step(&mut self.machine, state, fragment, choice) {
+                let stepped = match self.context.step(&mut self.runner, state, fragment, choice) {
                     Ok(stepped) => stepped,
                     Err(error) => {
                         return Err(self.failed(number, Some(step), FailureKind::Step(fragment, error)));
@@ -184,7 +190,7 @@ impl Exploration<'_, '_> {
         let (mut moves, mut is_decided) = (Moves::default(), true);
         for &fragment in running {
             let step = (fragment, RUN_ON);
-            match self.context.run_on(&mut self.machine, state, fragment) {
+            match self.context.run_on(&mut self.runner, state, fragment) {
                 RunOn::Moved(next) => {
                     let (next, is_new) = self.visit(next, Some((number, step, true)));
                     moves = Moves { other: moves.other || next != number, new: moves.new || is_new };
@@ -220,7 +226,7 @@ impl Exploration<'_, '_> {
         let steps = self.graph.path(number);
         steps
             .into_iter()
-            .try_fold(self.first.clone(), |state, step| self.context.replay(&mut self.machine, &state, step))
+            .try_fold(self.first.clone(), |state, step| self.context.replay(&mut self.runner, &state, step))
     }
 
     /// Returns a failure in a state, or in one more step from it.

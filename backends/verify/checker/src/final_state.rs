@@ -20,16 +20,22 @@ use crate::sequential::{machine_with, run_alone};
 use crate::specification::Specification;
 use crate::stream::{Emitted, Stream};
 
+/// Index in memory, first word in a state and number of words of a buffer that states hold.
+type StateBuffer = (usize, usize, usize);
+
 /// The property that final states meet the specification, and that the bound of an early cull is never too low.
 pub(crate) struct FinalStateProperty<'c, 's> {
     setup: &'c CaseSetup<'s>,
     frame: Frame<'s>,
-    /// Index in memory, first word in a state and number of words of every buffer that states hold.
-    buffers: Vec<(usize, usize, usize)>,
+    buffers: Vec<StateBuffer>,
     /// The least bound of an early cull that rejects no fragment that must be kept. `None`: no bound is checked.
     least_bound: Option<u32>,
-    /// The watched words whose bound is not too low.
+    /// The words that the bound reads.
+    watched: Vec<Range<usize>>,
+    /// The contents of these words whose bound is not too low.
     bounded: HashSet<Vec<u32>>,
+    /// The present content.
+    content: Vec<u32>,
     known: HashMap<Vec<u32>, StateVerdict>,
     /// What the pixel may have emitted, by the number of fragments that timed out. `None`: not computed yet.
     emitted: Option<Vec<Vec<Emitted>>>,
@@ -41,12 +47,15 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
     /// Returns the property for one iteration of a case. `frame`: the frame before the pass under test.
     pub(crate) fn new(setup: &'c CaseSetup<'s>, context: &SearchContext<'_>, frame: Frame<'s>) -> Self {
         let has_bound = setup.subject.bound.is_some() && !setup.subject.is_racy();
+        let buffers: Vec<_> = context.state_buffers().collect();
         FinalStateProperty {
             setup,
+            watched: if has_bound { watched(setup, &buffers).collect() } else { Vec::new() },
             least_bound: has_bound.then(|| setup.specification_in(&frame).least_bound()),
             frame,
-            buffers: context.state_buffers().collect(),
+            buffers,
             bounded: HashSet::new(),
+            content: Vec::new(),
             known: HashMap::new(),
             emitted: None,
             next_iterations: HashMap::new(),
@@ -132,19 +141,25 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
     }
 }
 
+/// Returns the words of the buffers that the bound reads.
+fn watched<'a>(setup: &'a CaseSetup<'_>, buffers: &'a [StateBuffer]) -> impl Iterator<Item = Range<usize>> + 'a {
+    let bound = setup.subject.bound.iter().flat_map(|bound| &bound.buffers);
+    let read: HashSet<usize> = bound.map(|buffer| memory_index(buffer.binding)).collect();
+    let buffers = buffers.iter().filter(move |(index, ..)| read.contains(index));
+    buffers.map(|(_, first, count)| *first..first + count)
+}
+
 impl Property for FinalStateProperty<'_, '_> {
     fn watched(&self) -> Vec<Range<usize>> {
-        let Some((bound, _)) = self.frame.subject.bound.as_ref().zip(self.least_bound) else { return Vec::new() };
-        let is_read = |index: usize| bound.buffers.iter().any(|buffer| memory_index(buffer.binding) == index);
-        let buffers = self.buffers.iter().filter(|(index, ..)| is_read(*index));
-        buffers.map(|(_, first, count)| *first..first + count).collect()
+        self.watched.clone()
     }
 
     fn instant(&mut self, words: &[u32]) -> Option<String> {
         let (bound, least) = self.frame.subject.bound.as_ref().zip(self.least_bound)?;
         // The bound depends on nothing else that a fragment writes.
-        let watched: Vec<u32> = self.watched().into_iter().flat_map(|range| &words[range]).copied().collect();
-        if self.bounded.contains(&watched) {
+        self.content.clear();
+        self.watched.iter().for_each(|range| self.content.extend_from_slice(&words[range.clone()]));
+        if self.bounded.contains(&self.content) {
             return None;
         }
         for (index, first, count) in &self.buffers {
@@ -160,7 +175,7 @@ impl Property for FinalStateProperty<'_, '_> {
             let text = "but a fragment that must be kept has the greater key";
             return Some(format!("storage_bound is {found:08x}, {text} {least:08x}"));
         }
-        self.bounded.insert(watched);
+        self.bounded.insert(self.content.clone());
         None
     }
 

@@ -6,14 +6,26 @@ use crate::state::State;
 
 /// Returns two hashes of 64 bits, mixed differently.
 pub(crate) fn fingerprint(state: &State) -> u128 {
-    let mut hasher = Lanes(0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f);
-    state.hash(&mut hasher);
-    u128::from(hasher.0) << 64 | u128::from(hasher.1)
+    let mut lanes = Lanes::default();
+    state.hash(&mut lanes);
+    lanes.both()
 }
 
-struct Lanes(u64, u64);
+/// A hasher with two hashes of 64 bits.
+pub(crate) struct Lanes(u64, u64);
+
+impl Default for Lanes {
+    fn default() -> Self {
+        Lanes(0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f)
+    }
+}
 
 impl Lanes {
+    /// Returns both hashes.
+    pub(crate) fn both(&self) -> u128 {
+        u128::from(self.0) << 64 | u128::from(self.1)
+    }
+
     fn mix(&mut self, value: u64) {
         self.0 = (self.0 ^ value).wrapping_mul(0xff51_afd7_ed55_8ccd);
         self.0 ^= self.0 >> 32;
@@ -37,6 +49,11 @@ impl Hasher for Lanes {
 
     fn write_usize(&mut self, value: usize) {
         self.mix(value as u64 ^ 0x5bd1_e995);
+    }
+
+    fn write_u128(&mut self, value: u128) {
+        self.mix(value as u64);
+        self.mix((value >> 64) as u64);
     }
 
     fn write_u64(&mut self, value: u64) {

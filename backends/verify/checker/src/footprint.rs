@@ -18,13 +18,15 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
+    /// The footprint of a step that affects its fragment only.
+    pub(crate) const LOCAL: Footprint = Footprint { object: None, writes: false, is_watched: false };
+
     /// Returns the footprint of a fragment's next event.
     pub(crate) fn new(context: &SearchContext<'_>, fragment: usize, event: &Event, watched: &WatchedWords) -> Self {
         let is_helper = context.helper == Some(fragment);
-        let local = Footprint { object: None, writes: false, is_watched: false };
         match event {
             Event::Access(access) => {
-                let Some(word) = context.word(access.address) else { return local };
+                let Some(word) = context.word(access.address) else { return Footprint::LOCAL };
                 let writes = access.writes() && !is_helper;
                 let is_watched = writes && watched.contains(context, access);
                 Footprint { object: Some(word as u32), writes, is_watched }
@@ -36,7 +38,7 @@ impl Footprint {
                 let workgroup = context.workgroups.get(fragment).copied().unwrap_or(0);
                 Footprint { object: Some(context.ordered as u32 + 1 + workgroup), writes: true, is_watched: false }
             }
-            _ => local,
+            _ => Footprint::LOCAL,
         }
     }
 
@@ -91,6 +93,11 @@ impl Summaries {
             let (to, from) = (self.index(to, fragment), self.index(from, fragment));
             self.bits[to] |= self.bits[from];
         }
+    }
+
+    /// Returns whether a step of a fragment after a state may conflict with any other.
+    pub(crate) fn has_steps(&self, state: u32, fragment: usize) -> bool {
+        self.bits[self.index(state, fragment)] != 0
     }
 
     /// Returns whether a step of a fragment after a state may conflict with a step before it.

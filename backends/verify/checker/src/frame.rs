@@ -5,7 +5,7 @@
 
 use fragbuf_codegen::{FIRST_BINDING, PassId, ResourceId, SymbolId};
 use fragbuf_frame::{Cursor, FrameStep, HostWait, PassRun, Readbacks, Values, WordRange, resource_bytes};
-use fragbuf_interpreter::{DispatchEnd, Exit, dispatch};
+use fragbuf_interpreter::{DispatchEnd, Exit};
 use fragbuf_templates::vocabulary::Kind;
 
 use crate::memory::{Memory, STALE, WIDTH, with_buffers};
@@ -50,6 +50,16 @@ impl<'s> Frame<'s> {
         frame.memory[2] = vec![0; 16];
         frame.allocate()?;
         Ok(frame)
+    }
+
+    /// Returns whether everything but the subject is equal.
+    pub(crate) fn is_same(&self, other: &Frame<'_>) -> bool {
+        self.memory == other.memory
+            && self.values == other.values
+            && (self.allocation_limit, self.requested) == (other.allocation_limit, other.requested)
+            && self.cursor == other.cursor
+            && self.flipped == other.flipped
+            && self.samples == other.samples
     }
 
     /// Allocates every resource whose size is known by now, and updates the uniform buffer of the frame.
@@ -206,7 +216,7 @@ impl<'s> Frame<'s> {
                     *count = groups.map_err(|error| error.to_string())?;
                 }
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {
-                    dispatch(&runnable.program, counts, buffers)
+                    self.subject.dispatches.run(runnable, counts, buffers)
                 });
                 let (name, location) =
                     (&runnable.pass.name, |at| code_location(&runnable.program, at, &runnable.source));

@@ -52,6 +52,11 @@ impl KeptSet {
         self.rule.is_none()
     }
 
+    /// Returns whether the arrival order of fragments decides nothing.
+    pub(crate) fn is_order_free(&self) -> bool {
+        !self.is_by_arrival && self.merging.is_none()
+    }
+
     /// Returns the most entries that a pixel holds, where there is a limit.
     pub(crate) fn most(&self) -> Option<usize> {
         let rule = self.rule.as_ref()?;

@@ -28,9 +28,11 @@
 //! ```
 
 mod case;
+mod case_check;
 mod case_run;
 mod case_setup;
 mod context;
+mod dispatches;
 mod explore;
 mod final_state;
 mod fingerprint;
@@ -39,6 +41,7 @@ mod fragments;
 mod frame;
 mod frame_memory;
 mod graph;
+mod in_order;
 mod kept_set;
 mod memory;
 mod merging;
@@ -55,6 +58,7 @@ mod reduced;
 mod reduction;
 mod relaxed;
 mod report;
+mod runner;
 mod sampled;
 mod search;
 mod sequential;
@@ -65,6 +69,8 @@ mod stream;
 mod subject;
 #[cfg(test)]
 mod test_program;
+mod trail;
+mod turn;
 mod verdict;
 mod watched;
 mod word_name;

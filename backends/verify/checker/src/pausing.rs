@@ -7,6 +7,7 @@ use fragbuf_interpreter::{Access, Event, Reply, SharedMemory, WordAddress};
 
 use crate::context::{BufferLocation, SearchContext};
 use crate::memory::memory_index;
+use crate::runner::CommutingWrite;
 
 /// Memory that answers one event, then stops. Accesses that commute are performed at once, because no program can observe
 /// their order.
@@ -16,6 +17,8 @@ pub(crate) struct Pausing<'a, 'p> {
     pub(crate) words: &'a mut [u32],
     /// Whether accesses that commute have no effect, as those of a helper invocation.
     pub(crate) is_helper: bool,
+    /// The accesses that commute and were performed.
+    pub(crate) commuting: &'a mut Vec<CommutingWrite>,
 }
 
 impl SharedMemory for Pausing<'_, '_> {
@@ -57,7 +60,9 @@ impl SharedMemory for Pausing<'_, '_> {
                     if self.is_helper {
                         return Reply::Done(0);
                     }
-                    return Reply::Done(perform(access, &mut self.words[first + access.address.word as usize..]));
+                    let word = first + access.address.word as usize;
+                    self.commuting.push((word as u32, *access));
+                    return Reply::Done(perform(access, &mut self.words[word..]));
                 }
             }
             Event::Fence if !self.context.has_fences => return Reply::Done(0),

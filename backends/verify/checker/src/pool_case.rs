@@ -16,7 +16,7 @@ use crate::memory::WIDTH;
 use crate::subject::Subject;
 
 /// A size of the pools for the fragments of a case.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PoolCase {
     pub(crate) values: Values,
     /// The most that host steps allocate.

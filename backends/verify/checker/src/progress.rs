@@ -6,16 +6,17 @@
 
 use std::rc::Rc;
 
-use fragbuf_interpreter::{Machine, Reply};
+use fragbuf_interpreter::Reply;
 
 use crate::context::SearchContext;
+use crate::runner::{Runner, Stop};
 use crate::search::{FailureKind, RUN_ON, Step};
 use crate::state::{State, Status, StepError};
 
 /// An earlier status of a fragment, since which the fragment has changed nothing (Brent's algorithm finds its cycles).
 #[derive(Clone, Debug)]
 pub(crate) struct Anchor {
-    saved: Rc<[u32]>,
+    stop: Rc<Stop>,
     /// Steps since.
     steps: u32,
     /// After so many steps the anchor moves to the present status.
@@ -48,16 +49,16 @@ pub(crate) enum RunOn {
 /// The most steps of [`SearchContext::run_on`]. A loop may have more attempts: rows allow up to 2^24.
 const LONGEST: u32 = 1 << 17;
 
-impl SearchContext<'_> {
+impl<'p> SearchContext<'p> {
     /// Performs a fragment's event in the way of this number.
     pub(crate) fn step(
         &self,
-        machine: &mut Machine<'_>,
+        runner: &mut Runner<'p>,
         before: &State,
         fragment: usize,
         choice: u32,
     ) -> Result<Stepped, StepError> {
-        let (mut state, reply) = self.step_exactly(machine, before, fragment, choice)?;
+        let (mut state, reply) = self.step_exactly(runner, before, fragment, choice)?;
         let has_effect = !state.has_memory_of(before);
         let recurs = self.anchor(before, &mut state, fragment, has_effect);
         Ok(Stepped { state, reply, has_effect, recurs })
@@ -65,23 +66,23 @@ impl SearchContext<'_> {
 
     /// Sets the anchor of a fragment after a step; returns whether the fragment is back there.
     fn anchor(&self, before: &State, after: &mut State, fragment: usize, has_effect: bool) -> bool {
-        let Status::Before { at, saved, anchor, .. } = &mut after.fragments[fragment] else { return false };
-        if !self.program.is_in_loop(*at) {
+        let Status::Before { stop, anchor } = &mut after.fragments[fragment] else { return false };
+        if !self.program.is_in_loop(stop.at) {
             return false;
         }
         let earlier = match &before.fragments[fragment] {
             Status::Before { anchor: Some(anchor), .. } => Some(anchor.clone()),
-            Status::Before { saved, .. } => Some(Anchor { saved: Rc::clone(saved), steps: 0, limit: 2 }),
+            Status::Before { stop, .. } => Some(Anchor { stop: Rc::clone(stop), steps: 0, limit: 2 }),
             Status::Ended(_) => None,
         };
         let Some(earlier) = earlier.filter(|_| !has_effect) else { return false };
-        if self.program.is_same_attempt(&earlier.saved, saved) {
-            *saved = Rc::clone(&earlier.saved);
+        if self.program.is_same_attempt(&earlier.stop.saved, &stop.saved) {
+            *stop = Rc::clone(&earlier.stop);
             *anchor = Some(Anchor { steps: 0, ..earlier });
             return true;
         }
         *anchor = Some(match earlier.steps + 1 >= earlier.limit {
-            true => Anchor { saved: Rc::clone(saved), steps: 0, limit: earlier.limit.saturating_mul(2) },
+            true => Anchor { stop: Rc::clone(stop), steps: 0, limit: earlier.limit.saturating_mul(2) },
             false => Anchor { steps: earlier.steps + 1, ..earlier },
         });
         false
@@ -89,18 +90,18 @@ impl SearchContext<'_> {
 
     /// Runs a fragment while no other runs, until it changes something, leaves its loop or ends. Its accesses observe the latest
     /// writes.
-    pub(crate) fn run_on(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> RunOn {
+    pub(crate) fn run_on(&self, runner: &mut Runner<'p>, state: &State, fragment: usize) -> RunOn {
         let mut now = state.clone();
         let (mut earlier, mut limit) = (now.fragments[fragment].clone(), 1);
         for steps in 0..LONGEST {
             match &now.fragments[fragment] {
-                Status::Before { at, .. } if steps == 0 || self.program.is_in_loop(*at) => {}
+                Status::Before { stop, .. } if steps == 0 || self.program.is_in_loop(stop.at) => {}
                 _ => return RunOn::Moved(now),
             }
             if self.choices(&now, fragment) == 0 {
                 return RunOn::Waits;
             }
-            let next = match self.step_exactly(machine, &now, fragment, 0) {
+            let next = match self.step_exactly(runner, &now, fragment, 0) {
                 Ok((next, _)) => next,
                 Err(error) => return RunOn::Failed(FailureKind::Step(fragment, error)),
             };
@@ -120,30 +121,30 @@ impl SearchContext<'_> {
     }
 
     /// Performs a step of a schedule again. `None`: it fails.
-    pub(crate) fn replay(&self, machine: &mut Machine<'_>, state: &State, step: Step) -> Option<State> {
+    pub(crate) fn replay(&self, runner: &mut Runner<'p>, state: &State, step: Step) -> Option<State> {
         match step {
-            (fragment, RUN_ON) => match self.run_on(machine, state, fragment) {
+            (fragment, RUN_ON) => match self.run_on(runner, state, fragment) {
                 RunOn::Moved(next) => Some(next),
                 RunOn::Waits | RunOn::TooLong | RunOn::Failed(_) => None,
             },
-            (fragment, choice) => self.step(machine, state, fragment, choice).ok().map(|stepped| stepped.state),
+            (fragment, choice) => self.step(runner, state, fragment, choice).ok().map(|stepped| stepped.state),
         }
     }
 
     /// Returns whether a helper invocation waits in the worst case, in which it never observes the value that would end its wait.
-    pub(crate) fn helper_waits(&self, machine: &mut Machine<'_>, state: &State, fragment: usize) -> bool {
+    pub(crate) fn helper_waits(&self, runner: &mut Runner<'p>, state: &State, fragment: usize) -> bool {
         let mut now = state.clone();
         if let Status::Before { anchor, .. } = &mut now.fragments[fragment] {
             *anchor = None;
         }
         // One attempt of a wait accesses no more words than this.
         for _ in 0..64 {
-            let Status::Before { at, .. } = &now.fragments[fragment] else { return false };
-            if !self.program.is_in_loop(*at) {
+            let Status::Before { stop, .. } = &now.fragments[fragment] else { return false };
+            if !self.program.is_in_loop(stop.at) {
                 return false;
             }
             let worst = self.choices(&now, fragment).saturating_sub(1);
-            match self.step(machine, &now, fragment, worst) {
+            match self.step(runner, &now, fragment, worst) {
                 Ok(stepped) if stepped.recurs => return true,
                 Ok(stepped) => now = stepped.state,
                 Err(_) => return false,

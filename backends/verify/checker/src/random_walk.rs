@@ -4,10 +4,9 @@
 //! every step. An odd seed gives fragments priorities and lowers that of the running one at a few random steps
 //! (Burckhardt et al. 2010, PCT).
 
-use fragbuf_interpreter::Machine;
-
 use crate::context::SearchContext;
 use crate::progress::RunOn;
+use crate::runner::Runner;
 use crate::search::{Failure, FailureKind, Property, RUN_ON, SearchResult, StateVerdict, Step};
 use crate::state::{State, StepError};
 
@@ -22,10 +21,10 @@ pub(crate) fn walk(
     seeds: u32,
 ) -> SearchResult {
     let mut result = SearchResult::default();
-    let mut machine = Machine::new(context.program);
+    let mut runner = Runner::new(context);
     for seed in 0..seeds {
         let mut walk = RandomWalk { context, rng: Rng::new(seed), steps: Vec::new(), by_priority: seed % 2 == 1 };
-        let end = walk.run(&mut machine, first.clone(), property);
+        let end = walk.run(&mut runner, first.clone(), property);
         result.states += walk.steps.len();
         result.failure = match end {
             // It decides nothing, and other schedules may fail.
@@ -53,7 +52,7 @@ impl<'p> RandomWalk<'_, 'p> {
     /// too long to run to its end.
     fn run(
         &mut self,
-        machine: &mut Machine<'p>,
+        runner: &mut Runner<'p>,
         mut state: State,
         property: &mut dyn Property,
     ) -> Result<Option<(StateVerdict, Vec<u32>)>, FailureKind> {
@@ -69,7 +68,7 @@ impl<'p> RandomWalk<'_, 'p> {
             let able = |at: &usize| self.context.choices(&state, *at) > 0 && !waits[*at];
             let able: Vec<usize> = running.iter().copied().filter(able).collect();
             if able.is_empty() {
-                let Some(next) = self.run_on(machine, &state, &running)? else { return Ok(None) };
+                let Some(next) = self.run_on(runner, &state, &running)? else { return Ok(None) };
                 state = next;
                 waits.fill(false);
                 continue;
@@ -77,7 +76,7 @@ impl<'p> RandomWalk<'_, 'p> {
             let fragment = self.pick(&able, &mut priorities);
             let choice = self.rng.below(self.context.choices(&state, fragment));
             self.steps.push((fragment, choice));
-            let stepped = match self.context.step(machine, &state, fragment, choice) {
+            let stepped = match self.context.step(runner, &state, fragment, choice) {
                 Err(error) => return Err(FailureKind::Step(fragment, error)),
                 Ok(stepped) => stepped,
             };
@@ -99,13 +98,13 @@ impl<'p> RandomWalk<'_, 'p> {
     /// `None`: there is none, but a loop is too long to decide whether its fragment waits.
     fn run_on(
         &mut self,
-        machine: &mut Machine<'p>,
+        runner: &mut Runner<'p>,
         state: &State,
         running: &[usize],
     ) -> Result<Option<State>, FailureKind> {
         let mut is_decided = true;
         for &fragment in running {
-            match self.context.run_on(machine, state, fragment) {
+            match self.context.run_on(runner, state, fragment) {
                 RunOn::Moved(next) => {
                     self.steps.push((fragment, RUN_ON));
                     return Ok(Some(next));

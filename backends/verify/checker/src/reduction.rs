@@ -32,10 +32,10 @@ pub(crate) fn independent(
         return None;
     }
     running.iter().find_map(|&fragment| match &state.fragments[fragment] {
-        Status::Before { event, at, .. }
-            if comes_first(context, watched, event, fragment) && !may_forget(context, state, event) =>
+        Status::Before { stop, .. }
+            if comes_first(context, watched, &stop.event, fragment) && !may_forget(context, state, &stop.event) =>
         {
-            Some((fragment, context.program.is_in_loop(*at)))
+            Some((fragment, context.program.is_in_loop(stop.at)))
         }
         _ => None,
     })

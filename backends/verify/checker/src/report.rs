@@ -5,7 +5,7 @@
 
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
-use fragbuf_interpreter::{Access, Atomic, Buffer, Bytecode, Event, Machine, Operation, Reply};
+use fragbuf_interpreter::{Access, Atomic, Buffer, Bytecode, Event, Operation, Reply};
 use fragbuf_templates::COUNTERS;
 use fragbuf_templates::vocabulary::Element;
 
@@ -15,6 +15,7 @@ use crate::context::SearchContext;
 use crate::memory::memory_index;
 use crate::programs::CheckedSource;
 use crate::progress::RunOn;
+use crate::runner::Runner;
 use crate::search::{Failure, FailureKind, RUN_ON};
 use crate::state::{State, Status, StepError};
 
@@ -99,22 +100,23 @@ fn replay(
     source: &CheckedSource,
     names: &Names<'_>,
 ) -> Vec<Replayed> {
-    let mut machine = Machine::new(context.program);
+    let mut runner = Runner::new(context);
     let mut state = first.clone();
     let mut steps = Vec::new();
     for (fragment, choice) in &failure.steps {
-        let Status::Before { event, at, .. } = state.fragments[*fragment].clone() else { break };
+        let Status::Before { stop, .. } = state.fragments[*fragment].clone() else { break };
+        let (event, at) = (stop.event, stop.at);
         let location = code_location(context.program, at, source);
         let number = *fragment;
         if *choice == RUN_ON {
             let action = "runs on alone, and observes the latest writes, until it changes something or leaves its loop";
             let step = ScheduleStep { fragment: letter(number), action: action.to_owned(), location };
             steps.push(Replayed { number, access: None, step });
-            let RunOn::Moved(next) = context.run_on(&mut machine, &state, *fragment) else { break };
+            let RunOn::Moved(next) = context.run_on(&mut runner, &state, *fragment) else { break };
             state = next;
             continue;
         }
-        let (reply, next) = match context.step(&mut machine, &state, *fragment, *choice) {
+        let (reply, next) = match context.step(&mut runner, &state, *fragment, *choice) {
             Ok(stepped) => (stepped.reply, Some(stepped.state)),
             Err(_) => (Reply::Stop, None),
         };

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::pausing::{Pausing, perform, value};
 use crate::progress::Anchor;
 use crate::relaxed::{Observed, RelaxedMemory};
+use crate::runner::{CommutingWrite, Runner, Stop};
 
 /// One state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -37,10 +38,7 @@ pub(crate) struct State {
 pub(crate) enum Status {
     /// It has stopped before an event.
     Before {
-        event: Event,
-        at: u32,
-        /// The words from which a machine is restored.
-        saved: Rc<[u32]>,
+        stop: Rc<Stop>,
         /// An earlier status since which it has changed nothing.
         anchor: Option<Anchor>,
     },
@@ -48,11 +46,13 @@ pub(crate) enum Status {
     Ended(bool),
 }
 
-// The saved words determine the event. The anchor is about the past, and does not change what can follow.
+// The anchor is about the past, and does not change what can follow.
 impl PartialEq for Status {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Status::Before { saved, .. }, Status::Before { saved: other, .. }) => saved == other,
+            (Status::Before { stop, .. }, Status::Before { stop: other, .. }) => {
+                Rc::ptr_eq(stop, other) || stop == other
+            }
             (Status::Ended(passes), Status::Ended(other)) => passes == other,
             _ => false,
         }
@@ -64,13 +64,21 @@ impl Eq for Status {}
 impl Hash for Status {
     fn hash<H: Hasher>(&self, state: &mut H) {
         match self {
-            Status::Before { saved, .. } => saved.hash(state),
+            Status::Before { stop, .. } => stop.hash(state),
             Status::Ended(passes) => state.write_u8(1 + u8::from(*passes)),
         }
     }
 }
 
 impl Status {
+    /// Returns the instruction of the barrier at which the fragment waits.
+    fn barrier(&self) -> Option<u32> {
+        match self {
+            Status::Before { stop, .. } if matches!(stop.event, Event::Barrier(_)) => Some(stop.at),
+            _ => None,
+        }
+    }
+
     /// Returns whether the fragment has ended.
     pub(crate) fn has_ended(&self) -> bool {
         matches!(self, Status::Ended(_))
@@ -98,7 +106,7 @@ impl State {
     /// Returns whether memory, the interlock and what fragments may observe are those of another state.
     pub(crate) fn has_memory_of(&self, other: &State) -> bool {
         self.words == other.words
-            && self.order == other.order
+            && (Rc::ptr_eq(&self.order, &other.order) || self.order == other.order)
             && self.in_interlock == other.in_interlock
             && self.released == other.released
     }
@@ -119,7 +127,7 @@ pub(crate) enum StepError {
     DataRace(usize, u32),
 }
 
-impl SearchContext<'_> {
+impl<'p> SearchContext<'p> {
     /// Returns the state in which each machine has stopped before its first event. `Err`: a fragment fails before it.
     pub(crate) fn start(&self, words: Vec<u32>, machines: Vec<Machine<'_>>) -> Result<State, (usize, StepError)> {
         let order = Rc::new(RelaxedMemory::new(machines.len(), self.first_of_workgroups as u32));
@@ -133,26 +141,28 @@ impl SearchContext<'_> {
             order,
         };
         for (fragment, mut machine) in machines.into_iter().enumerate() {
-            let status = self.run(&mut machine, fragment, None, &mut state.words).map_err(|error| (fragment, error))?;
+            let run = self.run(&mut machine, fragment, None, &mut state.words, &mut Vec::new());
+            let status = run.map_err(|error| (fragment, error))?;
             state.fragments.push(status);
         }
         self.check_barriers(&state).map_err(|error| (0, error))?;
         Ok(state)
     }
 
-    /// Runs a machine to its next event.
-    fn run(
+    /// Runs a machine to its next event. Writes that commute are performed, and recorded in `commuting`.
+    pub(crate) fn run(
         &self,
         machine: &mut Machine<'_>,
         fragment: usize,
         reply: Option<Reply>,
         words: &mut [u32],
+        commuting: &mut Vec<CommutingWrite>,
     ) -> Result<Status, StepError> {
         machine.is_helper = self.helper == Some(fragment);
         machine.clamps = self.clamps;
         let is_helper = machine.is_helper;
         // Writes that commute are the only changes, and the program cannot observe them.
-        let exit = machine.run_or_repeat(&mut Pausing { context: self, reply, words, is_helper }, |_| 0);
+        let exit = machine.run_or_repeat(&mut Pausing { context: self, reply, words, is_helper, commuting }, |_| 0);
         if let Some(access) = machine.out_of_bounds.take() {
             match &self.out_of_bounds {
                 Some(known) => drop(known.borrow_mut().insert(access.at)),
@@ -163,14 +173,14 @@ impl SearchContext<'_> {
             Exit::Ended => Ok(Status::Ended(true)),
             Exit::Discarded => Ok(Status::Ended(!self.counts_samples)),
             Exit::Endless => {
-                let repeats = machine.repeats(&mut Pausing { context: self, reply: None, words, is_helper });
+                let repeats = machine.repeats(&mut Pausing { context: self, reply: None, words, is_helper, commuting });
                 Err(if repeats { StepError::Endless } else { StepError::TooLong })
             }
             Exit::Stopped(event) => {
                 let event = self.placed(fragment, event);
                 let mut saved = Vec::with_capacity(64);
                 machine.save(&mut saved);
-                Ok(Status::Before { event, at: machine.at(), saved: saved.into(), anchor: None })
+                Ok(Status::before(Stop::new(event, machine.at(), saved)))
             }
         }
     }
@@ -186,7 +196,8 @@ impl SearchContext<'_> {
 
     /// Returns in how many ways a fragment's event can be performed. 0: it has ended, or must wait for the interlock.
     pub(crate) fn choices(&self, state: &State, fragment: usize) -> u32 {
-        let Status::Before { event, .. } = &state.fragments[fragment] else { return 0 };
+        let Status::Before { stop, .. } = &state.fragments[fragment] else { return 0 };
+        let event = &stop.event;
         match event {
             Event::Access(access) if self.helper == Some(fragment) && access.writes() => 2,
             // A helper invocation passes the interlock, and its loads return what memory holds.
@@ -209,18 +220,15 @@ impl SearchContext<'_> {
     /// Returns whether a fragment may pass the barrier at which it waits.
     fn passes_barrier(&self, state: &State, fragment: usize) -> bool {
         let is_released = |member: usize| state.released >> member & 1 == 1;
-        let waits =
-            |member: &usize| matches!(state.fragments[*member], Status::Before { event: Event::Barrier(_), .. });
+        let waits = |member: &usize| state.fragments[*member].barrier().is_some();
         let members = self.members(fragment);
         is_released(fragment) || members.iter().all(|member| waits(member) && !is_released(*member))
     }
 
     /// Checks that no member of a workgroup waits at a barrier after another has ended, or while another waits at another barrier.
     fn check_barriers(&self, state: &State) -> Result<(), StepError> {
-        let barrier = |member: usize| match &state.fragments[member] {
-            Status::Before { event: Event::Barrier(_), at, .. } if state.released >> member & 1 == 0 => Some(*at),
-            _ => None,
-        };
+        let is_released = |member: usize| state.released >> member & 1 == 1;
+        let barrier = |member: usize| state.fragments[member].barrier().filter(|_| !is_released(member));
         for fragment in 0..self.workgroups.len() {
             let Some(at) = barrier(fragment) else { continue };
             let missing = self.members(fragment).into_iter().find(|member| {
@@ -243,18 +251,17 @@ impl SearchContext<'_> {
     /// and the reply to the event.
     pub(crate) fn step_exactly(
         &self,
-        machine: &mut Machine<'_>,
+        runner: &mut Runner<'p>,
         state: &State,
         fragment: usize,
         choice: u32,
     ) -> Result<(State, Reply), StepError> {
-        let Status::Before { event, saved, .. } = &state.fragments[fragment] else {
+        let Status::Before { stop, .. } = &state.fragments[fragment] else {
             return Ok((state.clone(), Reply::Stop));
         };
         let mut next = state.clone();
-        let reply = self.perform(&mut next, fragment, event, choice)?;
-        machine.load(saved);
-        next.fragments[fragment] = self.run(machine, fragment, Some(reply), &mut next.words)?;
+        let reply = self.perform(&mut next, fragment, &stop.event, choice)?;
+        next.fragments[fragment] = runner.resume(self, fragment, (stop, reply), &mut next.words)?;
         next.started = Some(fragment).filter(|at| self.one_by_one && !next.fragments[*at].has_ended());
         if !next.order.is_trivial() {
             let forgets = Rc::make_mut(&mut next.order).forget(|fragment| !next.fragments[fragment].has_ended());

@@ -10,6 +10,7 @@ use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
 
+use crate::dispatches::Dispatches;
 use crate::fragments::AttributeValues;
 use crate::probe::{probe_pass, probe_row};
 use crate::programs::{FullscreenProgram, Runnable, StreamPrograms, diagnostics, fullscreen_program, options};
@@ -50,6 +51,7 @@ pub(crate) struct Subject {
     /// The words of the uniform buffer, which alternate.
     pub(crate) uniforms: [u32; 2],
     pub(crate) attributes: AttributeValues,
+    pub(crate) dispatches: Dispatches,
 }
 
 impl Subject {
@@ -91,6 +93,7 @@ impl Subject {
             has_ordered_interlock: plan.requires.contains(&Feature::OrderedInterlock),
             uniforms: [1.0_f32.to_bits(); 2],
             attributes: AttributeValues::Unit,
+            dispatches: Dispatches::default(),
             plan,
         }))
     }

@@ -9,15 +9,15 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Kind};
 
 use crate::case::{Case, cases};
-use crate::case_run::{CaseResult, CaseRun};
-use crate::case_setup::{CaseSetup, SearchOptions};
+use crate::case_check::{CaseCheck, Task};
+use crate::case_setup::SearchOptions;
 use crate::fragments::{AttributeValues, Candidates, GENERATED, RANKS};
 use crate::frame::Frame;
 use crate::kept_set::KeptSet;
 use crate::model::Model;
 use crate::outside::check_outside;
 use crate::pool_case::ample_values;
-use crate::report::{Schedule, schedule};
+use crate::report::Schedule;
 use crate::subject::{RetryLimit, Subject};
 
 /// The limits of a check.
@@ -113,23 +113,6 @@ impl Report {
             is_kept_set_checked: true,
         }
     }
-
-    /// Records the result of a case; returns whether it is a failure that the declared hazards do not permit.
-    fn record(&mut self, run: &CaseRun<'_>, result: CaseResult) -> bool {
-        self.states += result.states;
-        self.is_exhaustive &= result.is_exhaustive;
-        if let Some((iteration, failure)) = result.failure {
-            self.is_declared = false;
-            self.failure = Some(schedule(run, iteration, &failure));
-            return true;
-        }
-        // The first declared hazard is reported unless a later case fails.
-        if let (None, Some((iteration, failure))) = (&self.failure, result.hazard) {
-            self.is_declared = true;
-            self.failure = Some(schedule(run, iteration, &failure));
-        }
-        false
-    }
 }
 
 const FIXED_FUNCTION: &str = "fixed-function depth test, stencil test and blending select the fragments in submission order; \
@@ -209,7 +192,6 @@ fn check_all(
         may_time_out: subject.may_time_out,
         one_by_one: false,
         is_reduced: limits.reduce,
-        wants_hazard: false,
         wants_shortest: limits.shortest,
     };
     let has_races = subject.permits().any(|permits| permits.needs_race);
@@ -235,32 +217,36 @@ fn check_all(
         ));
     }
     for &count in &limits.fragments {
+        let mut tasks = Vec::new();
+        let mut error = Ok(());
         for &k in &entries {
-            for case in cases(subject, &candidates, (count, k), options.may_time_out)? {
-                report.entries.extend(k.filter(|k| !report.entries.contains(k)));
-                let k = k.map_or(String::new(), |k| format!("k = {k}, "));
-                let case = Case { description: format!("{k}{}", case.description), ..case };
-                progress(&case.description);
-                report.cases += 1;
-                for options in searches.iter().flatten() {
-                    // The first declared hazard is reported.
-                    let options =
-                        SearchOptions { wants_hazard: limits.shortest && report.failure.is_none(), ..*options };
-                    let setup = CaseSetup::new(subject, case.clone(), &candidates.ranked[NEIGHBOUR], &options);
-                    let mut run = CaseRun::new(setup, &options)?;
-                    let result = run.run(&options)?;
-                    if report.record(&run, result) {
-                        return Ok(());
-                    }
+            match cases(subject, &candidates, (count, k), options.may_time_out) {
+                Ok(cases) => tasks.extend(cases.into_iter().flat_map(|case| tasks_of(&case, &searches))),
+                Err(text) => {
+                    error = Err(text);
+                    break;
                 }
             }
         }
+        CaseCheck::new(subject, &candidates.ranked[NEIGHBOUR], &tasks, limits.states).run(report, progress)?;
+        if report.failure.is_some() && !report.is_declared {
+            return Ok(());
+        }
+        error?;
         // Few fragments show races, and more fragments have too many interleavings.
         if subject.is_racy() && report.failure.is_some() {
             return Ok(());
         }
     }
     Ok(())
+}
+
+/// Returns the searches of a case.
+fn tasks_of(case: &Case, searches: &[Option<SearchOptions>]) -> Vec<Task> {
+    let k = case.k.map_or(String::new(), |k| format!("k = {k}, "));
+    let case = Case { description: format!("{k}{}", case.description), ..case.clone() };
+    let tasks = searches.iter().flatten().enumerate();
+    tasks.map(|(number, options)| Task { case: case.clone(), options: *options, is_first: number == 0 }).collect()
 }
 
 /// The rank of the neighbour's fragment, which no case uses.

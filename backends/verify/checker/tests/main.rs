@@ -28,4 +28,5 @@ mod shapes;
 mod subjects;
 mod survivors;
 mod survivors_of_races;
+mod threads;
 mod verdicts;

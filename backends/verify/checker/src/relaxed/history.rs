@@ -1,6 +1,11 @@
 //! The history of one word: its writes in modification order, and the accesses that a later one must not race with.
 
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
+use std::rc::Rc;
+
+use crate::fingerprint::Lanes;
 
 use super::view::View;
 
@@ -9,11 +14,32 @@ use super::view::View;
 pub(crate) const REPEATED: usize = 6;
 
 /// The history of one word. Position 0 is the oldest write that a running fragment may still observe.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug)]
 pub(crate) struct History {
     pub(crate) writes: Vec<Write>,
     /// The accesses since the last plain write that a later one may race with.
     pub(crate) accesses: Vec<Recorded>,
+    /// The hash of both, or 0 if it is not computed yet.
+    hash: Cell<u128>,
+}
+
+impl PartialEq for History {
+    fn eq(&self, other: &Self) -> bool {
+        self.writes == other.writes && self.accesses == other.accesses
+    }
+}
+
+impl Eq for History {}
+
+impl Hash for History {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        if self.hash.get() == 0 {
+            let mut lanes = Lanes::default();
+            (&self.writes, &self.accesses).hash(&mut lanes);
+            self.hash.set(lanes.both().max(1));
+        }
+        state.write_u128(self.hash.get());
+    }
 }
 
 /// One write.
@@ -59,7 +85,15 @@ impl History {
         History {
             writes: vec![Write { value, follows: false, view: View::default(), plain: None }],
             accesses: Vec::new(),
+            hash: Cell::new(0),
         }
+    }
+
+    /// Returns a shared history to change.
+    pub(crate) fn to_change(shared: &mut Rc<History>) -> &mut History {
+        let history = Rc::make_mut(shared);
+        history.hash.set(0);
+        history
     }
 
     /// Returns whether it holds nothing but a value.

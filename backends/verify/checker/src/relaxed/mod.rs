@@ -204,7 +204,7 @@ impl RelaxedMemory {
                     );
                 }
                 if plain.is_some() {
-                    Rc::make_mut(&mut self.histories[at].1).accesses.clear();
+                    History::to_change(&mut self.histories[at].1).accesses.clear();
                 }
                 Observed::Value(0)
             }
@@ -311,7 +311,7 @@ impl RelaxedMemory {
         if !self.histories[at].1.writes.last().is_some_and(own) {
             return false;
         }
-        let last = Rc::make_mut(&mut self.histories[at].1).writes.last_mut();
+        let last = History::to_change(&mut self.histories[at].1).writes.last_mut();
         last.map(|write| write.value = value).is_some()
     }
 
@@ -324,7 +324,7 @@ impl RelaxedMemory {
         if write.plain.is_none() {
             write.view.raise(word, position);
         }
-        Rc::make_mut(&mut self.histories[at].1).writes.insert(position as usize, write);
+        History::to_change(&mut self.histories[at].1).writes.insert(position as usize, write);
         self.advance(fragment, word, position);
     }
 
@@ -332,7 +332,7 @@ impl RelaxedMemory {
     fn each_view(&mut self, new: impl Fn(u32, u32) -> u32) {
         for (_, history) in &mut self.histories {
             if history.writes.iter().any(|write| write.view.is_changed_by(&new)) {
-                Rc::make_mut(history).writes.iter_mut().for_each(|write| write.view.map_all(&new));
+                History::to_change(history).writes.iter_mut().for_each(|write| write.view.map_all(&new));
             }
         }
         for views in &mut self.fragments {

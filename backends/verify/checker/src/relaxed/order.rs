@@ -1,10 +1,8 @@
 //! Fences, barriers and critical sections of relaxed memory, and the removal of what no fragment can observe.
 
-use std::rc::Rc;
-
 use fragbuf_interpreter::{Barrier, Event};
 
-use super::history::Recorded;
+use super::history::{History, Recorded};
 use super::view::{MemoryKind, View, clock, fragment_of_clock, is_clock_of, kind_of_clock};
 use super::{RelaxedMemory, Views};
 
@@ -78,7 +76,7 @@ impl RelaxedMemory {
     /// Passes a fragment's view on with the last write of a word.
     pub(super) fn release(&mut self, fragment: usize, at: usize) {
         let views = &mut self.fragments[fragment];
-        if let Some(write) = Rc::make_mut(&mut self.histories[at].1).writes.last_mut() {
+        if let Some(write) = History::to_change(&mut self.histories[at].1).writes.last_mut() {
             write.view = views.current.clone();
             write.view.raise_clocks(fragment, views.epoch);
             views.epoch += 1;
@@ -122,7 +120,7 @@ impl RelaxedMemory {
             let oldest = observable.max(history.repeated_before());
             forgets |= oldest > observable;
             if oldest > 0 {
-                Rc::make_mut(&mut self.histories[at].1).forget_before(oldest);
+                History::to_change(&mut self.histories[at].1).forget_before(oldest);
                 self.each_view(|key, position| if key == word { position.saturating_sub(oldest) } else { position });
             }
         }
@@ -158,7 +156,7 @@ impl RelaxedMemory {
             if history.accesses.iter().all(|one| is_lasting(*word, one) && numbered(one) == one.epoch) {
                 continue;
             }
-            let accesses = &mut Rc::make_mut(history).accesses;
+            let accesses = &mut History::to_change(history).accesses;
             accesses.retain(|one| is_lasting(*word, one));
             accesses.iter_mut().for_each(|one| one.epoch = numbered(one));
         }

@@ -3,12 +3,10 @@
 //! A plain write is a part of the word's history, which the views of fragments order. The other accesses are recorded with the epoch of
 //! their fragment, and the clocks in views order them.
 
-use std::rc::Rc;
-
 use fragbuf_interpreter::Access;
 
 use super::RelaxedMemory;
-use super::history::{AccessKind, Accessor, Recorded};
+use super::history::{AccessKind, Accessor, History, Recorded};
 use super::view::clock;
 
 impl RelaxedMemory {
@@ -59,7 +57,7 @@ impl RelaxedMemory {
         if self.histories[at].1.accesses.iter().any(is_known) {
             return;
         }
-        let accesses = &mut Rc::make_mut(&mut self.histories[at].1).accesses;
+        let accesses = &mut History::to_change(&mut self.histories[at].1).accesses;
         match accesses.iter_mut().find(|one| one.accessor == accessor && one.kind == kind) {
             Some(one) => one.epoch = epoch,
             None => {

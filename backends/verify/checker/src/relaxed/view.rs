@@ -1,11 +1,54 @@
 //! Views: what a fragment, or a reader of a write, must have observed.
 
+use std::hash::{Hash, Hasher};
 use std::rc::Rc;
+
+use crate::fingerprint::Lanes;
 
 /// A map from a key to a number, where absent keys have 0. Keys are words, with positions in their histories, and the clocks of
 /// fragments, with epochs. Entries are sorted by key. Copies share them until one changes; an empty map has none.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct View(Option<Rc<Vec<(u32, u32)>>>);
+#[derive(Clone, Debug, Default)]
+pub(crate) struct View(Option<Rc<Entries>>);
+
+/// The entries of a view that is not empty.
+#[derive(Clone, Debug, Default)]
+struct Entries {
+    sorted: Vec<(u32, u32)>,
+    /// The sum of the hashes of all entries.
+    hash: u128,
+}
+
+/// Returns the hash of an entry, spread over all bits. An entry of the number 0 is absent, and has the hash 0.
+fn entry_hash((key, number): (u32, u32)) -> u128 {
+    if number == 0 {
+        return 0;
+    }
+    let mut lanes = Lanes::default();
+    lanes.write_u64(u64::from(key) << 32 | u64::from(number));
+    lanes.write_u64(0);
+    lanes.write_u64(0);
+    lanes.both()
+}
+
+impl PartialEq for View {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (None, None) => true,
+            (Some(one), Some(other)) => {
+                Rc::ptr_eq(one, other) || (one.hash == other.hash && one.sorted == other.sorted)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Eq for View {}
+
+impl Hash for View {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u128(self.0.as_ref().map_or(0, |entries| entries.hash));
+    }
+}
 
 /// The memory that a workgroup barrier may order by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +90,7 @@ impl View {
     }
 
     fn entries(&self) -> &[(u32, u32)] {
-        self.0.as_ref().map_or(&[], |entries| entries)
+        self.0.as_ref().map_or(&[], |entries| &entries.sorted)
     }
 
     fn find(&self, key: u32) -> Result<usize, usize> {
@@ -67,11 +110,15 @@ impl View {
         if found.is_ok_and(|at| self.entries()[at].1 >= to) {
             return;
         }
-        let entries = Rc::make_mut(self.0.get_or_insert_default());
+        let Entries { sorted, hash } = Rc::make_mut(self.0.get_or_insert_default());
         match found {
-            Ok(at) => entries[at].1 = to,
-            Err(at) => entries.insert(at, (key, to)),
+            Ok(at) => {
+                *hash = hash.wrapping_sub(entry_hash(sorted[at]));
+                sorted[at].1 = to;
+            }
+            Err(at) => sorted.insert(at, (key, to)),
         }
+        *hash = hash.wrapping_add(entry_hash((key, to)));
     }
 
     pub(crate) fn join(&mut self, other: &View) {
@@ -119,10 +166,17 @@ impl View {
         if !self.is_changed_by(&new) {
             return;
         }
-        let entries = Rc::make_mut(self.0.get_or_insert_default());
-        entries.iter_mut().for_each(|(key, number)| *number = new(*key, *number));
-        entries.retain(|(_, number)| *number != 0);
-        if entries.is_empty() {
+        let Entries { sorted, hash } = Rc::make_mut(self.0.get_or_insert_default());
+        for entry in sorted.iter_mut() {
+            let number = new(entry.0, entry.1);
+            if number != entry.1 {
+                *hash = hash.wrapping_sub(entry_hash(*entry));
+                entry.1 = number;
+                *hash = hash.wrapping_add(entry_hash(*entry));
+            }
+        }
+        sorted.retain(|(_, number)| *number != 0);
+        if sorted.is_empty() {
             self.0 = None;
         }
     }
