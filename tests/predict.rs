@@ -99,3 +99,45 @@ fn the_plot_marks_k() {
     let svg = std::fs::read_to_string(plot).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains(&format!("k = {};", found["k"])));
 }
+
+#[test]
+fn the_guide_shows_the_output_of_its_command() {
+    let guide = std::fs::read_to_string("src/guide/memory.md").unwrap();
+    let command = guide.split("```sh\nfragbuf ").nth(1).unwrap().lines().next().unwrap();
+    let output = fragbuf(&command.split(' ').collect::<Vec<_>>());
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(guide.contains(&format!("```text\n{printed}```")), "{printed}");
+}
+
+/// Every frame of an animation has an image, and k, bytes and hit ratio of its own.
+#[test]
+fn an_animation_has_an_image_and_a_line_per_frame() {
+    let folder = empty_folder("animation");
+    let out = folder.join("view.png");
+    let scene = ["--scene", "builtin:hairball,strands=40", "--size", "40x30", "--device", "cpu"];
+    let run = |options: &[&str]| {
+        let render = ["render", "unified", "--frames", "3", "--orbit", "90", "--out", out.to_str().unwrap()];
+        fragbuf(&[render.as_slice(), scene.as_slice(), options].concat())
+    };
+    let output = run(&[]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(printed.lines().count(), 3);
+    let images: Vec<Vec<u8>> = (0..3).map(|n| std::fs::read(folder.join(format!("view-00{n}.png"))).unwrap()).collect();
+    assert!(images[0] != images[1] && images[1] != images[2] && !out.exists());
+    let frames: serde_json::Value = serde_json::from_slice(&run(&["--json"]).stdout).unwrap();
+    for (line, frame) in printed.lines().zip(frames.as_array().unwrap()) {
+        let (k, bytes, ratio) = (&frame["k"], &frame["bytes"], &frame["hit_ratio"]);
+        assert!(line.ends_with(&format!(": k = {k}, {bytes} bytes, hit ratio {ratio}")), "{line}");
+        assert_eq!(ratio, 1.0);
+    }
+    let fails = run(&["--camera", "clip"]);
+    assert!(stderr(&fails).contains("--camera orbit"), "{}", stderr(&fails));
+}
+
+fn empty_folder(name: &str) -> std::path::PathBuf {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}

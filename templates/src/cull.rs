@@ -22,8 +22,39 @@ pub(crate) fn rows() -> Vec<Row> {
         },
         occupancy(),
         occupancy_early(),
+        temporal(),
         z_prepass(),
     ]
+}
+
+/// Culls by the bounds of the last frame, which one pass over the scene confirms, and saves the bounds after the store pass.
+fn temporal() -> Row {
+    let last =
+        Resource::new("last_bounds", Element::Word, "the bound at the end of the last frame; any value is sound");
+    let confirmed = Resource::new("confirmed", Element::Word, "fragments of this frame within the last bound");
+    let confirm = Pass::geometry("confirm", "key_range");
+    let confirm = confirm.uses("last_bounds", Access::Read).uses("confirmed", Access::Atomic);
+    let save = Pass::compute("save_bounds", "occupancy_bound", "ceil_div(width, 8)", "ceil_div(height, 8)");
+    let save = save.uses("last_bounds", Access::Plain).uses("keys", Access::Hinted);
+    Row {
+        template: Some(template!("cull/temporal")),
+        resources: vec![last.by("pixel", "pixels").persistent(), confirmed.by("pixel", "pixels").cleared(0)],
+        uses: vec![Use::new("last_bounds", Access::Read), Use::new("confirmed", Access::Read)],
+        calls: vec!["storage"],
+        provides: vec![Capability::CullInShader],
+        requires: vec![Capability::AcceptsKBestOnly, Capability::ConservativeBound, Capability::KeyPerSlot],
+        needs: vec![Feature::FragmentAtomics],
+        edits: vec![
+            Edit::Before("store".to_owned(), vec![Step::Pass(confirm)]),
+            Edit::After("store".to_owned(), vec![Step::Pass(save)]),
+        ],
+        ..Row::new(
+            "cull",
+            "temporal",
+            "fragments beyond the worst kept one of the last frame, if a pre-pass confirms it, and what `early` rejects",
+            "K15 §6",
+        )
+    }
 }
 
 /// Culls by the result of one pass over the scene before the store pass.

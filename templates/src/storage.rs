@@ -15,7 +15,7 @@ mod worst_first;
 
 use crate::conditions::keeps_one;
 use crate::vocabulary::{Access, Capability, Element, Feature, Hazard, Pass, Permits, Resource, Row, Step};
-use parts::{REPLACES_WORST, array_resources, reset, resolve};
+use parts::{REPLACES_WORST, SLOTS, array_resources, reset, resolve};
 
 pub(crate) use ranges::DEPTH_RANGE;
 
@@ -79,9 +79,6 @@ fn single() -> Row {
     }
 }
 
-/// The capabilities of the sorted array beside those of every array that replaces its worst entry.
-const SORTED_ARRAY: [Capability; 3] = [Capability::RaceTolerant, Capability::KeepsArrival, Capability::SlotsPerPixel];
-
 fn sorted_array() -> Row {
     Row {
         template: Some(template!("storage/sorted_array")),
@@ -96,7 +93,7 @@ fn sorted_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        provides: [REPLACES_WORST.as_slice(), &SORTED_ARRAY].concat(),
+        provides: [REPLACES_WORST.as_slice(), &SLOTS, &[Capability::RaceTolerant, Capability::KeepsArrival]].concat(),
         // Entries are sorted by key.
         implies: vec![("depth_key".into(), Capability::Sorted), ("depth_key".into(), Capability::OrderedSlots)],
         needs: vec![Feature::FragmentAtomics],

@@ -60,7 +60,7 @@ fn front_to_back_peeling_fits() {
 
 #[test]
 fn a_host_decision_fits() {
-    insta::assert_snapshot!("predict_k", planned("predict_k"));
+    insta::assert_snapshot!("unified", planned("unified"));
 }
 
 #[test]

@@ -2,37 +2,16 @@
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{
-    Access, Axis, Blend, Capability, Compare, DepthState, Edit, Element, Feature, Host, HostCall, HostFunction,
-    KeepDefault, Pass, Repeat, Resource, Row, Step, Technique, TextureFormat, Until,
+    Access, Blend, Capability, Compare, DepthState, Element, Feature, KeepDefault, Pass, Repeat, Resource, Row, Step,
+    Technique, TextureFormat, Until,
 };
 
 pub(super) fn registry() -> Registry {
-    let allocation = Axis {
-        key: "allocation",
-        summary: "how much memory is allocated",
-        default: Some("as_described"),
-        chosen: true,
-    };
     Registry::builtin()
-        .with_axis(allocation, "overflow")
-        .with(Row::new("allocation", "as_described", "as the description specifies", ""))
-        .with(predict_k())
-        .with(Row { host: Some(HostFunction(deepest)), ..Row::new("host", "deepest", "the last bin with a pixel", "") })
         .with(front_to_back())
         .with(dual())
         .with_technique(technique("f2b", KeepDefault::All, vec![("storage", "front_to_back")]))
         .with_technique(technique("dual", KeepDefault::All, vec![("storage", "dual")]))
-        .with_technique(technique(
-            "predict_k",
-            KeepDefault::Best(8),
-            vec![("storage", "bounded_regions"), ("allocation", "predict_k")],
-        ))
-}
-
-/// Returns the index of the last non-empty bin of a histogram, plus one.
-fn deepest(call: &HostCall<'_>) -> Result<Vec<u64>, String> {
-    let last = call.reads.first().and_then(|bins| bins.iter().rposition(|pixels| *pixels > 0));
-    Ok(last.map(|bin| bin as u64 + 1).into_iter().collect())
 }
 
 fn technique(key: &str, keep: KeepDefault, choices: Vec<(&'static str, &'static str)>) -> Technique {
@@ -111,23 +90,5 @@ fn dual() -> Row {
         needs: vec![Feature::MinMaxBlend],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "dual", "two layers per iteration", "Bavoil & Myers 2008")
-    }
-}
-
-/// K15 Eq. 4-7: k from a histogram of depth complexity, a memory budget and a hit ratio.
-fn predict_k() -> Row {
-    let histogram = Pass::compute("histogram", "histogram", "ceil_div(pixels, 256)", "1")
-        .uses("counts", Access::Read)
-        .uses("histogram", Access::Atomic);
-    let decide = Host::new("deepest").reads_all("histogram").sets("k");
-    Row {
-        edits: vec![
-            Edit::AddResource(
-                Resource::new("histogram", Element::Word, "pixels by fragment count").by("bin", "1024").cleared(0),
-            ),
-            Edit::After("count".to_owned(), vec![Step::Pass(histogram), Step::Host(decide)]),
-        ],
-        requires: vec![Capability::Counted],
-        ..Row::new("allocation", "predict_k", "k from a budget and a hit ratio", "K15 Eq. 4-7")
     }
 }

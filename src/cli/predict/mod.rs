@@ -8,8 +8,8 @@ mod plot;
 
 use std::path::PathBuf;
 
-use fragbuf::vocabulary::Capability;
-use fragbuf::{Form, Plan, Registry, Request, TARGETS, generate};
+use fragbuf::vocabulary::Row;
+use fragbuf::{Form, Plan, Registry, Request, TARGETS, Variant, generate};
 use fragbuf_codegen::SymbolId;
 use fragbuf_frame::{Values, buffer_bytes};
 use fragbuf_model::MAX_K;
@@ -123,15 +123,7 @@ impl Predict {
     /// Counts the fragments of the scene: a frame that keeps one fragment per pixel.
     fn count(&self, input: &mut Input, registry: &Registry) -> Result<Histogram, Failure> {
         let one = [self.set.as_slice(), &[("k".to_owned(), "1".to_owned())]].concat();
-        let variant = input.variant(&one, registry)?;
-        let storage = variant.choices.iter().find(|chosen| chosen.axis == "storage");
-        let counts = storage.and_then(|chosen| chosen.alternatives.first());
-        let is_counted = counts.is_some_and(|selected| selected.row.provides.contains(&Capability::Counted));
-        let predicted = if is_counted { "predicted_exact" } else { "predicted" };
-        let allocation = [("allocation", predicted), ("allocation.budget", GREATEST_BUDGET)];
-        let allocation = allocation.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        let set = [one.as_slice(), &allocation].concat();
-        let variant = input.variant(&set, registry)?;
+        let (set, variant) = with_histogram(&one, input, registry)?;
         let measured = (self.device.clone(), None);
         let view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
         let progress = Progress::new();
@@ -194,6 +186,27 @@ impl Predict {
             "histogram": histogram.bins(),
         })
     }
+}
+
+/// Adds the first row of `allocation` with a budget that the description can have.
+fn with_histogram(
+    set: &[(String, String)],
+    input: &mut Input,
+    registry: &Registry,
+) -> Result<(Vec<(String, String)>, Variant), Failure> {
+    const BUDGET: &str = "budget";
+    let has_budget = |row: &&Row| row.parameters.iter().any(|parameter| parameter.name == BUDGET);
+    let mut refused = None;
+    for row in registry.rows_of("allocation").filter(has_budget) {
+        let added = [("allocation", row.key.as_str()), ("allocation.budget", GREATEST_BUDGET)];
+        let added = added.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let set = [set, &added].concat();
+        match input.variant(&set, registry) {
+            Ok(variant) => return Ok((set, variant)),
+            Err(failure) => refused = refused.or(Some(failure)),
+        }
+    }
+    Err(refused.unwrap_or_else(|| Failure::Input("no row of `allocation` has a budget".to_owned())))
 }
 
 /// The greatest budget of a description, in MiB: the frame that counts keeps one fragment per pixel anyway.

@@ -31,7 +31,7 @@ pub(super) fn svg(title: &str, histogram: &Histogram, prediction: &Prediction) -
             .build_cartesian_2d(0.0..right, 0.0..1.05 * most)
             .map_err(failure)?;
         let mut mesh = chart.configure_mesh();
-        mesh.disable_x_mesh().x_desc("fragments per pixel").y_desc("pixels").axis_style(MUTED);
+        mesh.max_light_lines(0).disable_x_mesh().x_desc("fragments per pixel").y_desc("pixels").axis_style(MUTED);
         mesh.label_style((FONT, 12))
             .x_label_formatter(&|x| format!("{x:.0}"))
             .y_label_formatter(&|y| format!("{y:.0}"));

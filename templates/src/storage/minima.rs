@@ -15,6 +15,12 @@ pub(super) fn cascade() -> Row {
             .by("word", "value_words"),
     );
     let refine = Pass::geometry("refine", "refine").uses("keys", Access::Read).uses("value_words", Access::Atomic);
+    let row = by_minima(Row::new(
+        "storage",
+        "cascade",
+        "k sorted entries per pixel, refined word by word by cascades of atomic minima",
+        "after Liu et al. 2010 (multidepth); K15 §2",
+    ));
     Row {
         template: Some(template!("storage/cascade")),
         resources,
@@ -28,12 +34,8 @@ pub(super) fn cascade() -> Row {
             }),
             resolve(&["keys", "value_words"]),
         ],
-        ..by_minima(Row::new(
-            "storage",
-            "cascade",
-            "k sorted entries per pixel, refined word by word by cascades of atomic minima",
-            "after Liu et al. 2010 (multidepth); K15 §2",
-        ))
+        provides: [row.provides.as_slice(), &[Capability::KeyPerSlot]].concat(),
+        ..row
     }
 }
 

@@ -24,6 +24,9 @@ pub(super) const REPLACES_WORST: [Capability; 7] = [
     Capability::ReportsWholeFragments,
 ];
 
+/// The capabilities of arrays of k slots per pixel, with keys as a resource of their own.
+pub(super) const SLOTS: [Capability; 2] = [Capability::SlotsPerPixel, Capability::KeyPerSlot];
+
 /// Returns the pass that resets every pixel by writing these resources.
 pub(super) fn reset(resources: &[&str]) -> Step {
     Step::Pass(resources.iter().fold(reset_pass(), |pass, resource| pass.uses(resource, Access::Plain)))

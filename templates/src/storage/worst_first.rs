@@ -1,6 +1,6 @@
 //! Storages that keep the worst entry at slot 0 and replace it inside a critical section.
 
-use super::parts::{REPLACES_WORST, array_resources, reset, resolve};
+use super::parts::{REPLACES_WORST, SLOTS, array_resources, reset, resolve};
 use crate::vocabulary::{Access, Capability, Element, Feature, Parameter, Pass, Resource, Row, Soundness, Step};
 
 pub(super) fn max_array() -> Row {
@@ -36,7 +36,7 @@ pub(super) fn revised_array() -> Row {
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["overflow"],
-        provides: [REPLACES_WORST.as_slice(), &[Capability::SlotsPerPixel]].concat(),
+        provides: [REPLACES_WORST.as_slice(), &SLOTS].concat(),
         requires: vec![Capability::MutualExclusion],
         needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],
@@ -75,7 +75,7 @@ fn worst_first(row: Row) -> Row {
             resolve(&["keys", "entries", "kept_counts"]),
         ],
         calls: vec!["overflow"],
-        provides: [REPLACES_WORST.as_slice(), &[Capability::SlotsPerPixel]].concat(),
+        provides: [REPLACES_WORST.as_slice(), &SLOTS].concat(),
         requires: vec![Capability::MutualExclusion],
         needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "spin_lock".into()), ("cull".into(), "early".into())],

@@ -26,6 +26,7 @@ names! {
         DisplacesUnderLock "a storage in which a better fragment displaces a kept one inside the critical section";
         CanReplace "a full storage whose worst fragment can be replaced inside the critical section";
         OrderedSlots "slots in depth order, each of which can be replaced inside the critical section";
+        KeyPerSlot "a resource with the key of each of the k best fragments of a pixel, equal keys included";
         SlotsPerPixel "k slots per pixel, which a reset pass empties";
         Counted "the number of fragments of each pixel before they are stored";
         ReportsWholeFragments "a storage that reports each lost fragment as a whole, with key and payload";

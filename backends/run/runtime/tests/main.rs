@@ -43,6 +43,7 @@ mod routing;
 mod sizing;
 mod sloped;
 mod sorts;
+mod temporal;
 mod textures;
 mod ties;
 mod translations;
