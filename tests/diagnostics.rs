@@ -28,7 +28,7 @@ const CASES: &[(&str, &[Expected])] = &[
         "buffer B from kplus_array {\n    sync: spin_lock { limt: 9 };\n}",
         &[("unknown-option", 2, 23, "did you mean `limit`?")],
     ),
-    ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("invalid-option", 2, 30, "4096")]),
+    ("buffer B from kplus_array {\n    sync: spin_lock { limit: 0 };\n}", &[("invalid-option", 2, 30, "16384")]),
     ("buffer B from kplus_array {\n    sync: spin_lock { limit: many };\n}", &[("invalid-option", 2, 30, "tries")]),
     (
         "buffer B from kplus_array {\n    cull: early { x: 1 };\n}",

@@ -81,6 +81,7 @@ fn a_missing_file_is_the_same_error_for_every_extension() {
     for (description, code, expected) in [
         ("glas.fragbuf", 3, "does not exist: did you mean `glass.fragbuf`?"),
         ("./glass", 3, "did you mean `./glass.fragbuf`?"),
+        ("glass", 2, "no technique `glass`: for the file, write `glass.fragbuf`"),
         ("glass.txt", 3, "does not exist"),
         ("kplus_array.fragbuf", 3, "give the key of the technique alone, `kplus_array`"),
         (".", 3, "is a folder"),

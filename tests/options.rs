@@ -253,6 +253,7 @@ fn the_readme_has_every_option() {
         "render",
         "compare",
         "devices",
+        "predict",
         "completions",
     ] {
         let help = stdout(&fragbuf(&[command, "--help"], root));

@@ -87,9 +87,15 @@ fn bad_input_has_its_numbers() {
         let message = failed(&["kplus_array", &format!("--hit-ratio={ratio}")]);
         assert!(message.contains("at most 1"), "{message}");
     }
-    // A storage that has neither slots per pixel nor counts.
-    let message = failed(&["kb_ab_ll"]);
-    assert!(message.contains("k slots per pixel"), "{message}");
+    // Storages that have neither slots per pixel nor regions limited to k.
+    for key in ["kb_ab_ll", "ab_ll", "z_buffer"] {
+        let message = failed(&[key]);
+        assert!(message.contains("k slots per pixel") && message.contains("kplus_array,"), "{message}");
+    }
+    for set in ["k=4", "allocation=described", "allocation.hit_ratio=50"] {
+        let message = failed(&["kplus_array", "--set", set]);
+        assert!(message.contains("`predict` chooses k itself"), "{message}");
+    }
 }
 
 #[test]
@@ -128,7 +134,7 @@ fn an_animation_has_an_image_and_a_line_per_frame() {
     let frames: serde_json::Value = serde_json::from_slice(&run(&["--json"]).stdout).unwrap();
     for (line, frame) in printed.lines().zip(frames.as_array().unwrap()) {
         let (k, bytes, ratio) = (&frame["k"], &frame["bytes"], &frame["hit_ratio"]);
-        assert!(line.ends_with(&format!(": k = {k}, {bytes} bytes, hit ratio {ratio}")), "{line}");
+        assert!(line.ends_with(&format!(": k = {k}, {bytes} bytes, hit ratio 1.0000")), "{line}");
         assert_eq!(ratio, 1.0);
     }
     let fails = run(&["--camera", "clip"]);
@@ -140,4 +146,55 @@ fn empty_folder(name: &str) -> std::path::PathBuf {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
+}
+
+/// Bytes, limits and slices of a frame follow from the words per pixel.
+#[test]
+fn show_computes_what_a_frame_needs() {
+    let show = |arguments: &[&str]| {
+        let output = fragbuf(&[&["show"], arguments, &["--json"]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        found[0].clone()
+    };
+    let limit = |found: &serde_json::Value, name: &str| {
+        let limits = found["limits"].as_array().unwrap();
+        limits.iter().find(|limit| limit["webgpu"] == name).unwrap()["needed"].as_u64().unwrap()
+    };
+    let found = show(&["kplus_array", "--size", "1920x1080"]);
+    let pixels = 1920 * 1080;
+    assert_eq!(found["bytes"], pixels * (8 * 8 + 8) + COUNTERS);
+    assert_eq!(limit(&found, "maxStorageBufferBindingSize"), 8 * 4 * pixels);
+    assert_eq!((&found["slices"], &found["slice_rows"]), (&1.into(), &1080.into()));
+    // 128 MiB hold the keys of 1024 rows.
+    let found = show(&["kplus_array", "--size", "4096x4096"]);
+    assert_eq!((&found["slices"], &found["slice_rows"]), (&4.into(), &1024.into()));
+    // A pool of 12 bytes per fragment and a word per pixel: 5 rows of 16384 pixels have 5 * 16384 * 200 nodes.
+    let found = show(&["ab_ll", "--size", "16384x100", "--fragments", "200"]);
+    // The cursor of the pool is a word.
+    assert_eq!(found["bytes"], 16384 * 100 * (200 * 12 + 4) + COUNTERS + 4);
+    let nodes = found["resources"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|resource| resource["bytes"].as_u64().unwrap())
+        .max()
+        .unwrap();
+    let rows = (134_217_728 * 100) / nodes;
+    assert_eq!((&found["slice_rows"], &found["slices"]), (&rows.into(), &100_u64.div_ceil(rows).into()));
+}
+
+/// A user's row that provides a capability without what it stands for.
+#[test]
+fn a_capability_without_its_pass_is_an_error_of_the_row() {
+    let folder = empty_folder("capability");
+    let row = std::fs::read_to_string("examples/user_storage/first_k.wgsl").unwrap();
+    let row = row.replace("//: provides ", "//: provides slots-per-pixel, ");
+    assert!(row.contains("slots-per-pixel"));
+    std::fs::write(folder.join("u.wgsl"), row).unwrap();
+    let file = folder.join("u.fragbuf");
+    std::fs::write(&file, "buffer U {\n    storage: wgsl(\"u.wgsl\");\n    keep 8;\n    allocation: predicted;\n}\n")
+        .unwrap();
+    let message = stderr(&fragbuf(&["show", file.to_str().unwrap()]));
+    assert!(message.contains("error[invalid-row]") && message.contains("the pass `reset`"), "{message}");
 }

@@ -198,7 +198,7 @@ fn the_header_of_a_buffer_has_suggestions() {
         ("buffer B form kplus_array", "unexpected-token", "did you mean `from`?"),
         ("buffer B using kplus_array", "unexpected-token", "write `from kplus_array`"),
         ("buffer B kplus_array", "unexpected-token", "write `from kplus_array`"),
-        ("buffer B: kplus_array", "unexpected-token", "write `buffer Name from preset"),
+        ("buffer B: kplus_array", "unexpected-token", "write `buffer Name from kplus_array"),
     ] {
         let error = only(&format!("{header} {{\n    keep 4;\n}}"), &[]);
         assert!(error.code.name == code && error.help.contains(expected), "{header}: {error}");
@@ -542,4 +542,44 @@ fn a_condition_points_to_the_item_that_violates_it() {
     let error = only("buffer B from ab_ll {\n    fragment { depth: f32 }\n}", &[]);
     let closure = error.help.split('`').find(|part| part.starts_with("resolve |")).unwrap();
     assert_eq!(found(&format!("buffer B from ab_ll {{\n    fragment {{ depth: f32 }}\n    {closure}\n}}"), &[]), []);
+}
+
+/// The replacement repeats the user's condition, criterion or arguments, and compiles.
+#[test]
+fn replacements_repeat_what_the_user_wrote() {
+    for (wrong, right) in [
+        ("where f.depth < 0.5;", "where |f| f.depth < 0.5;"),
+        ("where f.color.w <= 0.1 && f.depth < 0.9;", "where |f| f.color.w <= 0.1 && f.depth < 0.9;"),
+    ] {
+        let error = only(&format!("buffer B from kplus_array {{ {wrong} }}"), &[]);
+        assert_eq!(code(&error.help), right, "{error}");
+        assert_eq!(found(&format!("buffer B from kplus_array {{ {right} }}"), &[]), []);
+    }
+    for (wrong, right) in [
+        ("f.depth.smoothstep(0.25, 1.0)", "((f.depth - 0.25) / (1.0 - 0.25))"),
+        ("f.depth.log(2.0)", "f.depth.log2()"),
+        ("f.depth.log(10.0)", "(f.depth.ln() / 10.0_f32.ln())"),
+        ("max(f.color.xyz())", "f.color.xyz().max_element()"),
+        ("max(f.depth, 0.5, f.color.w)", "f.depth.max(0.5).max(f.color.w)"),
+        ("f.depth.lerp(1.0, 0.5)", "(f.depth + (1.0 - f.depth) * 0.5)"),
+    ] {
+        let text = |value: &str| format!("buffer B from kplus_array {{ where |f| {value} < 0.5; }}");
+        let error = only(&text(wrong), &[]);
+        let replacement = code(&error.help);
+        assert!(replacement.contains(right), "{error}");
+        assert_eq!(found(&text(replacement), &[]), [], "{replacement}");
+    }
+}
+
+#[test]
+fn choices_and_names_have_suggestions_for_what_was_meant() {
+    let error = only("buffer B from ab_ll { sort: bitonic, resolve: complexity; }", &[]);
+    assert_eq!(error.help, "end the item with `;`: `sort: bitonic; resolve: …`");
+    let error = only("buffer B from kplus_array { sync: spin_lock(100); }", &[]);
+    assert_eq!(error.help, "options are in braces: `{ … }`");
+    let error = only("buffer B from kplus { }", &[]);
+    assert!(error.help.contains("did you mean `kplus_array`?"), "{error}");
+    let error =
+        only("buffer B from kplus_array { uniform { far: f32 } where |f, u| f.depth < u.far; }", &[("far", "1")]);
+    assert_eq!(error.help, "it is a uniform: write `--uniform far=1`");
 }

@@ -68,10 +68,21 @@ pub struct Plan {
 /// Plans one selection of a variant's rows.
 pub fn plan(variant: &Variant, selection: &Selection, registry: &Registry) -> Result<Plan, Diagnostics> {
     let layout = Layout::of(variant, selection);
+    let has_user_row = selection
+        .rows
+        .iter()
+        .any(|selected| selected.row.template.as_ref().is_some_and(|template| template.user_file.is_some()));
     let error = |problem: String| {
-        let help =
-            "report this defect with the description; a row of your own may name only resources that it declares";
-        Diagnostics::from(Diagnostic::new(codes::INTERNAL, &variant.name.span, problem, help))
+        // What built-in rows need of each other is tested; a user's row may provide a capability without the passes behind it.
+        let (code, help) = match has_user_row {
+            true => (
+                codes::INVALID_ROW,
+                "the header of the user file must declare the passes and buffers that the capabilities stand for which it provides: \
+                 add them, such as `//: pass reset: …`, or leave out the capability",
+            ),
+            false => (codes::INTERNAL, "report this defect with the description"),
+        };
+        Diagnostics::from(Diagnostic::new(code, &variant.name.span, problem, help))
     };
     let rows = || selection.rows.iter().map(|selected| &*selected.row);
     let (mut symbols, constants) = formulas::symbols(variant, selection, &layout)?;

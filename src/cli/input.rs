@@ -166,6 +166,10 @@ fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Fa
     if !usage.is_empty() {
         return Err(Failure::Usage(format!("`{argument}` is no description in a .fragbuf file: {usage}")));
     }
+    let whole = path.with_extension("fragbuf");
+    if !argument.contains(['/', '\\', '.']) && !path.exists() && whole.is_file() {
+        return Err(Failure::Usage(format!("no technique `{argument}`: for the file, write `{}`", whole.display())));
+    }
     let looks_like_file = extension == "fragbuf" || argument.contains(['/', '\\', '.']);
     if path.is_dir() || (looks_like_file && !path.exists()) {
         return Err(Failure::Files(missing_description(argument, path, registry)));
@@ -186,7 +190,10 @@ fn missing_description(argument: &str, path: &Path, registry: &Registry) -> Stri
     names.sort();
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let whole = if name.ends_with(".fragbuf") { name.to_owned() } else { format!("{name}.fragbuf") };
-    let nearest = nearest_name(&whole, &names).filter(|_| !path.is_dir());
+    // Without the extension, which all have in common.
+    let stem = |name: &str| name.strip_suffix(".fragbuf").unwrap_or(name).to_owned();
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let nearest = nearest_name(&stem(&whole), &stems).filter(|_| !path.is_dir()).map(|stem| format!("{stem}.fragbuf"));
     let technique = path.file_stem().and_then(|stem| registry.technique(stem.to_str()?)).filter(|_| !path.is_dir());
     let help = match (technique, nearest.map(|nearest| path.with_file_name(nearest))) {
         (Some(technique), _) => format!("give the key of the technique alone, `{}`", technique.key),

@@ -45,6 +45,8 @@ mod render;
 mod rendering;
 mod show;
 #[cfg(feature = "pictures")]
+mod size;
+#[cfg(feature = "pictures")]
 mod statistics;
 mod table_1;
 mod targets;

@@ -123,5 +123,6 @@ fn line(number: u32, found: &Value) -> String {
         Value::Null => "-".to_owned(),
         value => value.to_string(),
     };
-    format!("frame {number}: k = {}, {} bytes, hit ratio {}\n", value("k"), value("bytes"), value("hit_ratio"))
+    let ratio = found["hit_ratio"].as_f64().map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.4}"));
+    format!("frame {number}: k = {}, {} bytes, hit ratio {ratio}\n", value("k"), value("bytes"))
 }

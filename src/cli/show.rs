@@ -24,6 +24,14 @@ pub(crate) struct Show {
     /// Print one stage: plan, manifest, or a target with text files
     #[arg(long, value_name = "STAGE", conflicts_with = "json")]
     dump: Option<String>,
+    /// Print the bytes of a frame of this size in pixels, the limits that a device must have for it, and its slices; with `--json` as JSON
+    #[cfg(feature = "pictures")]
+    #[arg(long, value_name = "WxH", value_parser = super::view::size, conflicts_with_all = ["page", "dump"])]
+    size: Option<(u32, u32)>,
+    /// Fragments of an average pixel, for storages whose memory depends on them
+    #[cfg(feature = "pictures")]
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "size", value_parser = clap::value_parser!(u32).range(1..))]
+    fragments: u32,
 }
 
 impl Show {
@@ -51,6 +59,11 @@ impl Show {
         let generation = generate(&variant, &request, &registry).map_err(|errors| input.failure(errors))?;
         if !one.is_empty() && generation.plans.is_empty() {
             return Err(targets::unsupported(&input, &variant, &request, &self.set, &registry));
+        }
+        #[cfg(feature = "pictures")]
+        if let Some(size) = self.size {
+            let frame = super::size::FrameSize { size, per_pixel: self.fragments };
+            return output::print(&super::size::sizes(&generation, frame, self.json)?);
         }
         output::print(&match stage {
             "manifest" => output::json(&manifest(&generation, 0)),

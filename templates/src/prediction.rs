@@ -119,9 +119,13 @@ pub(crate) fn predict_k(call: &HostCall<'_>) -> Result<Vec<u64>, String> {
     let histogram = Histogram::of_words(call.reads.first().copied().unwrap_or_default());
     let value = |name: &str| (call.symbol)(name).ok_or_else(|| format!("`{name}` has no value"));
     let (budget, percent) = (value("BUDGET_MIB")? << 20, value("HIT_PERCENT")?);
-    let most = u32::try_from(value("capacity")?).unwrap_or(u32::MAX);
+    // The capacity of the code may be greater than the k of the description.
+    let most = u32::try_from(value("capacity")?.min(value("keep")?)).unwrap_or(u32::MAX);
     // A size without a value is beyond any budget.
-    let bytes = |k: u32, kept: u64| (call.bytes)(&[("k", k.into()), ("kept", kept)]).unwrap_or(u64::MAX);
+    let bytes = |k: u32, kept: u64| {
+        let assumed = [("k", k.into()), ("kept", kept), ("fragments", histogram.fragments())];
+        (call.bytes)(&assumed).unwrap_or(u64::MAX)
+    };
     match histogram.predict(HitRatio(percent, 100), budget, most, &bytes) {
         Ok(prediction) => Ok(vec![prediction.k.into()]),
         Err(BudgetTooSmall { needed, budget }) => Err(format!(

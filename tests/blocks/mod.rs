@@ -51,6 +51,7 @@ const ELSEWHERE: &[(&str, &str, usize, &str)] = &[
     ("README.md", "text", 1, "tidy::the_readme_shows_what_is_generated"),
     ("src/guide/check.md", "text", 7, "check::the_guide_shows_the_output_of_its_commands"),
     ("src/guide/check.md", "wgsl", 1, "check::the_guide_shows_the_output_of_its_commands"),
+    ("src/guide/memory.md", "text", 1, "predict::the_guide_shows_the_output_of_its_command"),
     ("src/guide/diagnostics.md", "fragbuf", 6, "tidy::the_guide_shows_real_diagnostics"),
     ("src/guide/diagnostics.md", "text", 6, "tidy::the_guide_shows_real_diagnostics"),
 ];

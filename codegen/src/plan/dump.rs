@@ -9,7 +9,7 @@ use crate::{Action, Command, Decision, Key, Loop, LoopUntil, Parity, Range, Reso
 
 impl Display for Plan {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let technique = self.variant.technique.as_deref().unwrap_or("no preset");
+        let technique = self.variant.technique.as_deref().unwrap_or("no technique");
         writeln!(f, "plan {} ({technique})", self.variant.name.value)?;
         match self.variant.keep {
             Some(k) => writeln!(f, "  keep       {k} of capacity {}", self.capacity())?,

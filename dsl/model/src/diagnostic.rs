@@ -216,7 +216,7 @@ codes! {
         INVALID_OPTION "invalid-option" "The option's value is outside its range.";
         K_OUT_OF_RANGE "k-out-of-range" "The number of kept fragments is out of range.";
         MISSING_DEPTH "missing-depth" "A fragment needs `depth: f32`: the kept fragments are sorted by it.";
-        MISSING_STORAGE "missing-storage" "Neither the description nor a preset chooses a storage.";
+        MISSING_STORAGE "missing-storage" "Neither the description nor a technique chooses a storage.";
         MISSING_CAPABILITY "missing-capability" "A choice requires something that neither the other choices nor the description provide.";
         KEEP_MISMATCH "keep-mismatch" "The storage keeps k fragments and the description all, or the reverse.";
         UNSUPPORTED_TARGET "unsupported-target" "The target cannot express the variant.";

@@ -1,14 +1,25 @@
 //! Suggests a known name in place of an unknown one.
 
-/// Returns the known name with the fewest edits from `name`, if at most a third of the letters differ. Case is ignored.
+/// Returns the known name with the fewest edits from `name`, if at most a third of the letters differ, else the first that begins with
+/// it. Case is ignored.
 pub fn nearest_name<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
     let limit = (name.chars().count() / 3).max(1);
-    known
+    let near = known
         .iter()
         .map(|candidate| (distance(name, candidate.as_ref()), candidate.as_ref()))
         .filter(|(edits, candidate)| *edits <= limit && candidate.chars().count() > *edits)
         .min_by_key(|(edits, _)| *edits)
-        .map(|(_, candidate)| candidate)
+        .map(|(_, candidate)| candidate);
+    near.or_else(|| completed(name, known))
+}
+
+/// Returns the first known name that begins with these letters, of which there must be at least three.
+fn completed<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
+    let begins = |candidate: &&str| {
+        let start = candidate.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
+        start && name.chars().count() >= 3
+    };
+    known.iter().map(AsRef::as_ref).find(begins)
 }
 
 /// Returns the number of insertions, deletions, replacements and swaps of neighbouring letters between two names
@@ -41,6 +52,7 @@ mod tests {
         let known = ["insertion", "none"];
         assert_eq!(nearest_name("insertoin", &known), Some("insertion"));
         assert_eq!(nearest_name("bitonic", &known), None);
+        assert_eq!((nearest_name("Ins", &known), nearest_name("in", &known)), (Some("insertion"), None));
         assert_eq!((distance("kitten", "sitting"), distance("ab", "Ba")), (3, 1));
     }
 }

@@ -110,6 +110,14 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
     match (name, given) {
         ("range" | "xrange", given) => return Some(range(given)),
         ("not", [operand]) => return Some(format!("write `!{}`", operand.source)),
+        ("log", [x, base]) if base.source.parse() == Ok(2.0_f32) => {
+            return Some(format!("write `{}.log2()`", receiver_source(x)));
+        }
+        ("log", [x, base]) => return Some(format!("write `({}.ln() / {}.ln())`", receiver_source(x), floating(base))),
+        ("max" | "min", [only]) if only.size().is_some() => {
+            return Some(format!("it is a method: write `{}.{name}_element()`", only.source));
+        }
+        ("max" | "min", [first, second, rest @ ..]) if !rest.is_empty() => return several(name, (first, second), rest),
         _ => {}
     }
     let is_method = methods::is_method(name);
@@ -130,6 +138,25 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
         }
         None => Some(each_component(&filled(row.number, &components(given)))),
     }
+}
+
+/// Returns the help for `max(a, b, c)` and the like: a chain of calls of a method of two operands.
+fn several(name: &str, (first, second): (&Given, &Given), rest: &[Given]) -> Option<String> {
+    let of_two = method(name, &[first.clone(), second.clone()]);
+    let chain = of_two.strip_suffix('`')?;
+    let is_vector = first.size().or(second.size());
+    let operand = |given: &Given| match (is_vector, given.size()) {
+        (Some(size), None) => format!("Vec{size}::splat({})", given.float()),
+        _ if first.ty == Type::F32 || second.ty == Type::F32 => given.float(),
+        _ => given.source.clone(),
+    };
+    let more: String = rest.iter().map(|given| format!(".{name}({})", operand(given))).collect();
+    Some(format!("{chain}{more}`"))
+}
+
+/// Returns the source of a receiver of a method of floats.
+fn floating(given: &Given) -> String {
+    receiver_source(&Given { source: given.float(), ty: given.ty_as_float(), is_literal: given.is_literal })
 }
 
 /// Returns the help for a range of another language.

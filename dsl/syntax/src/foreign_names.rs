@@ -37,7 +37,9 @@ pub(crate) fn attribute_format(name: &str) -> Option<String> {
     }
     match number(name)? {
         Number::Float => Some("write `f32`".to_owned()),
-        Number::Signed => Some("write `u32`, and convert in closures: `f.name as i32`".to_owned()),
+        Number::Signed => Some(
+            "write `u32` if no value is negative, else `f32`, which is exact for whole numbers up to 2^24".to_owned(),
+        ),
         Number::Unsigned => Some("write `u32`".to_owned()),
         Number::Bool => Some("write `u32`, and compare in closures: `f.name != 0`".to_owned()),
         Number::Vector => Some("components of vectors are `f32`: use one `u32` per component".to_owned()),

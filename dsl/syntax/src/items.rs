@@ -9,7 +9,7 @@ use crate::declarations::{self, Declaration};
 use crate::raw_function::{FunctionTokens, RawFunction, Role};
 use crate::report::{FIRST, Report};
 
-/// A description as written: `buffer Name from preset { items }`.
+/// A description as written: `buffer Name from technique { items }`.
 pub(crate) struct RawDescription {
     pub name: Spanned<String>,
     pub preset: Option<Spanned<String>>,

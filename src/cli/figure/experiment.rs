@@ -30,8 +30,51 @@ pub(super) enum Kind {
     Properties(Properties),
     /// What pixels hold after each object of a scene.
     Steps(Steps),
+    /// Predicted k for views of a scene.
+    Predictions(Predictions),
     /// Times of frames beside those of other projects, on OpenGL.
     Peers(Peers),
+}
+
+/// Predicted k for views of a scene, by goals.
+#[derive(Clone, Copy)]
+pub(super) struct Predictions {
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) technique: &'static str,
+    /// Labels and cameras.
+    pub(super) views: &'static [(&'static str, &'static str)],
+    /// The pixels along a side of the images.
+    pub(super) side: u32,
+    pub(super) goals: &'static [Goal],
+    pub(super) claims: &'static [PredictionClaim],
+}
+
+/// A budget and a hit ratio.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Goal {
+    pub(super) bytes_per_pixel: u64,
+    /// The fragments to keep, in per cent.
+    pub(super) percent: u32,
+}
+
+/// A statement of a paper about predictions.
+#[derive(Clone, Copy)]
+pub(super) struct PredictionClaim {
+    /// What the paper states, as a clause.
+    pub(super) statement: &'static str,
+    pub(super) check: PredictionCheck,
+}
+
+/// How a statement about predictions is checked.
+#[derive(Clone, Copy)]
+pub(super) enum PredictionCheck {
+    /// In each view k does not shrink with more memory and a greater hit ratio.
+    GrowsWithGoals,
+    /// k is not the same in all views.
+    Adapts,
+    /// Every goal is met within its budget.
+    KeepsWithinBudget,
 }
 
 /// Times of frames and passes.

@@ -12,6 +12,7 @@ mod experiments;
 mod images;
 mod peers;
 mod point;
+mod predictions;
 mod properties;
 mod run;
 mod spread;
@@ -73,6 +74,7 @@ impl Figure {
             Kind::Images(images) => images::run(images, self, experiment)?,
             Kind::Properties(properties) => properties::run(properties, self, experiment)?,
             Kind::Steps(steps) => steps::run(steps, self, experiment)?,
+            Kind::Predictions(row) => predictions::run(row, self, experiment)?,
             Kind::Peers(peers) => peers::run(peers, self, experiment)?,
         };
         output::print(&format!("{text}\n"))

@@ -5,26 +5,23 @@
 
 #[cfg(feature = "figures")]
 mod plot;
+mod predictor;
 
+#[cfg(feature = "figures")]
 use std::path::PathBuf;
 
-use fragbuf::vocabulary::Row;
-use fragbuf::{Form, Plan, Registry, Request, TARGETS, Variant, generate};
-use fragbuf_codegen::SymbolId;
-use fragbuf_frame::{Values, buffer_bytes};
-use fragbuf_model::MAX_K;
-use fragbuf_templates::{BudgetTooSmall, Histogram, HitRatio, Prediction};
+use fragbuf::Registry;
+use fragbuf_templates::{Histogram, HitRatio, Prediction};
 use serde_json::json;
 
-use super::assignment::assignment;
-use super::attributes::{check_sources, model_attributes};
+pub(crate) use predictor::{Predictor, count};
+
+use super::assignment::{assignment, attribute, uniform};
 use super::camera::CameraRequest;
 use super::device::DeviceRequest;
 use super::input::Input;
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
-use super::progress::Progress;
-use super::rendering::{RenderRequest, render, select};
 use super::view::{self, View, scenes};
 
 #[derive(clap::Args)]
@@ -32,9 +29,12 @@ use super::view::{self, View, scenes};
 pub(crate) struct Predict {
     /// Technique key or .fragbuf file, with k slots per pixel or with exact regions
     description: String,
-    /// Change the description: axis=value or axis.option=value
+    /// Change the description: axis=value or axis.option=value. k and `allocation` are those that this command chooses
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
+    /// Set a uniform of the description [default: 0]
+    #[arg(long = "uniform", value_name = "NAME=VALUE[,VALUE]", value_parser = uniform)]
+    uniforms: Vec<(String, String)>,
     /// Model file (.obj, .ply, .gltf, .glb, also .gz), or a generated scene: builtin:NAME[,parameter=value]
     #[arg(long, value_name = "PATH|builtin:NAME")]
     scene: String,
@@ -44,6 +44,9 @@ pub(crate) struct Predict {
     /// Camera, as for `render`
     #[arg(long, default_value = "auto", value_name = "auto|clip|orbit:AZIMUTH,ELEVATION|eye:X,Y,Z")]
     camera: CameraRequest,
+    /// Set an attribute of fragments to a value for every vertex, as for `render`
+    #[arg(long = "attribute", value_name = "NAME=VALUE[,VALUE]", value_parser = attribute)]
+    attributes: Vec<(String, String)>,
     /// Memory for the buffers of the description: bytes, or a number of KiB, MiB, GiB or TiB
     #[arg(long, value_name = "SIZE", default_value = "200MiB", value_parser = memory::budget)]
     budget: Budget,
@@ -68,26 +71,25 @@ pub(crate) struct Predict {
 impl Predict {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let registry = Registry::builtin();
+        if let Some((name, _)) = self.set.iter().find(|(name, _)| is_chosen_here(name)) {
+            return Err(Failure::Usage(format!(
+                "`predict` chooses k itself, by `--budget` and `--hit-ratio`: leave out `--set {name}`"
+            )));
+        }
         let mut input = Input::read(&self.description, &registry)?;
-        let plan = self.plan(&mut input, &registry)?;
-        let histogram = self.count(&mut input, &registry)?;
-        let mut values = Values::new(&plan, self.size);
-        let evaluate = |values: &Values| buffer_bytes(&plan, values);
-        // The sizes of resources that follow neither k nor the kept fragments must have a value.
-        values.set(SymbolId::K, 1);
-        values.set(SymbolId::KEPT, 0);
-        evaluate(&values).map_err(|error| Failure::Input(error.to_string()))?;
-        let bytes = |k: u32, kept: u64| {
-            let values = values.with(SymbolId::K, k.into()).with(SymbolId::KEPT, kept);
-            evaluate(&values).unwrap_or(u64::MAX)
-        };
-        let budget = self.budget.whole();
-        let prediction = histogram.predict(self.hit_ratio, budget, plan.capacity(), &bytes);
-        let prediction = prediction.map_err(|BudgetTooSmall { needed, budget }| {
-            Failure::Device(format!(
-                "one fragment per pixel needs {needed} bytes, and `--budget` is {budget} bytes: raise it, or use a smaller image"
-            ))
-        })?;
+        input.variant(&self.set, &registry)?;
+        let measured = (self.device.clone(), None);
+        let mut view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
+        view.attributes.clone_from(&self.attributes);
+        let changed = (self.description.as_str(), self.set.as_slice());
+        let histogram = count(changed, &view, &mut input, &registry, &self.uniforms)?;
+        if histogram.fragments() == 0 {
+            output::warn(
+                "no fragment is in the image: check the camera, and the constraints with their uniforms (`--uniform`)",
+            );
+        }
+        let predictor = Predictor::new(changed, self.size, &mut input, &registry)?;
+        let prediction = predictor.predict(&histogram, self.budget.whole(), self.hit_ratio)?;
         #[cfg(feature = "figures")]
         if let Some(path) = &self.plot {
             let svg = plot::svg(&self.title(), &histogram, &prediction)?;
@@ -99,67 +101,13 @@ impl Predict {
         })
     }
 
-    /// Returns the plan for the greatest k that the description can have.
-    fn plan(&self, input: &mut Input, registry: &Registry) -> Result<Plan, Failure> {
-        let mut k = MAX_K;
-        loop {
-            let set = [self.set.as_slice(), &[("k".to_owned(), k.to_string())]].concat();
-            match input.variant(&set, registry) {
-                Ok(variant) => {
-                    let request = Request { targets: &[&TARGETS[1]], form: Form::Program, prefix: "", group: 0 };
-                    let generation = generate(&variant, &request, registry).map_err(|errors| input.failure(errors))?;
-                    let plan = generation.plans.into_iter().next().map(|planned| planned.plan);
-                    return plan.ok_or_else(|| {
-                        Failure::Input(format!("{}: no target of this device can express it", self.description))
-                    });
-                }
-                // Some storages take only small k.
-                Err(_) if k > 1 => k /= 2,
-                Err(failure) => return Err(failure),
-            }
-        }
-    }
-
-    /// Counts the fragments of the scene: a frame that keeps one fragment per pixel.
-    fn count(&self, input: &mut Input, registry: &Registry) -> Result<Histogram, Failure> {
-        let one = [self.set.as_slice(), &[("k".to_owned(), "1".to_owned())]].concat();
-        let (set, variant) = with_histogram(&one, input, registry)?;
-        let measured = (self.device.clone(), None);
-        let view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
-        let progress = Progress::new();
-        progress.set_message(format!("loading {}", self.scene));
-        let (scene, _) = view.scene_views(&model_attributes(&[&variant], &[])?)?;
-        check_sources(&[&variant], &scene.scene, &[])?;
-        let request = RenderRequest {
-            description: &self.description,
-            set: &set,
-            uniforms: &[],
-            count_all: false,
-            opaque: None,
-            held: 0,
-            words: &["histogram"],
-        };
-        let mut selection = select(&view, &scene, &mut [(&request, input)])?;
-        let result = render(&request, input, (&view, &mut selection), &scene, &progress)?;
-        if result.stats.slices > 1 {
-            return Err(Failure::Device(format!(
-                "counting needs {} slices within `--memory`, and only one can be counted: raise `--memory`, or use a smaller image",
-                result.stats.slices
-            )));
-        }
-        Ok(Histogram::of_words(result.stats.words.first().map_or(&[], Vec::as_slice)))
-    }
-
     fn title(&self) -> String {
         format!("{} in {}, {} x {} pixels", self.description, self.scene, self.size.0, self.size.1)
     }
 
     fn sentence(&self, histogram: &Histogram, prediction: &Prediction) -> String {
         let Prediction { k, k_budget, goal_met, kept, bytes } = *prediction;
-        let goal = match goal_met {
-            true => "the goal is met",
-            false => "the goal is missed: the budget allows no greater k",
-        };
+        let goal = if goal_met { "the goal is met" } else { "the goal is missed" };
         format!(
             "{}: k = {k} keeps {kept} of {} fragments ({:.4}) in {bytes} bytes; {goal}; the budget allows k = {k_budget}\n",
             self.title(),
@@ -188,32 +136,13 @@ impl Predict {
     }
 }
 
-/// Adds the first row of `allocation` with a budget that the description can have.
-fn with_histogram(
-    set: &[(String, String)],
-    input: &mut Input,
-    registry: &Registry,
-) -> Result<(Vec<(String, String)>, Variant), Failure> {
-    const BUDGET: &str = "budget";
-    let has_budget = |row: &&Row| row.parameters.iter().any(|parameter| parameter.name == BUDGET);
-    let mut refused = None;
-    for row in registry.rows_of("allocation").filter(has_budget) {
-        let added = [("allocation", row.key.as_str()), ("allocation.budget", GREATEST_BUDGET)];
-        let added = added.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        let set = [set, &added].concat();
-        match input.variant(&set, registry) {
-            Ok(variant) => return Ok((set, variant)),
-            Err(failure) => refused = refused.or(Some(failure)),
-        }
-    }
-    Err(refused.unwrap_or_else(|| Failure::Input("no row of `allocation` has a budget".to_owned())))
+/// Whether a change is one that this command makes itself.
+fn is_chosen_here(name: &str) -> bool {
+    name == "k" || name.split('.').next() == Some("allocation")
 }
 
-/// The greatest budget of a description, in MiB: the frame that counts keeps one fragment per pixel anyway.
-const GREATEST_BUDGET: &str = "1048576";
-
 /// Returns the kept part of the fragments; 1 without fragments.
-fn hits(histogram: &Histogram, kept: u64) -> f64 {
+pub(crate) fn hits(histogram: &Histogram, kept: u64) -> f64 {
     match histogram.fragments() {
         0 => 1.0,
         fragments => kept as f64 / fragments as f64,

@@ -59,7 +59,6 @@ pub(crate) fn render(
 }
 
 /// Renders the scene as [`render`] does, without warnings and without the image of an opaque scene.
-#[cfg(feature = "figures")]
 pub(crate) fn render_quietly(
     request: &RenderRequest<'_>,
     input: &mut Input,

@@ -97,7 +97,12 @@ fn program(checked: &Checked, stage: Stage) -> Result<Bytecode, Error> {
     let Some(entry) = pass.entry_points.iter().find(|entry| entry.stage == stage) else {
         return Err(error(format!("a pass without an entry point for the {stage:?} stage")));
     };
-    let options = Options { markers: MARKERS, written_first: &pass.written_first, ..Options::default() };
+    let options = Options {
+        markers: MARKERS,
+        written_first: &pass.written_first,
+        writes_workgroup_first: true,
+        ..Options::default()
+    };
     Bytecode::entry_point(checked.module(), checked.info(), &entry.name, &options).map_err(|constructs| {
         let constructs: Vec<String> = constructs.into_iter().map(|construct| construct.what).collect();
         error(constructs.join(", "))

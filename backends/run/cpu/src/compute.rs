@@ -53,7 +53,7 @@ fn run_workgroup(program: &Bytecode, view: &View<'_>, group: [u32; 3], groups: [
         .buffers
         .iter()
         .map(|buffer| match buffer.space {
-            Space::Workgroup => words(&vec![0; buffer.words as usize]),
+            Space::Workgroup => words(&vec![buffer.initial; buffer.words as usize]),
             _ => Vec::new(),
         })
         .collect();

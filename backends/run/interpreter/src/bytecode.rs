@@ -31,6 +31,8 @@ pub struct Options<'a> {
     /// Private variables, by name, that the program writes before it reads. Their initial words are implausible values,
     /// so that tests detect a read of them.
     pub written_first: &'a [String],
+    /// Whether the program writes its workgroup memory before it reads it. Its initial words are then implausible values, too.
+    pub writes_workgroup_first: bool,
     /// Functions, by name, whose atomic loads and stores are plain accesses.
     pub plain_functions: &'a [String],
 }
@@ -57,7 +59,7 @@ pub enum Space {
     Uniform,
     /// A storage buffer.
     Storage,
-    /// Workgroup memory; zero when the workgroup starts.
+    /// Workgroup memory; zero when the workgroup starts, unless the options say otherwise.
     Workgroup,
 }
 
@@ -89,6 +91,8 @@ pub struct Buffer {
     pub is_mixed: bool,
     /// Whether the program accesses 64 bits of it at once.
     pub is_wide: bool,
+    /// For workgroup memory, each of its words when a workgroup starts.
+    pub initial: u32,
 }
 
 impl Buffer {

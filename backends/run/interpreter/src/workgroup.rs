@@ -30,7 +30,7 @@ pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) 
                 for (buffer, words) in program.buffers.iter().zip(buffers.iter_mut()) {
                     if buffer.space == Space::Workgroup {
                         words.clear();
-                        words.resize(buffer.words as usize, 0);
+                        words.resize(buffer.words as usize, buffer.initial);
                     }
                 }
                 match workgroup(program, [x, y, z], groups, &mut Sequential { buffers: &mut *buffers }) {
@@ -44,7 +44,7 @@ pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) 
     outcome
 }
 
-/// Runs one of `groups` workgroups. In `shared`, workgroup memory is zero, and machines stop at barriers.
+/// Runs one of `groups` workgroups. In `shared`, workgroup memory has its initial words, and machines stop at barriers.
 pub fn workgroup<S: SharedMemory>(
     program: &Bytecode,
     group: [u32; 3],

@@ -25,7 +25,7 @@ pub(crate) fn with_buffers<T>(program: &Bytecode, memory: &mut Memory, work: imp
         .buffers
         .iter()
         .map(|buffer| match buffer.space {
-            Space::Workgroup => vec![0; buffer.words as usize],
+            Space::Workgroup => vec![buffer.initial; buffer.words as usize],
             _ => memory.get_mut(memory_index(buffer.binding)).map(std::mem::take).unwrap_or_default(),
         })
         .collect();

@@ -132,7 +132,12 @@ pub(crate) fn fullscreen_program(plan: &Plan, checked: &Checked) -> Result<Fulls
 /// Returns the options that compile a checked pass. Guarded accesses are plain, as in the weakest target of the profile.
 pub(crate) fn options(checked: &Checked) -> Options<'_> {
     let pass = checked.pass();
-    Options { markers: &MARKERS, written_first: &pass.written_first, plain_functions: &pass.guarded }
+    Options {
+        markers: &MARKERS,
+        written_first: &pass.written_first,
+        writes_workgroup_first: true,
+        plain_functions: &pass.guarded,
+    }
 }
 
 /// Returns the program if all textures that it reads are external.

@@ -75,7 +75,7 @@ fn check_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics)
                 codes::UNKNOWN_AXIS,
                 &axis.span,
                 format!("unknown axis `{}`", axis.value),
-                unknown_axis(&axis.value, choice, &known, registry),
+                unknown_axis(&axis.value, choice, &known, (draft, registry)),
             ));
         }
         if let Some(first) = draft.choices[..index].iter().find(|other| other.axis == *axis) {
@@ -93,12 +93,15 @@ fn check_axes(draft: &Draft, registry: &Registry, diagnostics: &mut Diagnostics)
 }
 
 /// Returns the help for an unknown axis: the axis that has an option of this name, or the nearest name.
-fn unknown_axis(name: &str, choice: &Choice, known: &[&str], registry: &Registry) -> String {
+fn unknown_axis(name: &str, choice: &Choice, known: &[&str], (draft, registry): (&Draft, &Registry)) -> String {
     let value = choice.alternatives.first().map_or("…", |alternative| alternative.value.value.as_str());
     // `--set` gives choices without a position in a description.
     let is_set = choice.alternatives.first().is_some_and(|first| first.value.span == choice.axis.span);
     if name == "k" {
         return format!("write `keep {value};`");
+    }
+    if is_set && draft.uniforms.iter().any(|uniform| uniform.name.value == name) {
+        return format!("it is a uniform: write `--uniform {name}={value}`");
     }
     match registry.rows().iter().find(|row| known.contains(&&*row.axis) && has_option(row, name)) {
         Some(row) if is_set => {

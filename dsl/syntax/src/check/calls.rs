@@ -211,8 +211,8 @@ impl Checker<'_, '_, '_> {
         }
         let existing: Vec<&str> = methods::names_on(ty).collect();
         let instead = match methods::is_method(name) {
-            true => foreign_functions::of_components(name, given),
-            false => foreign_names::function(name, given),
+            true => foreign_functions::of_components(name, given).or_else(|| foreign_functions::help(name, given)),
+            false => foreign_names::function(name, &in_order_of_functions(name, given)),
         };
         let help = match instead {
             _ if existing.is_empty() => format!("{of} has no methods: use operators or fields"),
@@ -300,4 +300,14 @@ fn has_method(ty: Type, name: &str) -> bool {
 
 fn last_segment(name: &str) -> &str {
     name.rsplit("::").next().unwrap_or(name)
+}
+
+/// Returns the receiver and the arguments of a method in the order of the function of this name: `smoothstep(a, b, x)` and `step(edge, x)`
+/// have the receiver last.
+fn in_order_of_functions(name: &str, given: &[Given]) -> Vec<Given> {
+    let mut given = given.to_vec();
+    if ["smoothstep", "step"].contains(&name) {
+        given.rotate_left(1);
+    }
+    given
 }

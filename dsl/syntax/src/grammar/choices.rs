@@ -8,7 +8,7 @@ use std::path::Path;
 use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spanned, codes};
 use proc_macro2::{Delimiter, Group, TokenTree};
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, is_punct};
 use super::recovery::{end_of_item_or, starts_item};
 use crate::names;
 use crate::report::{FIRST, Report, Stop};
@@ -41,11 +41,16 @@ fn help_after(choice: &Choice, cursor: &Cursor) -> String {
     let last = choice.alternatives.last().map_or("", |alternative| alternative.value.value.as_str());
     match (cursor.peek(), cursor.peek_second()) {
         (Some(TokenTree::Group(group)), _) if group.delimiter() == Delimiter::Parenthesis => {
-            let is_file = group.stream().into_iter().all(|token| matches!(token, TokenTree::Literal(_)));
+            let is_text =
+                |token: &TokenTree| matches!(token, TokenTree::Literal(text) if text.to_string().starts_with('"'));
+            let is_file = group.stream().into_iter().all(|token| is_text(&token));
             match is_file {
                 true => format!("a user file is WGSL: `{}: wgsl(\"file.wgsl\");`", choice.axis.value),
                 false => "options are in braces: `{ … }`".to_owned(),
             }
+        }
+        (Some(TokenTree::Punct(_)), Some(TokenTree::Ident(next))) if is_punct(cursor.peek_third(), ':') => {
+            format!("end the item with `;`: `{}: {last}; {next}: …`", choice.axis.value)
         }
         (Some(TokenTree::Punct(punct)), Some(TokenTree::Ident(next))) => match punct.as_char() {
             '-' => format!("names have `_` in place of `-`: `{last}_{next}`"),

@@ -66,12 +66,22 @@ fn require_closure(cursor: &Cursor, role: &Role, report: &mut Report) -> Result<
     if cursor.at_punct('|') {
         return Ok(());
     }
+    let value = value_of_a_fragment(cursor);
     let help = match role {
-        Role::Criterion => "write `least |f| f.depth`",
-        Role::Resolve => "write `resolve |fragments| { … }`, or name an effect: `resolve: over;`",
-        _ => "write `where |f| f.depth > 0.5;`",
+        Role::Criterion => format!("write `least |f| {}`", value.as_deref().unwrap_or("f.depth")),
+        Role::Resolve => "write `resolve |fragments| { … }`, or name an effect: `resolve: over;`".to_owned(),
+        _ => format!("write `where |f| {};`", value.as_deref().unwrap_or("f.depth > 0.5")),
     };
     Err(cursor.expected("a closure", help, report))
+}
+
+/// Returns the source of the expression up to the next `;`, if it reads a fragment `f`.
+fn value_of_a_fragment(cursor: &Cursor) -> Option<String> {
+    let is_end = |token: &&TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
+    let tokens: TokenStream = cursor.rest().iter().take_while(|token| !is_end(token)).cloned().collect();
+    let source = token_limits::compact(&token_limits::spaced(&tokens));
+    let is_expression = syn::parse2::<syn::Expr>(tokens).is_ok();
+    (is_expression && source.contains("f.") && source.chars().count() < 120).then_some(source)
 }
 
 /// Rejects statements without braces: `|f| let x = …; …`. Moves to the next item.

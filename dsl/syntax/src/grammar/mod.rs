@@ -24,7 +24,7 @@ use crate::names;
 use crate::report::{FIRST, Report, Stop};
 use cursor::Cursor;
 
-/// Parses a whole description: `buffer Name from preset { … }`.
+/// Parses a whole description: `buffer Name from technique { … }`.
 pub(crate) fn description(tokens: TokenStream, report: &mut Report) -> Option<RawDescription> {
     let mut cursor = Cursor::new(tokens);
     find_buffer(&mut cursor, report)?;
@@ -189,7 +189,7 @@ fn body(cursor: &mut Cursor, report: &mut Report) -> Option<Group> {
     if let Some(group) = cursor.take_braces() {
         return Some(group);
     }
-    cursor.expected("`{`", "write `buffer Name from preset { … }`", report);
+    cursor.expected("`{`", "write `buffer Name from kplus_array { … }`", report);
     loop {
         if let Some(group) = cursor.take_braces() {
             return Some(group);

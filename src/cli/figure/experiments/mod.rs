@@ -5,6 +5,8 @@ mod c15_fig_1;
 mod growth;
 mod k15_fig_1;
 mod k15_fig_10;
+mod k15_fig_3;
+mod k15_fig_4;
 mod k15_fig_6;
 mod k15_fig_7;
 mod k15_fig_9_left;
@@ -14,9 +16,11 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 10] = [
+pub(super) const EXPERIMENTS: [Experiment; 12] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
+    k15_fig_3::ROW,
+    k15_fig_4::ROW,
     k15_fig_6::ROW,
     k15_fig_7::ROW,
     k15_fig_9_left::ROW,

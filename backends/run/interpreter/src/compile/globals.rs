@@ -70,6 +70,7 @@ impl Compiler<'_> {
             is_coherent: variable.memory_decorations.contains(MemoryDecorations::COHERENT),
             is_mixed: false,
             is_wide: false,
+            initial: if self.options.writes_workgroup_first { UNWRITTEN } else { 0 },
             atomics: self.atomics(inner)?,
             element_atomics: element.map_or(Ok(Vec::new()), |(element, _)| self.atomics(element))?,
         });
