@@ -139,17 +139,42 @@ impl<'h, 'c, 's> Frame<'h, 'c, 's> {
     }
 
     fn host_step(&mut self, function: &str, reads: &[Read], sets: &[String]) -> Result<(), Error> {
-        if function != "allocate" {
-            return Err(Error(format!("no host function `{function}`")));
-        }
         let mut words = Vec::new();
         for read in reads {
             words.extend(self.words(&read.resource, self.value(&read.first)?, self.value(&read.count)?)?);
         }
-        for (symbol, word) in sets.iter().zip(words) {
-            self.host.set_symbol(symbol, word.into());
+        let values: Vec<u64> = match function {
+            "allocate" => words.into_iter().map(u64::from).collect(),
+            "predict_k" => vec![self.predict_k(&words)?],
+            _ => return Err(Error(format!("no host function `{function}`"))),
+        };
+        for (symbol, value) in sets.iter().zip(values) {
+            self.host.set_symbol(symbol, value);
         }
         self.host.allocate()
+    }
+
+    /// Returns the least k that keeps the wanted part of the fragments, or the greatest whose buffers fit into the budget. The words are 1024
+    /// bins, the pixels with 1, 2, … fragments, and the fragments beyond the 1024th of their pixels.
+    fn predict_k(&self, words: &[u32]) -> Result<u64, Error> {
+        let bins = words.get(..1024).unwrap_or(words);
+        let beyond = words.get(1024).map_or(0, |beyond| u64::from(*beyond));
+        let hits = |k: u64| (1..).zip(bins).map(|(count, pixels)| k.min(count) * u64::from(*pixels)).sum::<u64>();
+        let fragments = hits(u64::MAX) + beyond;
+        let (budget, percent) = (self.value("BUDGET_MIB")? << 20, self.value("HIT_PERCENT")?);
+        let most = self.value("keep")?.min(self.value("capacity")?).min(1024);
+        let fits = |k: u64| {
+            let bytes = self.host.bytes(&[("k", k), ("kept", hits(k)), ("fragments", fragments)])?;
+            Ok::<bool, Error>(bytes <= budget)
+        };
+        let mut k = 0;
+        while k < most && (k == 0 || hits(k) * 100 < fragments * percent) && fits(k + 1)? {
+            k += 1;
+        }
+        match k {
+            0 => Err(Error("one fragment per pixel does not fit into the budget of `allocation`".to_owned())),
+            k => Ok(k),
+        }
     }
 
     fn pass(&mut self, pass: &Pass) -> Result<(), Error> {

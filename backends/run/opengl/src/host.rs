@@ -196,6 +196,16 @@ impl<'c> Host<'c> {
         evaluate(formula, &|name| self.symbol(name, iteration))
     }
 
+    /// Returns the bytes of all buffers if symbols had these values.
+    pub(crate) fn bytes(&self, assumed: &[(&str, u64)]) -> Result<u64, Error> {
+        let value = |name: &str| {
+            let assumed = assumed.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+            assumed.or_else(|| self.symbol(name, 0))
+        };
+        let buffers = self.plan.resources.iter().filter(|resource| resource.texture.is_none());
+        buffers.map(|resource| Ok(4 * evaluate(&resource.words, &value)?)).sum()
+    }
+
     fn symbol(&self, name: &str, iteration: u64) -> Option<u64> {
         match name {
             "iteration" => return Some(iteration),

@@ -188,6 +188,12 @@ impl<'s> Frame<'s> {
         let mut values = self.values.clone();
         self.cursor.supply(plan, &words, &mut values).map_err(|error| error.to_string())?;
         let Some(decision) = decision else { return Ok(()) };
+        // A budget could allow no greater k than that of the case.
+        if let (Some(most), Some(decided)) = (self.values.k(), values.k())
+            && decision.sets.contains(&SymbolId::K)
+        {
+            values.set(SymbolId::K, decided.min(most).into());
+        }
         let sizes: Vec<SymbolId> = decision.sets.iter().copied().filter(|id| *id != SymbolId::K).collect();
         self.requested = sizes.iter().filter_map(|id| values.get(*id)).max().or(self.requested);
         if let Some(most) = self.allocation_limit.map(u64::from) {

@@ -183,6 +183,18 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
         "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
         "inside the critical section no fragment reads between the two, and nothing is read outside it",
     ),
+    (
+        "storage/exact_regions",
+        "return counts_load(pixel);",
+        "",
+        "only `allocation: predicted_exact` calls it; the runtime's tests compare its histogram",
+    ),
+    (
+        "storage/bounded_regions",
+        "return counts_load(pixel);",
+        "",
+        "only `allocation: predicted_exact` calls it; the runtime's tests compare its histogram",
+    ),
     ("sync/spin_lock", "const TAKEN = 1u;", "const TAKEN = 2u;", "every word but FREE means taken"),
     (
         "sync/spin_lock",

@@ -30,6 +30,8 @@ pub(crate) fn outcome(report: &Report) -> Outcome {
     }
 }
 
+const PREDICTED: &[(&str, &str)] = &[("allocation", "predicted")];
+const TEMPORAL: &[(&str, &str)] = &[("cull", "temporal")];
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
 const LOCK: &[(&str, &str)] = &[("sync", "spin_lock")];
 const PAGES_OF_ONE: &[(&str, &str)] = &[("storage.page", "1")];
@@ -47,7 +49,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 84] = [
+pub(crate) const VERDICTS: [Verdict; 90] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -77,6 +79,12 @@ pub(crate) const VERDICTS: [Verdict; 84] = [
     ("kb_ll", &[], "spirv", Model::Relaxed, Holds),
     ("kplus_ab_sb", &[], "wgsl", Model::Sequential, Holds),
     ("kplus_ab_sb", &[], "spirv", Model::Relaxed, Holds),
+    ("unified", &[], "wgsl", Model::Sequential, Holds),
+    ("unified", &[], "spirv", Model::Relaxed, Holds),
+    ("kplus_array", PREDICTED, "wgsl", Model::Sequential, Holds),
+    ("mdt32_coplanar", PREDICTED, "wgsl", Model::Relaxed, Holds),
+    ("kplus_array", TEMPORAL, "wgsl", Model::Sequential, Holds),
+    ("kplus_array", TEMPORAL, "spirv", Model::Relaxed, Holds),
     ("kb_mdt64", &[], "wgsl-native", Model::Sequential, Holds),
     ("kb_mdt64", &[], "wgsl-native", Model::Relaxed, Holds),
     ("kb_mdt32", &[], "wgsl", Model::Sequential, Hazard),
