@@ -142,7 +142,7 @@ impl View {
                 Error::TooLarge { file, what, needed, left, limit: memory.whole() }.into()
             }
             Error::MissingAttribute { scene, request, available, other } => {
-                attributes::missing((&scene, other.as_ref()), &request, &available, attributes)
+                attributes::missing((&scene, other.as_deref()), &request, &available, attributes)
             }
             other => Failure::from(other),
         })?;

@@ -81,8 +81,11 @@ pub struct HostCall<'a> {
     pub symbol: &'a dyn Fn(&str) -> Option<u64>,
     /// Returns the bytes of all buffers of the frame, or of a slice, if these symbols had these values; `None` if a size has no
     /// value. Textures, and the memory that a device needs beside the plan's resources, are not included.
-    pub bytes: &'a dyn Fn(&[(&str, u64)]) -> Option<u64>,
+    pub bytes: &'a BytesOf<'a>,
 }
+
+/// Returns bytes for assumed values of symbols.
+pub type BytesOf<'a> = dyn Fn(&[(&str, u64)]) -> Option<u64> + 'a;
 
 /// A host function. It returns one value per symbol of [`Host::sets`], or why the frame cannot go on and how to fix it. A missing
 /// value leaves its symbol unchanged; the frame rejects values beyond a symbol's range.

@@ -31,7 +31,7 @@ pub use feature::Feature;
 pub use formula::{Expression, Formula, apply};
 pub use formula_error::{FormulaError, Limit};
 pub use hazard::Hazard;
-pub use host::{Host, HostCall, HostFunction, Read, Words};
+pub use host::{BytesOf, Host, HostCall, HostFunction, Read, Words};
 pub use pass::{
     Access, Implementation, Instance, InstanceMemory, Kind, Loads, Objects, Pass, Repeat, Step, Until, Use,
 };

@@ -45,7 +45,7 @@ pub enum Error {
         /// The attributes that can be requested.
         available: Vec<AvailableAttribute>,
         /// The position of something of this name in the file, and why it is no attribute of vertices.
-        other: Option<(FilePosition, String)>,
+        other: Option<Box<(FilePosition, String)>>,
     },
     /// `builtin:…` names an unknown scene or parameter, or an invalid value.
     Unknown(String),
@@ -74,7 +74,7 @@ impl fmt::Display for Error {
             Error::MissingAttribute { scene, request: AttributeRequest { name, components, .. }, other, .. } => {
                 let plural = if *components == 1 { "" } else { "s" };
                 let message = format!("vertices have no attribute `{name}` with {components} component{plural}");
-                match other {
+                match other.as_deref() {
                     Some((position, reason)) => located(f, scene, *position, &format!("{message}: {reason}")),
                     None => write!(f, "{scene}: {message}"),
                 }
@@ -105,7 +105,7 @@ pub(crate) enum FileError {
     /// A part of the scene exceeds the limits.
     TooLarge { what: String, needed: u64, left: u64, limit: u64 },
     /// Vertices do not have an attribute that the caller requested.
-    MissingAttribute(AttributeRequest, Vec<AvailableAttribute>, Option<(FilePosition, String)>),
+    MissingAttribute(AttributeRequest, Vec<AvailableAttribute>, Option<Box<(FilePosition, String)>>),
 }
 
 impl FileError {

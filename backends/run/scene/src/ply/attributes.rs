@@ -55,7 +55,7 @@ pub(super) fn find(
             return Err(FileError::MissingAttribute(
                 request.clone(),
                 available(element),
-                other(elements, element, request),
+                other(elements, element, request).map(Box::new),
             ));
         };
         for (index, property) in properties.into_iter().enumerate() {
@@ -130,7 +130,7 @@ fn property(element: &Element, name: &str, ending: &str) -> Option<usize> {
     };
     let properties = || element.properties.iter().enumerate().filter(|(_, property)| property.list.is_none());
     // The last of equal names counts, as for positions.
-    let equal = properties().filter(|(_, property)| is_named(&property.name, |a, b| a == b)).last();
+    let equal = properties().rfind(|(_, property)| is_named(&property.name, |a, b| a == b));
     let found =
         equal.or_else(|| properties().find(|(_, property)| is_named(&property.name, str::eq_ignore_ascii_case)));
     found.map(|(index, _)| index)
