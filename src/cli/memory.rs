@@ -53,7 +53,7 @@ pub(crate) fn budget(text: &str) -> Result<Budget, String> {
     let (number, power) = unit.unwrap_or((&lower, 0));
     let bytes = number.trim().parse::<u64>().ok().and_then(|number| number.checked_mul(1 << power));
     let bytes = bytes.filter(|bytes| *bytes > 0);
-    let whole = bytes.ok_or("write a whole number of bytes, or of KiB, MiB, GiB or TiB, as 512MiB")?;
+    let whole = bytes.ok_or("write a whole number above 0 of bytes, KiB, MiB, GiB or TiB, such as 512MiB")?;
     Ok(Budget { whole, left: whole })
 }
 

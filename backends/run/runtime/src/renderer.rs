@@ -107,7 +107,17 @@ impl Renderer {
 
     /// Resizes the frame to `width` × `height` pixels. An error keeps the old size.
     pub async fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        self.resize_to(self.resources.values.resized(width, height)).await
+        let mut values = self.resources.values.resized(width, height);
+        let is_decided = self.readbacks == Readbacks::Enabled && host_sets_k(self.plan());
+        if is_decided {
+            // The k of another size may exceed the budget at this one. The next frame decides again.
+            values.set(SymbolId::K, 1);
+        }
+        self.resize_to(values).await?;
+        if is_decided {
+            self.k = Some(1);
+        }
+        Ok(())
     }
 
     /// Sets the number of fragments per pixel from the next frame on, from 1 to [`Renderer::capacity`]. Pipelines stay; buffers

@@ -220,3 +220,34 @@ fn one_description_is_three_buffers() {
         assert_eq!(first_difference(&seen, &image(&quads, [SIDE, SIDE], nearest, BACKGROUND)), None, "k = {keep}");
     }
 }
+
+/// The k of a small frame would exceed the budget in a larger one.
+#[test]
+fn a_resized_frame_stays_within_the_budget() {
+    let stage = device();
+    let set = [("k", "64"), ("allocation", "predicted"), ("allocation.budget", "1")];
+    let variant = technique("kplus_array", &set);
+    let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &Settings::new(FORMAT, 32, 32)).unwrap();
+    let quads: Vec<Quad> = (0..40)
+        .map(|id| Quad { x: [0, 32], y: [0, 32], depth: id as f32 / 64.0, color: [9, 200, 30, 40], id })
+        .collect();
+    let inputs: Vec<String> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.clone()).collect();
+    let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+    let buffer = vertex_buffer(&stage, &vertices(&quads, [32, 32], &inputs));
+    let frame = |renderer: &mut Renderer, side: u32| {
+        let offscreen = Offscreen::new(&stage.device, FORMAT, side, side).unwrap();
+        let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
+        let rendered = renderer.render(&output, &mut |pass, _| {
+            pass.set_vertex_buffer(0, buffer.slice(..));
+            pass.draw(0..6 * quads.len() as u32, 0..1);
+        });
+        rendered.unwrap();
+    };
+    frame(&mut renderer, 32);
+    assert_eq!(renderer.k(), Some(40));
+    block_on(&stage.device, renderer.resize(128, 128)).unwrap().unwrap();
+    assert!(renderer.allocated_bytes() <= BUDGET, "{} bytes before the frame", renderer.allocated_bytes());
+    frame(&mut renderer, 128);
+    assert!(renderer.allocated_bytes() <= BUDGET, "{} bytes", renderer.allocated_bytes());
+    assert_eq!(renderer.k(), Some(6));
+}

@@ -1,6 +1,9 @@
 //! Compares every sort with the oracle, for many layers. The colour of a pixel is a checksum over the identities of its fragments in
 //! order, so that any two swapped fragments change it.
 
+use std::sync::Arc;
+
+use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_model::Variant;
 use fragbuf_runtime::{PoolSize, Settings, Sizing};
 use fragbuf_templates::Registry;
@@ -9,7 +12,7 @@ use fragbuf_templates::vocabulary::Capability;
 use crate::capture::{compare, scattered};
 use crate::oracle::Rules;
 use crate::order::Numbers;
-use crate::quads::{Quad, SIZE};
+use crate::quads::{Quad, SIZE, vertices};
 use crate::stage::{described, device, render_frame, renderer, settings, shaders, technique};
 
 /// Each step multiplies the sum and adds the next identity, so the order matters. 12 bits of it become a colour of 16 levels per
@@ -190,6 +193,45 @@ fn passes_per_size_class_count_once() {
         assert!(expected[0].1.get("displaced") > 0);
         for sort in ["lplus", "block", "backwards_memory"] {
             assert!(counted(sort) == expected, "{key} with {sort}");
+        }
+    }
+}
+
+/// l⁺ sorts any number of fragments in the memory of one batch, equal depths included (K15 §4.4). On the CPU device: software drivers
+/// stop loops after 65,535 iterations.
+#[test]
+fn a_batch_of_32_sorts_1024_fragments() {
+    let variant = described(&CHECKSUM.replace("SORT", "lplus"));
+    let resolve = shaders(&variant, "wgsl");
+    let batch = resolve.plan.constants.iter().find(|(name, _)| name == "LPLUS_BATCH").unwrap();
+    assert_eq!(batch.1, 32);
+    let stage = device();
+    let inputs = renderer(&stage, &resolve, &settings()).unwrap();
+    let inputs = inputs.vertex_inputs();
+    let code = Arc::new(Code::of(&variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}")));
+    for count in [33, 128, 1024] {
+        let sizing = Sizing::Reserve(PoolSize::Fragments(count));
+        let mut cpu =
+            Device::new(code.clone(), fragbuf_cpu::Settings { sizing, ..fragbuf_cpu::Settings::new(1, 1) }).unwrap();
+        let mut numbers = Numbers::seeded(count.into());
+        // A quarter of the depths occur several times.
+        let quad = |id: u32| Quad {
+            depth: numbers.below(count / 2) as f32 / count as f32,
+            ..Quad::whole(0.0, [1, 2, 3, 4]).named(id)
+        };
+        let mut quads: Vec<Quad> = (0..count).map(quad).collect();
+        let bytes = vertices(&quads, inputs);
+        let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+        let indices: Vec<u32> = (0..6 * count).collect();
+        let picture = cpu.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
+        quads.sort_by_key(|quad| (rules().nearer)(quad));
+        let expected = (rules().resolve)(&quads);
+        for (seen, expected) in picture.pixels[0].iter().zip(expected) {
+            assert!(
+                (f64::from(*seen) - expected).abs() < 1.0 / 255.0,
+                "{count}: {:?}, not {expected:?}",
+                picture.pixels[0]
+            );
         }
     }
 }
