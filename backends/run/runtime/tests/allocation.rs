@@ -9,6 +9,7 @@ use fragbuf_runtime::headless::{Headless, Offscreen};
 use fragbuf_runtime::{Error, Output, PoolSize, Renderer, Settings, Sizing, block_on};
 use fragbuf_templates::Registry;
 
+use crate::drivers::draw;
 use crate::drivers::scene::{Quad, first_difference, image, vertices};
 use crate::order::Numbers;
 use crate::stage::{BACKGROUND, FORMAT, device, renderer, shaders, technique, vertex_buffer};
@@ -61,19 +62,6 @@ fn histogram(counts: &[u32]) -> Vec<u32> {
     bins
 }
 
-fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Result<Vec<[f32; 4]>, Error> {
-    let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
-    let buffer = vertex_buffer(stage, &vertices(quads, [SIDE, SIDE], &inputs));
-    let offscreen = Offscreen::new(&stage.device, FORMAT, SIDE, SIDE)?;
-    let [r, g, b] = BACKGROUND;
-    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-    renderer.render(&output, &mut |pass, _| {
-        pass.set_vertex_buffer(0, buffer.slice(..));
-        pass.draw(0..6 * quads.len() as u32, 0..1);
-    })?;
-    offscreen.colors(&stage.device, &stage.queue)
-}
-
 fn words(stage: &Headless, renderer: &Renderer, name: &str) -> Vec<u32> {
     let mut encoder = stage.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let words = renderer.words(name, &mut encoder).unwrap();
@@ -92,7 +80,7 @@ fn check(key: &str, variant: &Variant, percent: u64, most: u32, bytes: impl Fn(u
         let quads = scene(seed);
         let counts = fragments(&quads);
         let k = expected_k(&counts, percent, most, &bytes);
-        let seen = draw(&stage, &mut renderer, &quads).unwrap();
+        let seen = draw(&stage, &mut renderer, &quads, [SIDE; 2]).unwrap();
         assert_eq!(words(&stage, &renderer, "histogram"), histogram(&counts), "{key}");
         assert_eq!(renderer.k(), Some(k), "{key}, {percent} %");
         assert!(renderer.allocated_bytes() <= BUDGET, "{key}: {} bytes", renderer.allocated_bytes());
@@ -190,14 +178,14 @@ fn reserved_memory_keeps_the_k_of_the_description() {
     let mut reserved = renderer(&stage, &shaders(&variant, "wgsl"), &settings).unwrap();
     let quads = scene(3);
     let expected = image(&quads, [SIDE, SIDE], Some(4), BACKGROUND);
-    assert_eq!(first_difference(&draw(&stage, &mut reserved, &quads).unwrap(), &expected), None);
+    assert_eq!(first_difference(&draw(&stage, &mut reserved, &quads, [SIDE; 2]).unwrap(), &expected), None);
     // The same after frames whose k a host step has set.
     let mut later = renderer(&stage, &shaders(&variant, "wgsl"), &Settings::new(FORMAT, SIDE, SIDE)).unwrap();
-    draw(&stage, &mut later, &quads).unwrap();
+    draw(&stage, &mut later, &quads, [SIDE; 2]).unwrap();
     assert!(later.k() < Some(4));
     block_on(&stage.device, later.reserve(PoolSize::Fragments(1))).unwrap().unwrap();
     assert_eq!(later.k(), Some(4));
-    assert_eq!(first_difference(&draw(&stage, &mut later, &quads).unwrap(), &expected), None);
+    assert_eq!(first_difference(&draw(&stage, &mut later, &quads, [SIDE; 2]).unwrap(), &expected), None);
 }
 
 /// K15 §4.3: a Z-buffer, a k-buffer and an A-buffer. Memory is that of the kept fragments.
@@ -212,7 +200,7 @@ fn one_description_is_three_buffers() {
         let variant = technique("unified", &[("k", keep_text.as_str())]);
         let settings = Settings::new(FORMAT, SIDE, SIDE);
         let mut renderer = renderer(&stage, &shaders(&variant, "wgsl"), &settings).unwrap();
-        let seen = draw(&stage, &mut renderer, &quads).unwrap();
+        let seen = draw(&stage, &mut renderer, &quads, [SIDE; 2]).unwrap();
         assert_eq!(renderer.k(), Some(keep.min(deepest)));
         let kept: u32 = counts.iter().map(|count| count.min(&keep)).sum();
         assert_eq!(renderer.symbol("kept"), Some(kept.into()));

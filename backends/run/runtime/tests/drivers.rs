@@ -11,14 +11,14 @@ use fragbuf_codegen::Arrival;
 use fragbuf_cpu::{Code, Device};
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Interlock, Output, Renderer, Settings, Shaders};
+use fragbuf_runtime::{Error, Interlock, Renderer, Settings, Shaders};
 use fragbuf_targets::target;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
 
 use crate::oracle::reference;
 use crate::order::numbers;
-use crate::stage::{self, BACKGROUND, FORMAT, renderer, shaders, technique, vertex_buffer};
+use crate::stage::{self, BACKGROUND, FORMAT, renderer, shaders, technique};
 use cpu_image::{cpu_image, is_exact};
 use numbers::Numbers;
 use scene::{Quad, first_difference, image, quads, vertices};
@@ -35,19 +35,13 @@ const FRAMES: [([u32; 2], Option<u32>); 6] =
 /// SwiftShader's manifest for the Vulkan loader, from Debian's package chromium.
 const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
-/// Draws quads on the adapter of all tests.
-fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], size: [u32; 2]) -> Vec<[f32; 4]> {
+/// Draws quads over the background, and returns the image.
+pub fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], size: [u32; 2]) -> Result<Vec<[f32; 4]>, Error> {
     let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
-    let buffer = vertex_buffer(stage, &vertices(quads, size, &inputs));
-    let offscreen = Offscreen::new(&stage.device, FORMAT, size[0], size[1]).unwrap();
-    let [r, g, b] = BACKGROUND;
-    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-    let rendered = renderer.render(&output, &mut |pass, _| {
-        pass.set_vertex_buffer(0, buffer.slice(..));
-        pass.draw(0..6 * quads.len() as u32, 0..1);
-    });
-    rendered.unwrap();
-    offscreen.colors(&stage.device, &stage.queue).unwrap()
+    let bytes = vertices(quads, size, &inputs);
+    let offscreen = Offscreen::new(&stage.device, FORMAT, size[0], size[1])?;
+    stage::draw_bytes(stage, renderer, (&bytes, 6 * quads.len() as u32), &offscreen)?;
+    offscreen.colors(&stage.device, &stage.queue)
 }
 
 /// Compares a variant in every frame. Fails with what the device lacks.
@@ -78,7 +72,7 @@ fn compare_shaders(
         // As many as automatic sizing reserves memory for.
         let mut quads = quads(8, size, &mut numbers);
         for order in 0..3 {
-            let seen = draw(stage, &mut renderer, &quads, size);
+            let seen = draw(stage, &mut renderer, &quads, size).unwrap();
             let expected = match is_exact(cpu.plan()) {
                 true => image(&quads, size, k, BACKGROUND),
                 false => cpu_image(&mut cpu, &quads, size, &inputs, BACKGROUND),

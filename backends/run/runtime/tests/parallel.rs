@@ -8,15 +8,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fragbuf_codegen::{Arrival, Form};
 use fragbuf_model::{Draft, SourceSpan, Variant, check};
-use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Error, Interlock, Output, PoolSize, Renderer, Settings, Shaders, Sizing};
+use fragbuf_runtime::headless::Headless;
+use fragbuf_runtime::{Error, Interlock, PoolSize, Settings, Shaders, Sizing};
 use fragbuf_targets::{Request, TARGETS, generate, tier};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, KeepDefault};
 
-use crate::drivers::scene::{Quad, first_difference, image, vertices};
+use crate::drivers::draw;
+use crate::drivers::scene::{Quad, first_difference, image};
 use crate::order::Numbers;
-use crate::stage::{self, BACKGROUND, FORMAT, read_counters, vertex_buffer};
+use crate::stage::{self, BACKGROUND, FORMAT, read_counters};
 
 /// The drawing orders of a technique, and the side and quads of a frame: on a software driver, and on a GPU. All fragments of a small frame
 /// are in flight at once; those of a large one keep all locks busy.
@@ -123,7 +124,7 @@ fn wrong_pixels(stage: &Headless, case: &Case, scene: &mut Scene) -> Result<(u64
     let expected = scene.image(case.k);
     let (mut wrong, mut lost) = (0, 0);
     for _ in 0..scene.orders {
-        let seen = draw(stage, &mut renderer, &quads, side)?;
+        let seen = draw(stage, &mut renderer, &quads, [side; 2])?;
         let differs = |(seen, expected): (&[f32; 4], &[f64; 3])| {
             first_difference(std::slice::from_ref(seen), std::slice::from_ref(expected)).is_some()
         };
@@ -132,19 +133,6 @@ fn wrong_pixels(stage: &Headless, case: &Case, scene: &mut Scene) -> Result<(u64
         numbers.shuffle(&mut quads);
     }
     Ok((wrong, lost))
-}
-
-fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad], side: u32) -> Result<Vec<[f32; 4]>, Error> {
-    let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
-    let buffer = vertex_buffer(stage, &vertices(quads, [side, side], &inputs));
-    let offscreen = Offscreen::new(&stage.device, FORMAT, side, side)?;
-    let [r, g, b] = BACKGROUND;
-    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-    renderer.render(&output, &mut |pass, _| {
-        pass.set_vertex_buffer(0, buffer.slice(..));
-        pass.draw(0..6 * quads.len() as u32, 0..1);
-    })?;
-    offscreen.colors(&stage.device, &stage.queue)
 }
 
 #[test]

@@ -131,12 +131,22 @@ pub fn draw_over(
     offscreen: &Offscreen,
 ) -> Result<(), Error> {
     let bytes = vertices(quads, renderer.vertex_inputs());
-    let buffer = vertex_buffer(stage, &bytes);
+    draw_bytes(stage, renderer, (&bytes, 6 * quads.len() as u32), offscreen)
+}
+
+/// Renders so many vertices over the background.
+pub fn draw_bytes(
+    stage: &Headless,
+    renderer: &mut Renderer,
+    (bytes, count): (&[u8], u32),
+    offscreen: &Offscreen,
+) -> Result<(), Error> {
+    let buffer = vertex_buffer(stage, bytes);
     let [r, g, b] = BACKGROUND;
     let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
     renderer.render(&output, &mut |pass, _| {
         pass.set_vertex_buffer(0, buffer.slice(..));
-        pass.draw(0..6 * quads.len() as u32, 0..1);
+        pass.draw(0..count, 0..1);
     })?;
     Ok(())
 }

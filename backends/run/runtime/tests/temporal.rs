@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use fragbuf_cpu::{Code, Device, Mesh};
-use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Output, Renderer, Settings};
+use fragbuf_runtime::Settings;
 use fragbuf_templates::Registry;
 
+use crate::drivers::draw;
 use crate::drivers::scene::{Quad, first_difference, image, vertices};
 use crate::order::Numbers;
-use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, shaders, technique, vertex_buffer};
+use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, shaders, technique};
 
 const SIZE: [u32; 2] = [24, 16];
 const K: u32 = 3;
@@ -28,20 +28,6 @@ fn scene(seed: u64, shift: u32) -> Vec<Quad> {
     (0..12).map(quad).collect()
 }
 
-fn draw(stage: &Headless, renderer: &mut Renderer, quads: &[Quad]) -> Vec<[f32; 4]> {
-    let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
-    let buffer = vertex_buffer(stage, &vertices(quads, SIZE, &inputs));
-    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE[0], SIZE[1]).unwrap();
-    let [r, g, b] = BACKGROUND;
-    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
-    let rendered = renderer.render(&output, &mut |pass, _| {
-        pass.set_vertex_buffer(0, buffer.slice(..));
-        pass.draw(0..6 * quads.len() as u32, 0..1);
-    });
-    rendered.unwrap();
-    offscreen.colors(&stage.device, &stage.queue).unwrap()
-}
-
 #[test]
 fn the_last_frame_culls_and_is_never_wrong() {
     let stage = device();
@@ -56,7 +42,7 @@ fn the_last_frame_culls_and_is_never_wrong() {
         let inputs: Vec<String> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.clone()).collect();
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
         let mut frame = |quads: &[Quad]| {
-            let seen = draw(&stage, &mut renderer, quads);
+            let seen = draw(&stage, &mut renderer, quads, SIZE).unwrap();
             let expected = image(quads, SIZE, Some(K), BACKGROUND);
             assert_eq!(first_difference(&seen, &expected), None, "{key}: {quads:?}");
             let bytes = vertices(quads, SIZE, &inputs);
