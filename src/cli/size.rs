@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 
 use fragbuf::vocabulary::Formula;
 use fragbuf::{Generation, Limit, Needed, Plan, limits};
-use fragbuf_frame::{BufferLimit, Error, MemoryLimits, PoolSize, Sizing, Values, initial_values, resource_bytes};
+use fragbuf_frame::{
+    BufferLimit, Error, MemoryLimits, PoolSize, Sizing, Values, initial_values, most_rows, resource_bytes,
+};
 use fragbuf_targets::PlanForTargets;
 use serde_json::{Value, json};
 
@@ -73,7 +75,7 @@ impl<'a> Sizes<'a> {
             let values = initial_values(plan, size, sizing).map(|(values, _)| values.with_rows(rows));
             values.is_ok_and(|values| memory.sizes(plan, &values).is_ok())
         };
-        let rows = Some(greatest(size.1, fits)).filter(|rows| *rows > 0);
+        let rows = Some(most_rows(size.1, fits)).filter(|rows| *rows > 0);
         Ok(Sizes { k: values.k(), resources: resource_bytes(plan, &values)?, limits, binding, rows })
     }
 
@@ -132,16 +134,6 @@ impl<'a> Sizes<'a> {
             "slices": self.rows.map(|rows| height.div_ceil(rows)),
         })
     }
-}
-
-/// Returns the greatest number up to `end` that holds, or 0. No number may hold after one that does not.
-fn greatest(end: u32, holds: impl Fn(u32) -> bool) -> u32 {
-    let (mut low, mut high) = (0, end);
-    while low < high {
-        let middle = high - (high - low) / 2;
-        if holds(middle) { low = middle } else { high = middle - 1 }
-    }
-    low
 }
 
 fn needed(plan: &Plan, values: &Values, limit: &Limit) -> Result<u64, Error> {

@@ -24,7 +24,7 @@ pub use cursor::Cursor;
 pub use error::{Error, MemoryNeed};
 pub use loop_report::{LoopEnd, LoopReport};
 pub use loops::{max_iterations, max_pass_runs};
-pub use memory::{BufferLimit, DEFAULT_MEMORY, MemoryLimits, buffer_bytes, resource_bytes};
+pub use memory::{BufferLimit, DEFAULT_MEMORY, MemoryLimits, buffer_bytes, most_rows, resource_bytes};
 pub use pass_time::PassTime;
 pub use pool_size::{
     PoolSize, Readbacks, Sizing, host_sets_k, initial_values, pool_size_after, reserve, reuse_pool_sizes,

@@ -53,7 +53,7 @@ impl MemoryLimits {
             let attempt = |rows: u32| self.check(plan, &values.with_rows(rows), all_slices);
             // If one row does not fit, the error has its numbers.
             attempt(1)?;
-            let rows = greatest(values.height(), |rows| rows == 0 || attempt(rows).is_ok()).max(1);
+            let rows = most_rows(values.height(), |rows| attempt(rows).is_ok()).max(1);
             let needed = self.all_slices(&values.with_rows(rows));
             if needed <= all_slices {
                 return Ok(rows);
@@ -171,15 +171,16 @@ fn is_texture(planned: &PlannedResource) -> bool {
     matches!(planned.resource.element, Element::Texture(_))
 }
 
-/// Returns the greatest number up to `end` that holds. 0 must hold, and no number may hold after one that does not.
-fn greatest(end: u32, holds: impl Fn(u32) -> bool) -> u32 {
-    if holds(end) {
-        return end;
+/// Returns the most rows of a slice that fit, or 0. `height`: the rows of the frame. No number of rows may fit after one that does not.
+pub fn most_rows(height: u32, fits: impl Fn(u32) -> bool) -> u32 {
+    // The whole frame mostly fits.
+    if height == 0 || fits(height) {
+        return height;
     }
-    let (mut yes, mut no) = (0, end);
-    while no - yes > 1 {
-        let middle = yes + (no - yes) / 2;
-        if holds(middle) { yes = middle } else { no = middle }
+    let (mut most, mut too_many) = (0, height);
+    while too_many - most > 1 {
+        let middle = most + (too_many - most) / 2;
+        if fits(middle) { most = middle } else { too_many = middle }
     }
-    yes
+    most
 }
