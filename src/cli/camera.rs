@@ -38,9 +38,7 @@ impl CameraRequest {
             }
         }
     }
-}
 
-impl CameraRequest {
     /// Returns the view after an orbit of so many degrees around the scene; `None` for views that do not frame the scene.
     pub(crate) fn turned(self, degrees: f64) -> Option<Self> {
         let (angles, field_of_view) = match self {

@@ -6,12 +6,11 @@ use plotters::prelude::*;
 use super::experiment::{Chart, Experiment, Panel, Passes, Sweep};
 use super::point::{Outcome, Point};
 use super::spread::{Spread, spread};
-use super::style::{COLORS, FONT, MUTED, failure, marker, ticks};
+use super::style::{Area, COLORS, FONT, MUTED, TITLE, failure, marker, ticks, titled};
 use crate::cli::output::Failure;
 
-/// The size of a chart, and of the strips around all charts.
+/// The size of a chart, and of the strip at the right.
 const CHART: (u32, u32) = (400, 310);
-const TITLE: u32 = 58;
 const LEGEND: u32 = 170;
 
 /// The greatest number of charts in a row.
@@ -25,12 +24,9 @@ pub(super) fn svg(experiment: &Experiment, sweep: &Sweep, points: &[Point], devi
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        root.fill(&WHITE).map_err(failure)?;
-        let (head, body) = root.split_vertically(TITLE);
         let title = format!("{}: {}", experiment.paper, experiment.title);
-        head.draw(&Text::new(title, (16, 12), (FONT, 18).into_font().color(&BLACK))).map_err(failure)?;
         let how = format!("{device}; median of the repeats with quartiles; both axes are logarithmic");
-        head.draw(&Text::new(how, (16, 36), (FONT, 13).into_font().color(&MUTED))).map_err(failure)?;
+        let body = titled(&root, title, (how, MUTED))?;
         let (charts, side) = body.split_horizontally(CHART.0 * columns as u32);
         let labels = labels(sweep);
         for (area, chart) in charts.split_evenly((lines, columns)).iter().zip(sweep.charts) {
@@ -55,9 +51,6 @@ fn labels(sweep: &Sweep) -> Vec<&'static str> {
     }
     labels
 }
-
-/// The area of a part of the image.
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// Returns the measured spreads of a series by value.
 fn measured(points: &[Point], panel: &str, series: &str, passes: Passes) -> Vec<(f64, Spread)> {

@@ -9,6 +9,7 @@ mod claim;
 mod csv;
 mod experiment;
 mod experiments;
+pub(crate) mod histogram;
 mod images;
 mod peers;
 mod point;

@@ -4,15 +4,15 @@
 
 use fragbuf::Registry;
 use fragbuf_templates::{Histogram, HitRatio, Prediction};
-use plotters::coord::combinators::BindKeyPoints;
 use plotters::prelude::*;
 
 use super::Figure;
 use super::claim::{Finding, sentence};
 use super::csv::{self, Row};
 use super::experiment::{Experiment, Goal, PredictionCheck, Predictions};
+use super::histogram;
 use super::run::{QUICK_SIDE, Run};
-use super::style::{COLORS, FONT, MUTED, failure, ticks};
+use super::style::{COLORS, MUTED, TITLE, failure, titled};
 use crate::cli::input::Input;
 use crate::cli::output::Failure;
 use crate::cli::predict::{Predictor, count, hits};
@@ -31,9 +31,8 @@ const COLUMNS: [&str; 11] = [
     "histogram",
 ];
 
-/// The size of a histogram, and the strip at the top.
+/// The size of a histogram.
 const CHART: (u32, u32) = (400, 300);
-const TITLE: u32 = 58;
 
 /// A view with its histogram, and the prediction for each goal.
 struct Predicted {
@@ -136,48 +135,16 @@ fn svg(experiment: &Experiment, device: &str, views: &[Predicted]) -> Result<Str
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        root.fill(&WHITE).map_err(failure)?;
-        let (head, body) = root.split_vertically(TITLE);
         let title = format!("{}: {}", experiment.paper, experiment.title);
-        head.draw(&Text::new(title, (16, 12), (FONT, 18).into_font().color(&BLACK))).map_err(failure)?;
         let how = format!("{device}; pixels by their number of fragments, logarithmic; vertical lines: predicted k");
-        head.draw(&Text::new(how, (16, 36), (FONT, 13).into_font().color(&MUTED))).map_err(failure)?;
+        let body = titled(&root, title, (how, MUTED))?;
         for (area, view) in body.split_evenly((1, views.len().max(1))).iter().zip(views) {
-            draw(area, view)?;
+            let ks = view.goals.iter().map(|(_, found)| found.k).zip(COLORS.iter().skip(1).copied().cycle());
+            histogram::draw(area, view.label, &view.histogram, &ks.collect::<Vec<_>>())?;
         }
         root.present().map_err(failure)?;
     }
     Ok(text)
-}
-
-fn draw(area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>, view: &Predicted) -> Result<(), Failure> {
-    let bins = view.histogram.bins();
-    let deepest = bins.iter().rposition(|pixels| *pixels > 0).map_or(1, |bin| bin + 1) as f64;
-    let last = view.goals.iter().map(|(_, found)| f64::from(found.k)).fold(deepest, f64::max) + 1.0;
-    let most = bins.iter().copied().max().unwrap_or(0).max(1) as f64;
-    let range = 0.5..2.0 * most;
-    let mut chart = ChartBuilder::on(area)
-        .caption(view.label, (FONT, 14))
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
-        .build_cartesian_2d(0.0..last, range.clone().log_scale().with_key_points(ticks(&range)))
-        .map_err(failure)?;
-    let mut mesh = chart.configure_mesh();
-    mesh.max_light_lines(0).disable_x_mesh().x_desc("fragments per pixel").y_desc("pixels").axis_style(MUTED);
-    mesh.label_style((FONT, 11)).x_label_formatter(&|x| format!("{x:.0}")).y_label_formatter(&|y| format!("{y}"));
-    mesh.draw().map_err(failure)?;
-    let bars = (1..).zip(bins).filter(|(_, pixels)| **pixels > 0).map(|(count, pixels)| {
-        let count = f64::from(count);
-        Rectangle::new([(count - 0.4, 0.5), (count + 0.4, *pixels as f64)], COLORS[0].filled())
-    });
-    chart.draw_series(bars).map_err(failure)?;
-    for ((_, found), color) in view.goals.iter().zip(COLORS.iter().skip(1).cycle()) {
-        let x = f64::from(found.k) + 0.5;
-        let line = PathElement::new(vec![(x, 0.5), (x, 2.0 * most)], color.stroke_width(2));
-        chart.draw_series([line]).map_err(failure)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::cli::output::Failure;
@@ -28,15 +29,30 @@ pub(crate) const COLORS: [RGBColor; 12] = [
     RGBColor(20, 70, 90),
 ];
 
+/// The area of a part of an image.
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The height of the strip at the top of an image, in pixels.
+pub(crate) const TITLE: u32 = 58;
+
+/// Writes a title, and a line below it, at the top of a new image. Returns the area below.
+pub(crate) fn titled<'a>(image: &Area<'a>, title: String, line: (String, RGBColor)) -> Result<Area<'a>, Failure> {
+    image.fill(&WHITE).map_err(failure)?;
+    let (head, body) = image.split_vertically(TITLE);
+    head.draw(&Text::new(title, (16, 12), (FONT, 18).into_font().color(&BLACK))).map_err(failure)?;
+    head.draw(&Text::new(line.0, (16, 36), (FONT, 13).into_font().color(&line.1))).map_err(failure)?;
+    Ok(body)
+}
+
 /// Returns the marker of a point: filled for the first half of the colours, hollow for the others.
-pub(crate) fn marker<C>(at: C, style: usize, color: RGBColor) -> Circle<C, i32> {
+pub(super) fn marker<C>(at: C, style: usize, color: RGBColor) -> Circle<C, i32> {
     let is_filled = style % COLORS.len() < COLORS.len() / 2;
     let look = if is_filled { color.filled() } else { color.stroke_width(2) };
     Circle::new(at, 4, look)
 }
 
 /// Returns the ticks of a logarithmic axis: 1, 2 and 5 times the powers of ten, or the powers alone in a range of many.
-pub(crate) fn ticks(range: &Range<f64>) -> Vec<f64> {
+pub(super) fn ticks(range: &Range<f64>) -> Vec<f64> {
     let powers = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
     let factors: &[f64] = if powers.clone().count() > 4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let of = |power: i32| factors.iter().map(move |factor| rounded(factor * 10.0_f64.powi(power)));
