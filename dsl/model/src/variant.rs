@@ -108,9 +108,7 @@ impl Variant {
         }
         Ok(Selection { rows })
     }
-}
 
-impl Variant {
     /// Returns the span of what requires a feature that a target lacks: the `keep` line if the row requires it for this k only, else the
     /// choice; `None`: no axis of the description requires it.
     pub fn span_of(&self, missing: &MissingFeature) -> Option<&SourceSpan> {

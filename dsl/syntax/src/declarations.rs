@@ -5,9 +5,10 @@
 
 use fragbuf_model::{Attribute, Diagnostic, Format, Spanned, Uniform, UniformType, codes};
 
+use crate::foreign_names::{self, Replacement};
 use crate::names;
 use crate::report::{FIRST, Report};
-use crate::{foreign_names, unknown_name};
+use crate::unknown_name;
 
 /// `name: type`, both as written.
 pub(crate) struct Declaration {
@@ -40,7 +41,7 @@ pub(crate) fn is_usual_name(word: &str) -> bool {
 struct Declared {
     name: &'static str,
     /// Returns the help for a type of a shading language.
-    foreign: fn(&str) -> Option<String>,
+    foreign: fn(&str) -> Option<Replacement>,
 }
 
 type NamedTypes<T> = Vec<(Spanned<String>, Spanned<T>)>;
@@ -79,7 +80,9 @@ fn resolve_types<T: Copy>(
             None => {
                 let message = format!("unknown {what} type `{}`", type_name.value);
                 let keywords: Vec<&str> = types.iter().map(|(keyword, _)| *keyword).collect();
-                let help = foreign(&type_name.value).unwrap_or_else(|| unknown_name::help(&type_name.value, &keywords));
+                let help = foreign(&type_name.value)
+                    .map(|foreign| foreign.help)
+                    .unwrap_or_else(|| unknown_name::help(&type_name.value, &keywords));
                 report.error(codes::UNKNOWN_FORMAT, &type_name.span, message, help);
                 invalid.push(name.value);
             }

@@ -6,61 +6,82 @@
 use crate::foreign_functions::{self, Given};
 use crate::types::Type;
 
+/// What a description writes in place of a type of another language.
+pub(crate) struct Replacement {
+    /// The type; `None`: no type has the same meaning.
+    pub(crate) own: Option<String>,
+    /// The help of the error.
+    pub(crate) help: String,
+}
+
+impl Replacement {
+    /// Returns a type, and what the help says after it.
+    fn by(own: impl Into<String>, more: &str) -> Option<Self> {
+        let own = own.into();
+        Some(Replacement { help: format!("write `{own}`{more}"), own: Some(own) })
+    }
+
+    /// Returns the help where no type has the same meaning.
+    fn none(help: &str) -> Option<Self> {
+        Some(Replacement { own: None, help: help.to_owned() })
+    }
+}
+
 /// Returns what a closure writes instead of a type.
-pub(crate) fn rust_type(name: &str) -> Option<String> {
+pub(crate) fn rust_type(name: &str) -> Option<Replacement> {
     if let Some(size) = vector_size(name) {
-        return Some(format!("write `Vec{size}`"));
+        return Replacement::by(format!("Vec{size}"), "");
     }
     match number(name)? {
-        Number::Float => Some("write `f32`".to_owned()),
-        Number::Signed => Some("write `i32`".to_owned()),
-        Number::Unsigned => Some("write `u32`".to_owned()),
-        Number::Bool => Some("write `bool`".to_owned()),
-        Number::Vector => Some("components of vectors are `f32`: use one variable per component".to_owned()),
-        Number::Matrix => Some("matrices are not supported: use one vector per column".to_owned()),
-        Number::Texture => Some(TEXTURES.to_owned()),
+        Number::Float => Replacement::by("f32", ""),
+        Number::Signed => Replacement::by("i32", ""),
+        Number::Unsigned => Replacement::by("u32", ""),
+        Number::Bool => Replacement::by("bool", ""),
+        Number::Vector => Replacement::none("components of vectors are `f32`: use one variable per component"),
+        Number::Matrix => Replacement::none("matrices are not supported: use one vector per column"),
+        Number::Texture => Replacement::none(TEXTURES),
     }
 }
 
 /// Returns what a `fragment` block writes instead of a type.
-pub(crate) fn attribute_format(name: &str) -> Option<String> {
+pub(crate) fn attribute_format(name: &str) -> Option<Replacement> {
     if let Some(size) = vector_size(name) {
-        return Some(format!("write `vec{size}`, or a smaller format: `rgba8`, `rgba16` or `octahedral`"));
+        return Replacement::by(format!("vec{size}"), ", or a smaller format: `rgba8`, `rgba16` or `octahedral`");
     }
     match name {
         "rgb8" | "rgba" | "rgb" | "color" | "colour" | "unorm4x8" | "rgba8unorm" | "r8g8b8a8_unorm" => {
-            return Some("write `rgba8`".to_owned());
+            return Replacement::by("rgba8", "");
         }
-        "rgba16f" | "rgba16unorm" | "half4" | "unorm4x16" => return Some("write `rgba16`".to_owned()),
-        "normal" | "oct" | "octahedron" | "snorm2x16" => return Some("write `octahedral`".to_owned()),
+        "rgba16f" | "rgba16unorm" | "half4" | "unorm4x16" => return Replacement::by("rgba16", ""),
+        "normal" | "oct" | "octahedron" | "snorm2x16" => return Replacement::by("octahedral", ""),
         _ => {}
     }
     match number(name)? {
-        Number::Float => Some("write `f32`".to_owned()),
-        Number::Signed => Some(
-            "write `u32` if no value is negative, else `f32`, which is exact for whole numbers up to 2^24".to_owned(),
-        ),
-        Number::Unsigned => Some("write `u32`".to_owned()),
-        Number::Bool => Some("write `u32`, and compare in closures: `f.name != 0`".to_owned()),
-        Number::Vector => Some("components of vectors are `f32`: use one `u32` per component".to_owned()),
-        Number::Matrix => Some("matrices are not supported: use one attribute per column".to_owned()),
-        Number::Texture => Some(TEXTURES.to_owned()),
+        Number::Float => Replacement::by("f32", ""),
+        Number::Signed => {
+            Replacement::by("u32", " if no value is negative, else `f32`, which is exact for whole numbers up to 2^24")
+        }
+        Number::Unsigned => Replacement::by("u32", ""),
+        Number::Bool => Replacement::by("u32", ", and compare in closures: `f.name != 0`"),
+        Number::Vector => Replacement::none("components of vectors are `f32`: use one `u32` per component"),
+        Number::Matrix => Replacement::none("matrices are not supported: use one attribute per column"),
+        Number::Texture => Replacement::none(TEXTURES),
     }
 }
 
 /// Returns what a `uniform` block writes instead of a type.
-pub(crate) fn uniform_type(name: &str) -> Option<String> {
+pub(crate) fn uniform_type(name: &str) -> Option<Replacement> {
     if let Some(size) = vector_size(name) {
-        return Some(format!("write `vec{size}`"));
+        return Replacement::by(format!("vec{size}"), "");
     }
     match number(name)? {
-        Number::Float => Some("write `f32`".to_owned()),
-        Number::Signed => Some("write `i32`".to_owned()),
-        Number::Unsigned => Some("write `u32`".to_owned()),
-        Number::Bool => Some("write `u32`, and compare in closures: `u.name != 0`".to_owned()),
-        Number::Vector => Some("components of vectors are `f32`: use one uniform per component".to_owned()),
-        Number::Matrix => Some("matrices are not supported: use one `vec4` per column".to_owned()),
-        Number::Texture => Some(TEXTURES.to_owned()),
+        Number::Float => Replacement::by("f32", ""),
+        Number::Signed => Replacement::by("i32", ""),
+        Number::Unsigned => Replacement::by("u32", ""),
+        Number::Bool => Replacement::by("u32", ", and compare in closures: `u.name != 0`"),
+        Number::Vector => Replacement::none("components of vectors are `f32`: use one uniform per component"),
+        Number::Matrix => Replacement::none("matrices are not supported: use one `vec4` per column"),
+        Number::Texture => Replacement::none(TEXTURES),
     }
 }
 

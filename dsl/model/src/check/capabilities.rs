@@ -4,7 +4,7 @@
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Condition, DescriptionValues, Formula, Row};
 
-use super::causes::{Cause, Items};
+use super::causes::{Cause, Items, SUGGESTED_K};
 use crate::user_row::value_source;
 use crate::variant::{AxisChoice, with_extra_words};
 use crate::{Diagnostic, Diagnostics, Draft, SourceSpan, codes};
@@ -104,9 +104,6 @@ fn has_size_in_k(row: &Row) -> bool {
 
 /// An effect that every payload has.
 const CLOSURE: &str = "resolve |fragments| { vec4(fragments[0].depth, 0.0, 0.0, 1.0) }";
-
-/// Values of k that a help text suggests, the most useful first.
-const SUGGESTED_K: [u32; 4] = [8, 4, 2, 1];
 
 /// The context of the diagnostics.
 struct Context<'a> {

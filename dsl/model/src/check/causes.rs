@@ -11,7 +11,7 @@ use crate::variant::AxisChoice;
 use crate::{Attribute, Draft, Format, SourceSpan, nearest_name};
 
 /// Values of k that a help suggests, the most useful first.
-const SUGGESTED_K: [u32; 4] = [8, 4, 2, 1];
+pub(super) const SUGGESTED_K: [u32; 4] = [8, 4, 2, 1];
 
 /// Names that users give to the attribute `color`.
 const NAMES_OF_COLOR: [&str; 9] =
@@ -98,8 +98,7 @@ impl Items<'_> {
             let help = help.map(|help| format!("rename `{name}` to `color`: {help}"));
             return Some(Cause { span: other.name.span.clone(), help });
         }
-        let color = Attribute { name: first.name.clone(), format: first.format.clone() };
-        let mut color = with_format(&color, Format::Rgba8);
+        let mut color = with_format(first, Format::Rgba8);
         color.name.value = "color".to_owned();
         let all: Vec<Attribute> = std::iter::once(color).chain(attributes.iter().cloned()).collect();
         let help = is_legal(self.values(&all)).then(|| format!("write `{}`", block(&all)));

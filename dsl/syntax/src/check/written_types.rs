@@ -61,7 +61,9 @@ fn named_type(name: &str, span: &SourceSpan, report: &mut Report) -> Type {
         }
         None => {
             let names = Type::NAMED.map(|(name, _)| name);
-            let help = foreign_names::rust_type(name).unwrap_or_else(|| unknown_name::help(name, &names));
+            let help = foreign_names::rust_type(name)
+                .map(|foreign| foreign.help)
+                .unwrap_or_else(|| unknown_name::help(name, &names));
             report.error(codes::UNKNOWN_NAME, span, format!("cannot find type `{name}`"), help);
         }
     }

@@ -7,8 +7,9 @@ use proc_macro2::TokenTree;
 
 use super::cursor::Cursor;
 use crate::declarations::{self, Declaration};
+use crate::foreign_names::{self, Replacement};
+use crate::names;
 use crate::report::{Report, Stop};
-use crate::{foreign_names, names};
 
 /// The two blocks of declarations.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -36,8 +37,8 @@ impl DeclarationBlock {
         }
     }
 
-    /// Returns the help for a type of another language.
-    fn foreign(self, word: &str) -> Option<String> {
+    /// Returns what the block has in place of a type of another language.
+    fn foreign(self, word: &str) -> Option<Replacement> {
         match self {
             DeclarationBlock::Fragment => foreign_names::attribute_format(word),
             DeclarationBlock::Uniform => foreign_names::uniform_type(word),
@@ -59,9 +60,7 @@ impl DeclarationBlock {
         if self.has_type(word) {
             return word.to_owned();
         }
-        let foreign = self.foreign(word);
-        let own = foreign.as_deref().and_then(|help| help.strip_prefix("write `")?.split('`').next());
-        own.unwrap_or("f32").to_owned()
+        self.foreign(word).and_then(|foreign| foreign.own).unwrap_or_else(|| "f32".to_owned())
     }
 
     /// Returns the declaration of two words, of which either may be the type: in other languages the type is first.

@@ -51,9 +51,7 @@ fn take_until(cursor: &mut Cursor, end: char) -> Vec<TokenTree> {
 
 /// Returns the type of a closure for one that may be of another language.
 fn closure_type(name: &str) -> String {
-    let foreign = foreign_names::rust_type(name);
-    let own = foreign.as_deref().and_then(|help| help.strip_prefix("write `")?.split('`').next());
-    own.unwrap_or(name).to_owned()
+    foreign_names::rust_type(name).and_then(|foreign| foreign.own).unwrap_or_else(|| name.to_owned())
 }
 
 /// Returns the type of a value without a type.
