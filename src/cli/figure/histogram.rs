@@ -29,6 +29,8 @@ pub(crate) fn draw(
     let mut mesh = chart.configure_mesh();
     mesh.max_light_lines(0).disable_x_mesh().x_desc("fragments per pixel").y_desc("pixels").axis_style(MUTED);
     mesh.label_style((FONT, 11)).x_label_formatter(&|x| format!("{x:.0}")).y_label_formatter(&|y| format!("{y}"));
+    // With no more labels than whole numbers, no label is a fraction.
+    mesh.x_labels((last as usize + 1).min(11));
     mesh.draw().map_err(failure)?;
     let bars = (1..).zip(bins).filter(|(_, pixels)| **pixels > 0).map(|(count, pixels)| {
         let count = f64::from(count);
