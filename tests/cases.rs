@@ -109,6 +109,7 @@ fn written() -> Vec<Case> {
         ("depth_partition", technique("depth_partition"), vec![("storage.near", "100000")]),
         ("kplus_ab_sb", technique("kplus_ab_sb"), vec![("k", "32")]),
         ("unified", technique("unified"), vec![]),
+        ("k_peeling", technique("k_peeling"), vec![]),
         ("predicted", technique("mdt32_coplanar"), vec![("allocation", "predicted"), ("allocation.hit_ratio", "90")]),
         ("temporal", technique("kplus_array"), vec![("cull", "temporal")]),
         ("ab_ll_paged", technique("ab_ll_paged"), vec![]),

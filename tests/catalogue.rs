@@ -11,7 +11,7 @@ use crate::cases::{checked, text};
 /// reason where they differ.
 type Entry = (&'static str, &'static str, &'static str, Option<(&'static str, &'static str)>);
 
-const CATALOGUE: [Entry; 25] = [
+const CATALOGUE: [Entry; 26] = [
     ("z_buffer", "2", "1", None),
     ("kb", "2k", "1", None),
     ("kb_multi", "2k", "k+1", None),
@@ -40,6 +40,12 @@ const CATALOGUE: [Entry; 25] = [
     ("kb_ll", "3f+6", "1", Some(("3f+1", "the head is a word, not two nodes of three words less one"))),
     ("kplus_ab_sb", "2f_k+3", "2", Some(("2f_k+2", "with an interlock; the lock is the third word"))),
     ("unified", "2f_k+3", "2", Some(("2f_k+2", "with an interlock; the histogram is not per pixel"))),
+    (
+        "k_peeling",
+        "2k+1",
+        "1024",
+        Some(("2k+9", "the boundary, what is left and the colour so far, which the paper does not count")),
+    ),
     (
         "kb_stream",
         "2k+1",

@@ -164,9 +164,25 @@ fn build(
     Ok(Built { resources: planned, lowered })
 }
 
-/// Returns the steps with clears of the resources that are cleared at the start of a frame. A clear precedes all steps, or follows
-/// the host step that sets the size of the resource.
-fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Step>) -> Vec<Step> {
+/// Returns the steps with clears of the resources that are cleared at the start of a frame, or at the start of each iteration of a
+/// loop that restarts and uses them. A clear precedes all steps there, or follows the host step that sets the size of the resource.
+fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, mut steps: Vec<Step>) -> Vec<Step> {
+    let mut resources: Vec<&Resource> =
+        resources.filter(|resource| resource.lifetime != Lifetime::Persistent).collect();
+    for step in &mut steps {
+        let Step::Repeat(repeat) = step else { continue };
+        if repeat.restarts {
+            let is_restarted =
+                |resource: &&Resource| resource.lifetime == Lifetime::Frame && accesses(&repeat.body, &resource.name);
+            let (inside, outside): (Vec<&Resource>, Vec<&Resource>) = resources.into_iter().partition(is_restarted);
+            repeat.body = with_clears_first(&inside, std::mem::take(&mut repeat.body));
+            resources = outside;
+        }
+    }
+    with_clears_first(&resources, steps)
+}
+
+fn with_clears_first(resources: &[&Resource], steps: Vec<Step>) -> Vec<Step> {
     let is_sized_by = |resource: &Resource, step: &Step| {
         let Step::Host(host) = step else { return false };
         // The default of `n` depends on `fragments`. Memory is allocated for every k.
@@ -178,7 +194,7 @@ fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Ste
         host.sets.iter().any(sized)
     };
     let (mut first, mut after): (Vec<Step>, Vec<Vec<Step>>) = (Vec::new(), vec![Vec::new(); steps.len()]);
-    for resource in resources.filter(|resource| resource.lifetime == Lifetime::Frame) {
+    for resource in resources {
         let Init::Clear(value) = resource.init else { continue };
         let clear = Step::Clear { resource: resource.name.clone(), value };
         match steps.iter().rposition(|step| is_sized_by(resource, step)) {
@@ -188,6 +204,15 @@ fn with_clears<'r>(resources: impl Iterator<Item = &'r Resource>, steps: Vec<Ste
     }
     let rest = steps.into_iter().zip(after).flat_map(|(step, clears)| std::iter::once(step).chain(clears));
     first.into_iter().chain(rest).collect()
+}
+
+/// Returns whether a pass of these steps uses a resource.
+fn accesses(steps: &[Step], resource: &str) -> bool {
+    steps.iter().any(|step| match step {
+        Step::Pass(pass) => pass.accesses(resource),
+        Step::Repeat(repeat) => accesses(&repeat.body, resource),
+        _ => false,
+    })
 }
 
 /// Returns the fields of `frame` in shaders: the size, the first row of a slice (0: there are no slices), k if the description

@@ -94,7 +94,9 @@ impl FragmentCounts {
         let counters = result.stats.counters.as_ref().filter(|_| is_counted)?;
         let (generated, culled) = (u64::from(counters.get("generated")), u64::from(counters.get("culled")));
         let displaced = u64::from(counters.get("displaced"));
-        let stored = generated.saturating_sub(culled + displaced + counters.lost());
+        let is_kept_later = result.plan.selection.provides().contains(&Capability::KeepsLater);
+        let rejected = if is_kept_later { 0 } else { culled + displaced };
+        let stored = generated.saturating_sub(rejected + counters.lost());
         let hit_ratio = if generated == 0 { 1.0 } else { stored as f64 / generated as f64 };
         let occluded = u64::from(counters.get("occluded"));
         Some(FragmentCounts { generated, culled, displaced, occluded, stored, hit_ratio })

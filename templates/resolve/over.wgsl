@@ -2,8 +2,8 @@
 // blended over the background.
 
 fn resolve_layers() -> vec4<f32> {
-    var color = vec3<f32>(0.0);
-    var transmittance = 1.0;
+    var color = peeling_color(vec3<f32>(0.0));
+    var transmittance = peeling_transmittance();
     for (var index = 0u; index < layer_count(); index++) {
         let surface = layer(index).color;
         color += transmittance * surface.a * surface.rgb;
@@ -14,5 +14,6 @@ fn resolve_layers() -> vec4<f32> {
             break;
         }
     }
+    peeling_suspend(color, transmittance);
     return vec4<f32>(color, 1.0 - transmittance);
 }

@@ -9,9 +9,12 @@ fn samples_share(entry: Packed) -> f32 {
 }
 
 fn layer_count() -> u32 {
-    return sorted_count();
+    return peeling_layer_count(sorted_count());
 }
 
 fn layer(index: u32) -> Fragment {
-    return sorted_layer(index);
+    if peeling_is_copy(index) {
+        return fragment_unpack(peeling_copy());
+    }
+    return sorted_layer(peeling_sorted_index(index));
 }

@@ -3,7 +3,8 @@
 /// Returns whether a fragment is inside the frame or slice, meets the constraints, and no opaque surface hides it.
 /// `position` is the fragment's, in pixels.
 fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
-    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment);
+    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment)
+        && !peeling_has_kept(position, fragment);
 }
 
 /// Returns the same, and counts the fragment. One pass of a frame calls this function.
@@ -15,9 +16,16 @@ fn fragment_enters_counted(position: vec2<f32>, fragment: Fragment) -> bool {
         return false;
     }
     if opaque_hides(position, fragment) {
-        count_event(OCCLUDED);
+        if peeling_is_first(position) {
+            count_event(OCCLUDED);
+        }
         return false;
     }
-    count_event(GENERATED);
+    if !peeling_admits(position, fragment) {
+        return false;
+    }
+    if peeling_is_first(position) {
+        count_event(GENERATED);
+    }
     return true;
 }

@@ -21,7 +21,7 @@ fn predicted() -> Row {
         template: Some(template!("allocation/predicted")),
         resources: vec![complexity.by("pixel", "pixels").cleared(0)],
         requires: vec![Capability::SlotsPerPixel],
-        edits: vec![Edit::AddResource(histogram()), Edit::Before("reset".to_owned(), steps)],
+        edits: vec![Edit::AddResource(histogram()), Edit::First(steps)],
         ..by_histogram("predicted", "for the k that a histogram of the frame's fragments predicts within a budget")
     }
 }

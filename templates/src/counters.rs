@@ -40,7 +40,7 @@ pub const COUNTERS: [(&str, CounterKind, &str); 14] = [
     (
         "not_converged",
         CounterKind::Loss,
-        "fragments that still changed a slot in the last iteration of a loop: entries may be lost or duplicated",
+        "fragments that still changed a slot in the last iteration of a loop: entries may be lost or duplicated; or that had not been peeled",
     ),
     ("samples_exhausted", CounterKind::Loss, "fragments that arrived when every sample of their pixel was taken"),
     ("occluded", CounterKind::Event, "fragments that meet the constraints and that an opaque surface hides"),
@@ -73,7 +73,8 @@ fn counting(key: &str, summary: &'static str, template: Template) -> Row {
         resources: vec![
             Resource::new("counters", Element::Word, "events of the frame, by counter")
                 .by("counter", COUNTERS.len().to_string())
-                .cleared(0),
+                .cleared(0)
+                .over_iterations(),
         ],
         uses: vec![Use::new("counters", Access::Atomic)],
         ..Row::new("counters", key, summary, "")

@@ -27,6 +27,7 @@ mod host;
 mod opaque;
 mod overflow;
 mod pass;
+mod peeling;
 mod prediction;
 mod registry;
 mod resolve;

@@ -8,7 +8,10 @@ use crate::vocabulary::{
 
 pub(crate) fn rows() -> Vec<Row> {
     vec![
-        row("drop", "it is dropped and counted", "", template!("overflow/drop")),
+        Row {
+            provides: vec![Capability::DropsDisplaced],
+            ..row("drop", "it is dropped and counted", "", template!("overflow/drop"))
+        },
         Row {
             resources: vec![
                 Resource::new(
@@ -37,8 +40,11 @@ pub(crate) fn rows() -> Vec<Row> {
         merge_closest(),
         Row {
             resources: vec![
-                Resource::new("failed", Element::Word, "1: a fragment did not fit, or timed out at a lock").cleared(0),
+                Resource::new("failed", Element::Word, "1: a fragment did not fit, or timed out at a lock")
+                    .cleared(0)
+                    .over_iterations(),
             ],
+            provides: vec![Capability::DropsDisplaced],
             uses: vec![Use::new("failed", Access::Atomic)],
             needs: vec![Feature::FragmentAtomics],
             ..row(

@@ -73,6 +73,18 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
         row(
+            "accumulate",
+            "continues the effect of each pixel with the fragments that an iteration has stored",
+            template!("pass/accumulate"),
+            vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
+        ),
+        row(
+            "composite",
+            "writes the colour that iterations have accumulated",
+            template!("pass/composite"),
+            vec!["addressing", "peeling", "overflow"],
+        ),
+        row(
             "resolve_stream",
             "finishes the stream of each pixel's fragments",
             template!("pass/resolve_stream"),
@@ -131,7 +143,7 @@ pub(crate) fn rows() -> Vec<Row> {
 
 /// The axes that `shared/prologue.wgsl` calls. Every pass over the scene begins with it, so a further axis is added
 /// here and in that file, and in no skeleton.
-const PROLOGUE: [&str; 1] = ["opaque"];
+const PROLOGUE: [&str; 2] = ["opaque", "peeling"];
 
 /// Makes the row of a pass over the scene.
 fn drawn(key: &str, summary: &'static str, template: Template, calls: &[&'static str]) -> Row {

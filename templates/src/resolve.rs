@@ -10,7 +10,8 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("resolve/over")),
-            calls: vec!["samples"],
+            calls: vec!["samples", "peeling"],
+            provides: vec![Capability::Resumes],
             requires: vec![Capability::Sorted],
             conditions: vec![color(ADD_COLOR)],
             parameters: vec![Parameter::number(

@@ -8,7 +8,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             template: Some(template!("samples/one")),
-            calls: vec!["sort", "resolve"],
+            calls: vec!["sort", "peeling", "resolve"],
             provides: vec![Capability::OneSample],
             ..Row::new("samples", "one", "one: a fragment covers the whole pixel", "")
         },

@@ -57,6 +57,7 @@ fn single() -> Row {
         calls: vec!["overflow"],
         provides: vec![
             Capability::KeepsBest,
+            Capability::KeepsEqualKeys,
             Capability::AcceptsKBestOnly,
             Capability::ConservativeBound,
             Capability::ReportsWholeFragments,

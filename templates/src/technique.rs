@@ -197,6 +197,20 @@ pub(crate) fn techniques() -> Vec<Technique> {
             ],
         },
         Technique {
+            key: "k_peeling".to_owned(),
+            title: "k-depth peeling",
+            paper: "K15 §4.3",
+            summary: "every fragment with the memory of k: the scene is drawn again until none is left, k layers at a time",
+            keep: KeepDefault::Best(8),
+            choices: vec![
+                ("storage", "max_array"),
+                ("sync", "spin_lock"),
+                ("cull", "early"),
+                ("peeling", "k_layers"),
+                ("sort", "insertion"),
+            ],
+        },
+        Technique {
             key: "ab_ll_paged".to_owned(),
             title: "AB_LL-Paged",
             paper: "after Crassin 2010",

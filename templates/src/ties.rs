@@ -6,6 +6,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             order: Some(TieBreak::Payload),
+            provides: vec![Capability::TotalOrder],
             ..Row::new(
                 "ties",
                 "payload",
@@ -15,6 +16,7 @@ pub(crate) fn rows() -> Vec<Row> {
         },
         Row {
             order: Some(TieBreak::Attribute),
+            provides: vec![Capability::TotalOrder],
             parameters: vec![Parameter {
                 name: "by".into(),
                 constant: "TIES_BY".into(),

@@ -34,16 +34,16 @@ fn front_to_back() -> Row {
             texture("next_depth", TextureFormat::Depth32Float, "the depth being peeled"),
             texture("layer", TextureFormat::Rgba8Unorm, "the layer being peeled"),
         ],
-        steps: vec![Step::Repeat(Repeat {
-            body: vec![
+        steps: vec![Step::Repeat(Repeat::new(
+            vec![
                 Step::Clear { resource: "next_depth".to_owned(), value: 0x3f80_0000 },
                 Step::Pass(peel),
                 Step::Pass(blend),
                 Step::Swap("last_depth".to_owned(), "next_depth".to_owned()),
             ],
-            until: Until::NoSamples("peel".to_owned()),
-            at_most: "1024".into(),
-        })],
+            Until::NoSamples("peel".to_owned()),
+            "1024",
+        ))],
         provides: vec![Capability::FixedFunction, Capability::KeepsAll, Capability::Sorted],
         defaults: vec![("sync".into(), "fixed_function".into()), ("sort".into(), "none".into())],
         ..Row::new("storage", "front_to_back", "one layer per iteration", "Everitt 2001")
@@ -74,16 +74,16 @@ fn dual() -> Row {
         ],
         steps: vec![
             Step::Pass(first),
-            Step::Repeat(Repeat {
-                body: vec![
+            Step::Repeat(Repeat::new(
+                vec![
                     Step::Clear { resource: "left".to_owned(), value: 0 },
                     Step::Clear { resource: "next_bounds".to_owned(), value: 0xff80_0000 },
                     Step::Pass(peel),
                     Step::Swap("last_bounds".to_owned(), "next_bounds".to_owned()),
                 ],
-                until: Until::WordIsZero("left".to_owned()),
-                at_most: "512".into(),
-            }),
+                Until::WordIsZero("left".to_owned()),
+                "512",
+            )),
             Step::Pass(composite),
         ],
         provides: vec![Capability::FixedFunction, Capability::KeepsAll, Capability::Sorted],

@@ -1,6 +1,8 @@
 //! Applies the edits of rows to the steps of a plan.
 
-use fragbuf_templates::vocabulary::{Access, DepthState, Edit, Formula, Kind, Pass, Resource, Split, Step, Use};
+use fragbuf_templates::vocabulary::{
+    Access, DepthState, Edit, Formula, Kind, Pass, Repeat, Resource, Split, Step, Use,
+};
 
 /// Applies one edit. Fails if it names a pass that the steps do not have, or if a formula has no value.
 pub(super) fn apply(
@@ -10,6 +12,10 @@ pub(super) fn apply(
     constants: &[(String, u32)],
 ) -> Result<(), String> {
     match edit {
+        Edit::First(new) => {
+            steps.splice(0..0, new.iter().cloned());
+            Ok(())
+        }
         Edit::Before(name, new) => insert(steps, name, new, 0),
         Edit::After(name, new) => insert(steps, name, new, 1),
         Edit::SetState(name, state) => change(steps, name, &|pass| pass.state = state.clone()),
@@ -22,6 +28,8 @@ pub(super) fn apply(
             resources.push(resource.clone());
             Ok(())
         }
+        Edit::AddUse(name, usage) => change(steps, name, &|pass| pass.uses.push(usage.clone())),
+        Edit::Repeat(last, repeat) => repeat_to(steps, last, repeat),
         Edit::Samples(samples) => {
             for_each_pass(steps, &mut |pass| {
                 if pass.kind == Kind::Geometry {
@@ -32,6 +40,15 @@ pub(super) fn apply(
         }
         Edit::Split(one) => split(steps, one, constants),
     }
+}
+
+/// Moves all steps up to a pass into a loop.
+fn repeat_to(steps: &mut Vec<Step>, last: &str, repeat: &Repeat) -> Result<(), String> {
+    let end = position(steps, last).ok_or_else(|| unknown(last))?;
+    let mut repeat = repeat.clone();
+    repeat.body.splice(0..0, steps.drain(..=end));
+    steps.insert(0, Step::Repeat(repeat));
+    Ok(())
 }
 
 /// Replaces a pass by several copies.

@@ -100,11 +100,7 @@ pub(super) fn stencil_routed() -> Row {
             ),
         ],
         steps: vec![
-            Step::Repeat(Repeat {
-                body: vec![Step::Pass(route)],
-                until: Until::Times("capacity".into()),
-                at_most: "capacity".into(),
-            }),
+            Step::Repeat(Repeat::new(vec![Step::Pass(route)], Until::Times("capacity".into()), "capacity")),
             Step::Pass(store),
             Step::Pass(resolve.uses("entries", Access::Sampled).target("output", Blend::Over)),
         ],

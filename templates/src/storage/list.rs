@@ -44,6 +44,7 @@ pub(super) fn ordered_list() -> Row {
         provides: vec![
             Capability::LockFree,
             Capability::KeepsBest,
+            Capability::KeepsEqualKeys,
             Capability::AcceptsKBestOnly,
             Capability::AllocatesKBestOnly,
             Capability::ReportsWholeFragments,

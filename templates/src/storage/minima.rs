@@ -27,14 +27,10 @@ pub(super) fn cascade() -> Row {
         steps: vec![
             reset(&["keys", "value_words"]),
             Step::Pass(Pass::geometry("store", "store").uses("keys", Access::Atomic)),
-            Step::Repeat(Repeat {
-                body: vec![Step::Pass(refine)],
-                until: Until::Times("value_words".into()),
-                at_most: "value_words".into(),
-            }),
+            Step::Repeat(Repeat::new(vec![Step::Pass(refine)], Until::Times("value_words".into()), "value_words")),
             resolve(&["keys", "value_words"]),
         ],
-        provides: [row.provides.as_slice(), &[Capability::KeyPerSlot]].concat(),
+        provides: [row.provides.as_slice(), &[Capability::KeyPerSlot, Capability::KeepsEqualKeys]].concat(),
         ..row
     }
 }
@@ -96,7 +92,7 @@ pub(super) fn wide_cascade() -> Row {
             resolve(&["slots"]),
         ],
         calls: vec!["overflow"],
-        provides: [row.provides.as_slice(), &[Capability::ReportsWholeFragments]].concat(),
+        provides: [row.provides.as_slice(), &[Capability::ReportsWholeFragments, Capability::KeepsEqualKeys]].concat(),
         conditions: vec![Condition::new(
             "entry_words <= 2",
             "at most one value word: a payload of depth and one word, or with a criterion only depth",

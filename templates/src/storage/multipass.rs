@@ -18,11 +18,11 @@ pub(super) fn multipass_array() -> Row {
         resources,
         steps: vec![
             reset(&["keys"]),
-            Step::Repeat(Repeat {
-                body: vec![Step::Clear { resource: "changed".to_owned(), value: 0 }, Step::Pass(store)],
-                until: Until::WordIsZero("changed".to_owned()),
-                at_most: "k + 1".into(),
-            }),
+            Step::Repeat(Repeat::new(
+                vec![Step::Clear { resource: "changed".to_owned(), value: 0 }, Step::Pass(store)],
+                Until::WordIsZero("changed".to_owned()),
+                "k + 1",
+            )),
             resolve(&["keys", "entries"]),
         ],
         calls: vec!["counters"],

@@ -14,8 +14,9 @@ pub(super) fn array_resources(keys: &'static str) -> Vec<Resource> {
 }
 
 /// The capabilities of arrays of the k best that replace the worst entry inside a critical section.
-pub(super) const REPLACES_WORST: [Capability; 7] = [
+pub(super) const REPLACES_WORST: [Capability; 8] = [
     Capability::KeepsBest,
+    Capability::KeepsEqualKeys,
     Capability::AcceptsKBestOnly,
     Capability::ConservativeBound,
     Capability::DisplacesUnderLock,

@@ -19,6 +19,7 @@ names! {
         // Of a storage.
         KeepsAll "a storage that keeps every fragment";
         KeepsBest "a storage that keeps the k best";
+        KeepsEqualKeys "a storage that keeps fragments with equal keys";
         AllocatesKBestOnly "a storage that allocates no memory for a fragment behind k better ones";
         SelectsBest "selection of the k best among all fragments";
         AcceptsKBestOnly "a storage that can receive only the k best fragments";
@@ -40,6 +41,11 @@ names! {
         OneResolve "one resolve pass that serves every pixel";
         OneSample "one sample per pixel";
         StableSort "a sort that keeps the storage's order of fragments with equal depths";
+        // Of the other choices, for peeling.
+        DropsDisplaced "an overflow that drops displaced fragments";
+        TotalOrder "ties that are resolved by the words of fragments";
+        KeepsLater "iterations that keep the fragments that earlier ones displace";
+        Resumes "an effect that can continue with further fragments of a pixel";
         // For the caller.
         CountsEvents "counters of every event of a frame, not only of losses";
         LeavesDepth "the depth of the nearest fragment in a depth buffer";

@@ -1,10 +1,12 @@
 //! Changes that rows of other axes make to the steps of a storage. Plans apply them.
 
-use super::{DepthState, Formula, Implementation, Resource, Samples, State, Step};
+use super::{DepthState, Formula, Implementation, Repeat, Resource, Samples, State, Step, Use};
 
 /// A change that a row makes to the steps of the storage. Edits apply in the order of the axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
+    /// Inserts steps before all others.
+    First(Vec<Step>),
     /// Inserts steps before the pass of this name.
     Before(String, Vec<Step>),
     /// Inserts steps after the pass of this name.
@@ -19,6 +21,10 @@ pub enum Edit {
     FormOfSkeleton(String, String),
     /// Adds a resource.
     AddResource(Resource),
+    /// Adds a use to the pass of this name.
+    AddUse(String, Use),
+    /// Moves all steps up to the pass of this name into a loop, before the steps of its body.
+    Repeat(String, Repeat),
     /// Splits a pass into several.
     Split(Split),
     /// Sets the samples of every pass over the scene.

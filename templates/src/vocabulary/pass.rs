@@ -39,6 +39,15 @@ pub struct Repeat {
     pub until: Until,
     /// The limit of iterations. Reaching it before the loop ends is counted.
     pub at_most: Formula,
+    /// Whether every iteration begins with cleared memory: the resources of the lifetime `Frame` that its passes use.
+    pub restarts: bool,
+}
+
+impl Repeat {
+    /// Makes a loop over `body` until `until`, at most `at_most` times. Memory keeps its content from one iteration to the next.
+    pub fn new(body: Vec<Step>, until: Until, at_most: impl Into<Formula>) -> Self {
+        Repeat { body, until, at_most: at_most.into(), restarts: false }
+    }
 }
 
 /// When a loop ends.

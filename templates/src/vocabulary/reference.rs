@@ -188,6 +188,10 @@ impl Permits {
         ..Permits::RACE
     };
 
+    /// If fragments remain after the last iteration, they are missing.
+    pub const NOT_PEELED: Permits =
+        Permits { where_counted: Some(Text::Borrowed("not_converged")), lost: true, ..Permits::NOTHING };
+
     /// Joins two permits with the same conditions; returns `None` if the conditions differ.
     pub fn and(&self, other: &Permits) -> Option<Permits> {
         let has_same_conditions = self.needs_race == other.needs_race && self.where_counted == other.where_counted;
@@ -224,9 +228,11 @@ impl Permits {
         Permits { needs_race: false, where_counted: None, ..self.clone() } != Permits::NOTHING
     }
 
-    /// Returns whether it affects images and not only counters.
+    /// Returns whether it affects images and not only counters, other than by fragments that are counted as missing.
     pub fn shows(&self) -> bool {
-        Permits { uncounted: false, counted_twice: false, ..self.clone() }.is_something()
+        let lost = Permits { where_counted: self.where_counted.clone(), lost: true, ..Permits::NOTHING };
+        let is_counted_loss = self.where_counted.is_some() && *self == lost;
+        !is_counted_loss && Permits { uncounted: false, counted_twice: false, ..self.clone() }.is_something()
     }
 }
 

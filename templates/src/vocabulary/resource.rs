@@ -93,8 +93,10 @@ pub enum Init {
 /// How long the content of a resource is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lifetime {
-    /// One frame. The memory can be reused afterwards.
+    /// One frame, or one iteration of a loop that restarts. The memory can be reused afterwards.
     Frame,
+    /// One frame, over all iterations of a loop that restarts.
+    AllIterations,
     /// Across frames.
     Persistent,
 }
@@ -126,6 +128,12 @@ impl Resource {
     /// Clears the resource to `value` at the beginning of a frame.
     pub fn cleared(mut self, value: u32) -> Self {
         self.init = Init::Clear(value);
+        self
+    }
+
+    /// Keeps the content over all iterations of a loop that restarts.
+    pub fn over_iterations(mut self) -> Self {
+        self.lifetime = Lifetime::AllIterations;
         self
     }
 

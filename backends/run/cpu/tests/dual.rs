@@ -74,7 +74,7 @@ fn rows() -> Row {
         ],
         vec![
             Step::Pass(Pass::geometry("bounds", "bounds").target("last_bounds", Blend::Max)),
-            Step::Repeat(Repeat { body, until: Until::WordIsZero("left".to_owned()), at_most: "64".into() }),
+            Step::Repeat(Repeat::new(body, Until::WordIsZero("left".to_owned()), "64")),
             Step::Pass(picture("composite").uses("front", Access::Sampled).uses("back", Access::Sampled)),
         ],
     )

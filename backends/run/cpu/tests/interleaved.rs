@@ -53,7 +53,7 @@ fn repeated(at_most: &'static str) -> Arc<Code> {
             texture("last_drawn", TextureFormat::R32Float).cleared(0),
             Resource::new("changed", Element::Word, ""),
         ],
-        vec![Step::Repeat(Repeat { body, until: Until::WordIsZero("changed".to_owned()), at_most: at_most.into() })],
+        vec![Step::Repeat(Repeat::new(body, Until::WordIsZero("changed".to_owned()), at_most))],
     );
     code(rows, &[("store_again", STORE_AGAIN)], Some(4)).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -56,5 +56,5 @@ pub fn peeling_loop(name: &str, at_most: &'static str, objects: Objects, before:
     ];
     body.extend(before.map(Step::Pass));
     body.extend([Step::Pass(peel), Step::Pass(blend), Step::Swap("last".to_owned(), "next".to_owned())]);
-    Repeat { body, until: Until::NoSamples(name.to_owned()), at_most: at_most.into() }
+    Repeat::new(body, Until::NoSamples(name.to_owned()), at_most)
 }

@@ -102,12 +102,11 @@ fn loops_and_objects_name_existing_passes() {
     let rows = |until: Until| {
         let body = vec![Step::Clear { resource: "words".to_owned(), value: 0 }];
         let words = Resource::new("words", Element::Word, "").by("pixel", "pixels");
-        storage(vec![words], vec![Step::Repeat(Repeat { body, until, at_most: "2".into() })])
+        storage(vec![words], vec![Step::Repeat(Repeat::new(body, until, "2"))])
     };
     let seen = error_of(rows(Until::NoSamples("missing".to_owned())), &[]);
     assert!(seen.contains("the samples of `missing`, which is not a pass of its body"), "{seen}");
-    let repeat =
-        |at_most: &'static str| Repeat { body: Vec::new(), until: Until::Times("1".into()), at_most: at_most.into() };
+    let repeat = |at_most: &'static str| Repeat::new(Vec::new(), Until::Times("1".into()), at_most);
     let seen = error_of(
         storage(vec![], vec![Step::Repeat(Repeat { until: Until::Times("iteration".into()), ..repeat("1") })]),
         &[],
@@ -145,10 +144,7 @@ fn unsupported_steps_are_named() {
         (vec![Step::Host(Host::new("allocate").sets("width"))], "sets `width`, which host functions cannot set"),
         (vec![Step::Host(Host::new("allocate").reads_all("texels"))], "a step reads `texels`, which is not one buffer"),
         (vec![Step::Host(Host::new("allocate").reads_word("a", "unknown"))], "`unknown` has no value yet"),
-        (
-            vec![Step::Repeat(Repeat { body: vec![nothing], until, at_most: "2".into() })],
-            "`texels`, which is not one buffer",
-        ),
+        (vec![Step::Repeat(Repeat::new(vec![nothing], until, "2"))], "`texels`, which is not one buffer"),
     ];
     for (steps, expected) in cases {
         let seen = error_of(rows(steps), &[]);

@@ -77,7 +77,7 @@ fn rows(coverage: Coverage) -> Row {
     let mut overflow = Pass::fullscreen("overflow", "nothing");
     overflow.state.stencil = stencil(Compare::Equal, [Keep, Keep], "0");
     overflow.state.samples = samples("pow2(capacity - 1)");
-    let clears = Repeat { body: vec![Step::Pass(route)], until: Until::Times("k".into()), at_most: "k".into() };
+    let clears = Repeat::new(vec![Step::Pass(route)], Until::Times("k".into()), "k");
     storage(
         vec![
             sampled("depths", TextureFormat::R32Float).cleared(FAR),

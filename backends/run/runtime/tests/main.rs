@@ -38,6 +38,7 @@ mod opaque;
 mod opaque_depth;
 mod overflow;
 mod parallel;
+mod peeling;
 mod rasterisation;
 mod routing;
 mod sizing;

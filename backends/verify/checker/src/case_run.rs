@@ -127,7 +127,8 @@ impl<'s> CaseRun<'s> {
     /// Searches every iteration.
     pub(crate) fn run(&mut self, options: &SearchOptions) -> Result<CaseResult, String> {
         let mut result = CaseResult { states: 0, is_exhaustive: true, failure: None, hazard: None };
-        let mut known: HashSet<Memory> = HashSet::new();
+        let mut known: HashSet<(Memory, Vec<Vec<u32>>)> = HashSet::new();
+        let pixel = self.setup.case.pixel;
         let mut at = 0;
         while at < self.iterations.len() && result.failure.is_none() {
             let (found, frames) = self.search(at, options);
@@ -136,7 +137,10 @@ impl<'s> CaseRun<'s> {
             result.failure = found.failure.map(|failure| (at, failure));
             result.hazard = result.hazard.or(found.hazard.map(|failure| (at, failure)));
             for (words, steps) in found.next_iterations {
-                let Some(frame) = frames.get(&words).filter(|frame| known.insert(frame.memory.clone())) else {
+                let Some(frame) = frames.get(&words).filter(|frame| {
+                    let state = (frame.memory.clone(), frame.gathered(pixel).to_vec());
+                    known.insert(state)
+                }) else {
                     continue;
                 };
                 self.begin(frame.clone(), Some((at, steps)), options)?;

@@ -65,6 +65,7 @@ impl<'s> CaseSetup<'s> {
             overflows: case.pool.overflows.clone(),
             may_time_out: options.may_time_out,
             culls: subject.culls(),
+            keeps_later: subject.keeps_later(),
             counts_events: subject.plan.selection.provides().contains(&Capability::CountsEvents),
             k_best_only: case.k.filter(|_| subject.accepts_k_best_only()).map(|k| k as usize),
             fragments,
@@ -116,23 +117,46 @@ impl<'s> CaseSetup<'s> {
         case
     }
 
-    /// Returns the specification in a frame, whose k a host step may have decided.
+    /// Returns the specification of a frame at its end.
+    pub(crate) fn specification_at_end(&self, frame: &Frame<'_>) -> Cow<'_, Specification> {
+        let specification = self.specification_in(frame);
+        match self.subject.keeps_later() {
+            false => specification,
+            true => Cow::Owned(Specification {
+                kept_set: specification.kept_set.of_all_iterations(),
+                k_best_only: None,
+                fragments: self.specification.fragments.clone(),
+                ..specification.into_owned()
+            }),
+        }
+    }
+
+    /// Returns the specification of the storage in a frame, whose k a host step may have decided. It is given the fragments that
+    /// no earlier iteration has kept.
     pub(crate) fn specification_in(&self, frame: &Frame<'_>) -> Cow<'_, Specification> {
-        match frame.decided_k() {
+        let mut specification = match frame.decided_k() {
             None => Cow::Borrowed(&self.specification),
             Some(k) => Cow::Owned(Specification {
                 kept_set: KeptSet::new(self.subject, Some(k)),
                 k_best_only: self.subject.accepts_k_best_only().then_some(k as usize),
                 ..self.specification.clone()
             }),
+        };
+        for kept in frame.gathered(self.case.pixel) {
+            let fragments = &mut specification.to_mut().fragments;
+            if let Some(at) = fragments.iter().position(|fragment| fragment == kept) {
+                fragments.remove(at);
+            }
         }
+        specification
     }
 
     /// Returns how many fragments the host must allocate for in a frame, where the rows provide that a pass counts them:
-    /// those of the pixel and of the neighbour.
+    /// those of the pixel and of the neighbour. Not known where every iteration allocates again.
     pub(crate) fn stored_in(&self, frame: &Frame<'_>) -> Option<u64> {
         let k = frame.decided_k().or(self.case.k);
-        self.counted.map(|counted| k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1)
+        let counted = self.counted.filter(|_| !self.subject.keeps_later());
+        counted.map(|counted| k.map_or(counted, |k| counted.min(k as usize)) as u64 + 1)
     }
 
     /// Returns the inputs of the neighbour, the occluded fragment, the prior fragments and `new`.

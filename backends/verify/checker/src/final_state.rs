@@ -76,7 +76,7 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
             self.next_iterations.insert(words.to_vec(), frame);
             return Ok(StateVerdict::NextIteration);
         }
-        let specification = setup.specification_in(&frame);
+        let specification = setup.specification_at_end(&frame);
         if let (Some(requested), Some(stored)) = (frame.requested, setup.stored_in(&frame))
             && requested != stored
         {

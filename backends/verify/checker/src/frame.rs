@@ -9,7 +9,7 @@ use fragbuf_interpreter::{DispatchEnd, Exit};
 use fragbuf_templates::vocabulary::Kind;
 
 use crate::memory::{Memory, STALE, WIDTH, with_buffers};
-use crate::programs::Runnable;
+use crate::programs::{FullscreenProgram, Runnable};
 use crate::report::code_location;
 use crate::sequential::{machine_with, run_alone};
 use crate::subject::Subject;
@@ -32,6 +32,8 @@ pub(crate) struct Frame<'s> {
     flipped: u32,
     /// Samples that passed in the last run of each pass.
     samples: Vec<u32>,
+    /// What iterations have kept of each pixel, where each keeps what earlier ones displaced.
+    gathered: [Vec<Vec<u32>>; WIDTH as usize],
 }
 
 /// Returns the fragments of a pass, each as a vector of words per input.
@@ -44,8 +46,10 @@ impl<'s> Frame<'s> {
         let memory = vec![Vec::new(); FIRST_BINDING as usize + plan.resources.len()];
         let cursor = Cursor::new(plan, Readbacks::Enabled, 0);
         let samples = vec![0; plan.passes.len()];
+        let gathered = [const { Vec::new() }; WIDTH as usize];
+        let (allocation_limit, requested, flipped) = (None, None, 0);
         let mut frame =
-            Frame { subject, memory, values, allocation_limit: None, requested: None, cursor, flipped: 0, samples };
+            Frame { subject, memory, values, allocation_limit, requested, cursor, flipped, samples, gathered };
         frame.memory[1] = subject.uniforms.iter().copied().cycle().take(256).collect();
         frame.memory[2] = vec![0; 16];
         frame.allocate()?;
@@ -60,6 +64,7 @@ impl<'s> Frame<'s> {
             && self.cursor == other.cursor
             && self.flipped == other.flipped
             && self.samples == other.samples
+            && self.gathered == other.gathered
     }
 
     /// Allocates every resource whose size is known by now, and updates the uniform buffer of the frame.
@@ -138,6 +143,9 @@ impl<'s> Frame<'s> {
                 self.samples[run.pass.0] = 0;
                 if let Some(runnable) = self.subject.passes.iter().find(|other| other.is_of(run)) {
                     self.run_pass(runnable, run, fragments)?;
+                }
+                if let Some(program) = self.subject.accumulating(run.pass) {
+                    self.accumulate(program)?;
                 }
             }
             FrameStep::Wait(wait) => self.supply(wait)?,
@@ -271,8 +279,34 @@ impl<'s> Frame<'s> {
         }
     }
 
-    /// Returns what a pixel holds, in the storage's order. `Err`: its list does not end, or reads out of bounds.
+    /// Runs a pass that adds what each pixel holds to what earlier iterations have kept.
+    fn accumulate(&mut self, pass: &FullscreenProgram) -> Result<(), String> {
+        for pixel in 0..WIDTH {
+            let kept = self.stored(pixel)?;
+            self.gathered[pixel as usize].extend(kept);
+            let position = [pixel as f32 + 0.5, 0.5, 0.5, 1.0].map(f32::to_bits).to_vec();
+            let mut machine = machine_with(&pass.program, &[position]);
+            match run_alone(&mut machine, &mut self.memory) {
+                Ok(Exit::Ended | Exit::Discarded) => {}
+                Ok(_) => return Err(format!("pass `{}` does not end", pass.pass)),
+                Err(error) => return Err(format!("pass `{}` fails: {error}", pass.pass)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns what a pixel holds, in the storage's order: in all iterations, where each keeps what earlier ones displaced.
+    /// `Err`: its list does not end, or reads out of bounds.
     pub(crate) fn read_out(&mut self, pixel: u32) -> Result<Vec<Vec<u32>>, String> {
+        if self.subject.keeps_later() { Ok(self.gathered(pixel).to_vec()) } else { self.stored(pixel) }
+    }
+
+    /// Returns what earlier iterations have kept of a pixel.
+    pub(crate) fn gathered(&self, pixel: u32) -> &[Vec<u32>] {
+        &self.gathered[pixel as usize]
+    }
+
+    fn stored(&mut self, pixel: u32) -> Result<Vec<Vec<u32>>, String> {
         let read_out = &self.subject.read_out;
         read_out.entries(&mut self.memory, [WIDTH, 1], pixel).map_err(|error| error.to_string())
     }

@@ -47,6 +47,12 @@ impl KeptSet {
         }
     }
 
+    /// Returns the kept set of all iterations together, where each keeps what earlier ones displaced.
+    pub(crate) fn of_all_iterations(&self) -> KeptSet {
+        let rule = self.rule.clone().map(|rule| KeepRule { most: None, ..rule });
+        KeptSet { rule, ..self.clone() }
+    }
+
     /// Returns whether the rows do not declare which fragments are kept.
     pub(crate) fn is_unknown(&self) -> bool {
         self.rule.is_none()

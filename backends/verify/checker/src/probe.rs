@@ -10,7 +10,7 @@ use fragbuf_templates::vocabulary::{Access, Kind, Pass, Row, Template, Use};
 pub(crate) fn probe_row(key: &str, source: &'static str, path: &'static str) -> Row {
     Row {
         template: Some(Template::new(path, source)),
-        calls: vec!["addressing", "storage"],
+        calls: vec!["addressing", "storage", "peeling"],
         ..Row::new("pass", key, "a probe of the checker", "")
     }
 }
@@ -21,7 +21,10 @@ pub(crate) fn probe_pass(plan: &Plan, name: &str) -> PlannedPass {
     let mut passes: Vec<&PlannedPass> = plan.passes.iter().collect();
     let mut implementations = passes.clone();
     // The resolve pass may count while it reads a pixel, so the probe uses its resources in the same way.
-    if let Some(resolve) = passes.iter().rposition(|pass| pass.kind == Kind::Fullscreen) {
+    let reads_storage = |pass: &&PlannedPass| {
+        pass.kind == Kind::Fullscreen && pass.implementations.iter().any(|one| one.contract == "storage")
+    };
+    if let Some(resolve) = passes.iter().rposition(|pass| reads_storage(pass)) {
         let resolve = passes.remove(resolve);
         let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic | Access::Sampled);
         pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();

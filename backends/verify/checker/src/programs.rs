@@ -118,15 +118,20 @@ impl Runnable {
 #[derive(Debug)]
 pub(crate) struct FullscreenProgram {
     pub(crate) pass: String,
+    pub(crate) id: PassId,
     pub(crate) program: Bytecode,
 }
 
 /// Compiles the fragment stage of a fullscreen pass.
-pub(crate) fn fullscreen_program(plan: &Plan, checked: &Checked) -> Result<FullscreenProgram, Vec<Unsupported>> {
+pub(crate) fn fullscreen_program(
+    plan: &Plan,
+    id: PassId,
+    checked: &Checked,
+) -> Result<FullscreenProgram, Vec<Unsupported>> {
     let is_fragment = |entry: &&EntryPoint| entry.stage == Stage::Fragment;
     let name = checked.pass().entry_points.iter().find(is_fragment).map_or("", |entry| entry.name.as_str());
     let program = Bytecode::entry_point(checked.module(), checked.info(), name, &options(checked))?;
-    Ok(FullscreenProgram { pass: checked.pass().name.clone(), program: with_external_textures(program, plan)? })
+    Ok(FullscreenProgram { pass: checked.pass().name.clone(), id, program: with_external_textures(program, plan)? })
 }
 
 /// Returns the options that compile a checked pass. Guarded accesses are plain, as in the weakest target of the profile.

@@ -23,6 +23,7 @@ use crate::sampled::{Reader, SampledTexture, is_readable};
 /// The probe passes; each is a file.
 const READ_OUT: &str = "read_out";
 const READ_BOUND: &str = "read_bound";
+const READ_COPIES: &str = "read_copies";
 
 /// The functions that read a pixel out, compiled. They belong to one plan, and to frames drawn with it.
 ///
@@ -52,10 +53,14 @@ pub struct ReadOut {
     walk: Bytecode,
     /// From a cursor to a fragment.
     read: Bytecode,
+    /// From a pixel to the number of copies of a fragment that it has beside those that the storage holds, and to the fragment;
+    /// where iterations keep what earlier ones displace.
+    copies: Option<(Bytecode, Bytecode)>,
     /// The key that no fragment of the k best exceeds, where the storage provides one.
     pub(crate) bound: Option<Bytecode>,
-    /// The sources of the functions that read the entries, and of the bound.
+    /// The sources of the functions that read the entries, of the copies and of the bound.
     source: CheckedSource,
+    copies_source: CheckedSource,
     bound_source: CheckedSource,
     /// The formats of textures, by the plan's resources.
     formats: Vec<Option<TextureFormat>>,
@@ -72,8 +77,11 @@ impl ReadOut {
         let registry = registry
             .clone()
             .with(probe_row(READ_OUT, include_str!("read_out.wgsl"), "checker/read_out.wgsl"))
-            .with(probe_row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"));
+            .with(probe_row(READ_BOUND, include_str!("read_bound.wgsl"), "checker/read_bound.wgsl"))
+            .with(probe_row(READ_COPIES, include_str!("read_copies.wgsl"), "checker/read_copies.wgsl"));
+        let has_copies = plan.selection.provides().contains(&Capability::KeepsLater);
         let names = std::iter::once(READ_OUT).chain(has_bound.then_some(READ_BOUND));
+        let names = names.chain(has_copies.then_some(READ_COPIES));
         let passes = names.map(|name| probe_pass(plan, name)).collect();
         let linking = Linking { profile, form: Form::Program, prefix: String::new(), group: 0 };
         let sources = link(&Plan { passes, ..plan.clone() }, &linking, &registry)?.passes.into_iter();
@@ -91,8 +99,10 @@ impl ReadOut {
             index: required("pixel_index")?,
             walk: required("walk_to")?,
             read: required("storage_read")?,
+            copies: compiled(READ_COPIES, "count_copies")?.zip(compiled(READ_COPIES, "copied")?),
             bound: compiled(READ_BOUND, "storage_bound")?,
             source: source(READ_OUT),
+            copies_source: source(READ_COPIES),
             bound_source: source(READ_BOUND),
             formats,
         })
@@ -124,23 +134,34 @@ impl ReadOut {
         size: [u32; 2],
         pixel: u32,
     ) -> Result<Vec<Vec<u32>>, ReadOutError> {
-        let mut entries = Vec::new();
+        let mut entries = self.copies(memory, size, pixel)?;
+        let copies = entries.len();
         let mut visited = BTreeSet::new();
         // No two entries share a word, so a pixel has no more entries than memory has words.
         let most = memory.iter().map(Vec::len).sum::<usize>().min(LONGEST);
         loop {
             // Each walk starts again and may count losses. Only the counts of the last walk, which reaches the end, are kept.
             let before = self.written(memory);
-            let cursor = self.call((&self.walk, &self.source), &[&[pixel], &[entries.len() as u32]], memory, size)?[0];
+            let cursor =
+                self.call((&self.walk, &self.source), &[&[pixel], &[(entries.len() - copies) as u32]], memory, size)?
+                    [0];
             if cursor == u32::MAX {
                 return Ok(entries);
             }
-            if !visited.insert(cursor) || entries.len() == most {
+            if !visited.insert(cursor) || entries.len() - copies == most {
                 return Err(ReadOutError::Cycle);
             }
             before.into_iter().for_each(|(index, words)| memory[index] = words);
             entries.push(self.call((&self.read, &self.source), &[&[pixel], &[cursor]], memory, size)?);
         }
+    }
+
+    /// Returns the copies of a fragment that the pixel has beside those that the storage holds.
+    fn copies(&self, memory: &mut Memory, size: [u32; 2], pixel: u32) -> Result<Vec<Vec<u32>>, ReadOutError> {
+        let Some((count, copy)) = &self.copies else { return Ok(Vec::new()) };
+        let count = self.call((count, &self.copies_source), &[&[pixel]], memory, size)?[0] as usize;
+        let copy = self.call((copy, &self.copies_source), &[&[pixel]], memory, size)?;
+        if count > LONGEST { Err(ReadOutError::Cycle) } else { Ok(vec![copy; count]) }
     }
 
     /// Copies the buffers that a walk may write.

@@ -25,6 +25,8 @@ pub(crate) struct Specification {
     pub(crate) may_time_out: bool,
     /// Whether fragments can be culled without being counted as a loss.
     pub(crate) culls: bool,
+    /// Whether a later iteration keeps what is culled or displaced.
+    pub(crate) keeps_later: bool,
     /// Whether every event is counted, culled and displaced fragments included.
     pub(crate) counts_events: bool,
     /// k, where the storage may be given the k best only, so that all others may be culled.
@@ -98,12 +100,16 @@ impl Specification {
             return Some(format!("{} fragments timed out, expected none", counts.timed_out));
         }
         // A fragment that timed out has not allocated.
-        let (least, most) = (self.overflows.start().saturating_sub(counts.timed_out), *self.overflows.end());
+        let (least, mut most) = (self.overflows.start().saturating_sub(counts.timed_out), *self.overflows.end());
+        if self.keeps_later {
+            // Every iteration may count a fragment, and a later one may keep it.
+            most = u32::MAX;
+        }
         if !(least..=most).contains(&counts.overflowed) {
             let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
             return Some(format!("{} fragments did not fit, expected {expected}", counts.overflowed));
         }
-        let is_too_many = counts.dropped() > self.fragments.len();
+        let is_too_many = counts.dropped() > self.fragments.len() && !self.keeps_later;
         is_too_many.then(|| "more fragments are counted as lost than there are".to_owned())
     }
 
@@ -142,7 +148,11 @@ impl Specification {
 
     /// Returns every set of fragments that can be missing when `dropped` of them are lost, as bits.
     fn missing_sets(&self, dropped: usize) -> impl Iterator<Item = u32> {
-        (0..1u32 << self.fragments.len()).filter(move |out| self.can_be_missing(*out, dropped))
+        // A later iteration may keep a fragment that timed out, or did not fit, in an earlier one.
+        let least = if self.keeps_later { 0 } else { dropped };
+        let dropped = dropped.min(self.fragments.len());
+        let can_be_missing = move |out: &u32| (least..=dropped).any(|dropped| self.can_be_missing(*out, dropped));
+        (0..1u32 << self.fragments.len()).filter(can_be_missing)
     }
 
     fn without(&self, out: u32) -> Vec<Vec<u32>> {
@@ -218,7 +228,9 @@ impl Specification {
         let total = self.fragments.len() as u32;
         let out = total - kept.min(total);
         let counted = counts.lost + counts.culled + counts.emitted;
-        let is_wrong = if self.counts_events { counted != out } else { counts.lost > out };
+        let most = if self.keeps_later { out + counts.dropped() as u32 } else { out };
+        let is_missing = self.counts_events && counted < out;
+        let is_wrong = is_missing || if self.counts_events { counted > most } else { counts.lost > most };
         is_wrong.then(|| {
             format!(
                 "{kept} of {total} fragments are kept, but the counters report {} lost and {} culled",
@@ -326,7 +338,7 @@ impl Specification {
     fn counts(&self, counters: &[u32]) -> Counts {
         let mut counts = Counts::default();
         for ((name, kind, _), count) in COUNTERS.iter().zip(counters) {
-            if *kind != CounterKind::Event {
+            if *kind == CounterKind::Loss || *kind == CounterKind::Displaced && !self.keeps_later {
                 counts.lost += count;
             }
             match *name {
@@ -338,6 +350,9 @@ impl Specification {
                 "occluded" => counts.occluded = *count,
                 _ => {}
             }
+        }
+        if self.keeps_later {
+            counts.culled = 0;
         }
         counts.overflowed = counts.overflowed.wrapping_sub(self.neighbours_lost);
         counts.lost = counts.lost.wrapping_sub(self.neighbours_lost);

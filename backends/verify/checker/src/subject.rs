@@ -108,6 +108,17 @@ impl Subject {
         self.plan.soundness == Soundness::Racy
     }
 
+    /// Returns whether every fragment is kept at last, by one of several iterations.
+    pub(crate) fn keeps_later(&self) -> bool {
+        self.plan.selection.provides().contains(&Capability::KeepsLater)
+    }
+
+    /// Returns the program of a fullscreen pass that reads the storage in every iteration of a loop, and what it reads is kept.
+    pub(crate) fn accumulating(&self, id: PassId) -> Option<&FullscreenProgram> {
+        let writes = |one: &&FullscreenProgram| one.program.buffers.iter().any(|buffer| buffer.is_written);
+        self.fullscreen.iter().find(|one| one.id == id && self.keeps_later()).filter(writes)
+    }
+
     /// Returns whether fragments can be culled without being counted as a loss.
     pub(crate) fn culls(&self) -> bool {
         self.bound.is_some() || self.accepts_k_best_only()
@@ -155,7 +166,7 @@ fn compiled(plan: &Plan, target: &Target, registry: &Registry) -> Result<Compile
             stream = Some(stream_programs(&checked, span)?);
         } else if pass.kind == Kind::Fullscreen {
             // A pass that samples what another pass drew has no textures here.
-            fullscreen.extend(fullscreen_program(plan, &checked).ok());
+            fullscreen.extend(fullscreen_program(plan, id, &checked).ok());
         } else {
             for iteration in iterations(plan, id) {
                 let runnable = Runnable::new(plan, (pass, id), &checked);

@@ -53,7 +53,7 @@ fn repeated(until: Until) -> Registry {
     let mut row = builtin.row("storage", "linked_list").unwrap().clone();
     let Step::Pass(store) = row.steps.remove(0) else { panic!("the list begins with its store pass") };
     let store = Step::Pass(Pass { skeleton: "store_once".to_owned(), ..store });
-    row.steps.insert(0, Step::Repeat(Repeat { body: vec![store], until, at_most: "3".into() }));
+    row.steps.insert(0, Step::Repeat(Repeat::new(vec![store], until, "3")));
     let calls = vec!["addressing", "storage", "sync", "counters"];
     builtin.with(row).with(skeleton("store_once", STORE_ONCE, calls))
 }

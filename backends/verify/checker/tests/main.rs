@@ -27,6 +27,7 @@ mod repeated;
 mod shapes;
 mod subjects;
 mod survivors;
+mod survivors_of_peeling;
 mod survivors_of_races;
 mod threads;
 mod verdicts;

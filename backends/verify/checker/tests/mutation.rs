@@ -12,6 +12,7 @@ use crate::mutants::{Mutant, mutants};
 use crate::repeated::{is_repeated, with_iterations};
 use crate::subjects::{limits, report};
 use crate::survivors::SURVIVORS;
+use crate::survivors_of_peeling::OF_PEELING;
 use crate::survivors_of_races::OF_RACES;
 
 const BOTH: &str = include_str!("rows/both_neighbours.wgsl");
@@ -103,7 +104,16 @@ const REPEATED: &[Check] = &[
     ("kb_multi", &[("fragment.color", "vec4")], "wgsl", Model::Sequential),
 ];
 
-const MUTATED: [(&str, &str, &[Check]); 20] = [
+const PEELED: &[Check] = &[
+    ("k_peeling", &[], "wgsl", Model::Sequential),
+    ("k_peeling", &[("counters", "all"), ("sync", "interlock")], "spirv", Model::Relaxed),
+    // Several passes over the scene in each iteration.
+    ("mdt32_coplanar", &[("peeling", "k_layers")], "wgsl", Model::Sequential),
+    // An iteration that is the last although fragments remain.
+    ("mdt32_coplanar", &[("peeling", "k_layers"), ("peeling.iterations", "2")], "wgsl", Model::Sequential),
+];
+
+const MUTATED: [(&str, &str, &[Check]); 21] = [
     ("storage", "stream_array", STREAM),
     ("storage", "checksummed_array", CHECKED),
     ("storage", "multipass_array", REPEATED),
@@ -124,6 +134,7 @@ const MUTATED: [(&str, &str, &[Check]); 20] = [
     ("storage", "depth_ranges", RANGES),
     ("sync", "spin_lock", KPLUS),
     ("sync", "slot_counter", LIST),
+    ("peeling", "k_layers", PEELED),
 ];
 
 /// The checks of a storage that the table does not list, with a technique of the storage and default choices.
@@ -215,6 +226,7 @@ fn every_mutant_is_killed() {
     let explained: Vec<String> = SURVIVORS
         .iter()
         .chain(OF_RACES)
+        .chain(OF_PEELING)
         .map(|(row, before, after, _)| format!("{row}: `{before}` -> `{after}`"))
         .collect();
     // A line that occurs twice in a template gives two mutants of the same name, which need two reasons.

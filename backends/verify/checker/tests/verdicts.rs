@@ -31,6 +31,7 @@ pub(crate) fn outcome(report: &Report) -> Outcome {
 }
 
 const PREDICTED: &[(&str, &str)] = &[("allocation", "predicted")];
+const PEELED: &[(&str, &str)] = &[("peeling", "k_layers")];
 const TEMPORAL: &[(&str, &str)] = &[("cull", "temporal")];
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
 const LOCK: &[(&str, &str)] = &[("sync", "spin_lock")];
@@ -49,7 +50,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 90] = [
+pub(crate) const VERDICTS: [Verdict; 96] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -81,6 +82,12 @@ pub(crate) const VERDICTS: [Verdict; 90] = [
     ("kplus_ab_sb", &[], "spirv", Model::Relaxed, Holds),
     ("unified", &[], "wgsl", Model::Sequential, Holds),
     ("unified", &[], "spirv", Model::Relaxed, Holds),
+    ("k_peeling", &[], "wgsl", Model::Sequential, Holds),
+    ("k_peeling", &[], "wgsl", Model::Relaxed, Fails),
+    ("k_peeling", &[], "spirv", Model::Relaxed, Holds),
+    ("mdt32_coplanar", PEELED, "wgsl", Model::Relaxed, Holds),
+    ("kb_ll", PEELED, "spirv", Model::Relaxed, Holds),
+    ("kplus_ab_sb", PEELED, "wgsl", Model::Sequential, Holds),
     ("kplus_array", PREDICTED, "wgsl", Model::Sequential, Holds),
     ("mdt32_coplanar", PREDICTED, "wgsl", Model::Relaxed, Holds),
     ("kplus_array", TEMPORAL, "wgsl", Model::Sequential, Holds),

@@ -1,0 +1,182 @@
+//! `peeling: k_layers`: the image is that of an A-buffer, bit for bit, for every storage that can be peeled, after no more iterations than the
+//! deepest pixel has groups of k fragments. On the driver and on the CPU device.
+
+use std::sync::Arc;
+
+use fragbuf_cpu::{Code, Device, Mesh};
+use fragbuf_model::Variant;
+use fragbuf_runtime::headless::{Headless, Offscreen};
+use fragbuf_runtime::{LoopEnd, LoopReport, Output, PoolSize, Settings, Sizing};
+use fragbuf_templates::Registry;
+
+use crate::drivers::scene::{Quad, first_difference, image, vertices};
+use crate::order::Numbers;
+use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, shaders, technique, vertex_buffer};
+
+/// Odd on purpose, and drawn whole and in slices.
+const SIZE: [u32; 2] = [13, 7];
+const SLICES: [Option<u32>; 2] = [None, Some(3)];
+
+/// Storages with what they need on other axes, and the greatest k.
+const STORAGES: [(&str, &[(&str, &str)], u32); 9] = [
+    ("kplus_array", &[], 8),
+    ("kplus_heap", &[], 8),
+    ("kplus_array_revised", &[], 8),
+    ("kb_ps", &[("sync", "spin_lock")], 8),
+    ("mdt32_coplanar", &[], 8),
+    // Memory is reserved for its pool, so nothing is read back, and the loop runs to its limit.
+    ("kb_ll", &[("peeling.iterations", "41")], 8),
+    ("kplus_ab_sb", &[], 8),
+    ("kplus_array", &[("cull", "occupancy")], 8),
+    ("kplus_array", &[("storage", "single")], 1),
+];
+
+/// Returns quads of which many have the depth of others.
+fn scene(seed: u64, count: u32) -> Vec<Quad> {
+    let mut numbers = Numbers::seeded(seed);
+    let quad = |id| Quad {
+        x: [numbers.below(SIZE[0]), SIZE[0]],
+        y: [0, 1 + numbers.below(SIZE[1])],
+        depth: [0.0, 0.25, 0.5, 1.0][numbers.below(4) as usize],
+        color: std::array::from_fn(|_| numbers.below(256) as u8),
+        id,
+    };
+    (0..count).map(quad).collect()
+}
+
+/// Gives half of the quads the depth and colour of another, so that their fragments are equal in every word.
+fn with_copies(mut quads: Vec<Quad>, seed: u64) -> Vec<Quad> {
+    let mut numbers = Numbers::seeded(seed);
+    for at in (1..quads.len()).step_by(2) {
+        let other = quads[numbers.below(at as u32) as usize];
+        quads[at] = Quad { color: other.color, depth: other.depth, ..quads[at] };
+    }
+    quads
+}
+
+/// Returns the number of fragments of the deepest pixel in these rows.
+fn deepest(quads: &[Quad], rows: std::ops::Range<u32>) -> u32 {
+    let covers = |quad: &Quad, x, y| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
+    let count = |x, y| quads.iter().filter(|quad| covers(quad, x, y)).count() as u32;
+    rows.flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).map(|(x, y)| count(x, y)).max().unwrap_or(0)
+}
+
+/// Returns enough memory for the pool of a list, which no pass counts for.
+fn sizing(variant: &Variant) -> Sizing {
+    let is_list = variant.choices.iter().any(|chosen| chosen.alternatives[0].row.key == "ordered_list");
+    if is_list { Sizing::Reserve(PoolSize::Fragments(64 * SIZE[0] * SIZE[1])) } else { Sizing::Auto }
+}
+
+/// Draws on the driver; returns the pixels, the reports of loops, and the fragments counted as generated and lost.
+fn drawn(
+    stage: &Headless,
+    variant: &Variant,
+    quads: &[Quad],
+    slice: Option<u32>,
+) -> (Vec<[f32; 4]>, Vec<LoopReport>, [u64; 2]) {
+    let settings = Settings { slice, sizing: sizing(variant), ..Settings::new(FORMAT, SIZE[0], SIZE[1]) };
+    let mut renderer = renderer(stage, &shaders(variant, "wgsl"), &settings).unwrap();
+    let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
+    let buffer = vertex_buffer(stage, &vertices(quads, SIZE, &inputs));
+    let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE[0], SIZE[1]).unwrap();
+    let [r, g, b] = BACKGROUND;
+    let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }) };
+    let loops = renderer.render(&output, &mut |pass, _| {
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..6 * quads.len() as u32, 0..1);
+    });
+    let loops = loops.unwrap();
+    let counters = read_counters(stage, &renderer);
+    let pixels = offscreen.colors(&stage.device, &stage.queue).unwrap();
+    (pixels, loops, [u64::from(counters.get("generated")), counters.lost()])
+}
+
+/// Draws on the CPU device; returns the bits of the pixels.
+fn drawn_on_cpu(variant: &Variant, quads: &[Quad]) -> Vec<[u32; 4]> {
+    let code = Arc::new(Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}")));
+    let settings = fragbuf_cpu::Settings { sizing: sizing(variant), ..fragbuf_cpu::Settings::new(SIZE[0], SIZE[1]) };
+    let mut cpu = Device::new(code, settings).unwrap();
+    let inputs = ["position", "color"];
+    let bytes = vertices(quads, SIZE, &inputs);
+    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    let indices: Vec<u32> = (0..6 * quads.len() as u32).collect();
+    let picture = cpu.render(&Mesh { vertices: &words, indices: &indices }, &|_| {}).unwrap();
+    picture.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+#[test]
+fn peeled_storages_equal_the_a_buffer_bit_for_bit() {
+    let stage = device();
+    let a_buffer = technique("ab_sb", &[("counters", "all"), ("sort", "insertion"), ("sort.layers", "64")]);
+    let mut numbers = Numbers::seeded(9);
+    for (key, more, most) in STORAGES {
+        for k in [1, 2, 5, 8].into_iter().filter(|k| *k <= most) {
+            let k_text = k.to_string();
+            let set: Vec<(&str, &str)> = [("k", k_text.as_str()), ("peeling", "k_layers"), ("counters", "all")]
+                .into_iter()
+                .chain(more.iter().copied())
+                .collect();
+            let variant = technique(key, &set);
+            for (seed, count) in [(u64::from(k), 17), (7, 40), (8, 0)] {
+                let mut quads = scene(seed, count);
+                // Iterations count copies of their last fragment, so copies can only make the loop end earlier.
+                let has_copies = count > 17;
+                if has_copies {
+                    quads = with_copies(quads, seed);
+                }
+                for slice in SLICES {
+                    let what = format!("{key} {set:?}, {count} quads, slices of {slice:?} rows");
+                    let (expected, _, [generated, _]) = drawn(&stage, &a_buffer, &quads, None);
+                    let (seen, loops, counted) = drawn(&stage, &variant, &quads, slice);
+                    assert!(
+                        seen == expected,
+                        "{what}: {:?}",
+                        seen.iter().zip(&expected).find(|(one, other)| one != other)
+                    );
+                    let reference = image(&quads, SIZE, None, BACKGROUND);
+                    assert_eq!(first_difference(&seen, &reference), None, "{what}");
+                    assert_eq!(counted, [generated, 0], "{what}");
+                    let rows = slice.unwrap_or(SIZE[1]);
+                    let slices = (0..SIZE[1]).step_by(rows as usize);
+                    let iterations: u32 = slices
+                        .map(|first| deepest(&quads, first..(first + rows).min(SIZE[1])).div_ceil(k).max(1))
+                        .sum();
+                    let Some(peeled) = loops.iter().find(|one| one.until.contains("remaining")) else {
+                        assert_eq!(key, "kb_ll");
+                        continue;
+                    };
+                    assert_eq!(peeled.end, LoopEnd::ConditionMet, "{what}");
+                    assert!(peeled.iterations == iterations || has_copies && peeled.iterations < iterations, "{what}");
+                    // Another order of submission.
+                    numbers.shuffle(&mut quads);
+                }
+                assert_eq!(
+                    drawn_on_cpu(&variant, &quads),
+                    drawn_on_cpu(&a_buffer, &quads),
+                    "{key} {set:?} on the CPU device"
+                );
+            }
+        }
+    }
+}
+
+/// A limit of iterations is a loss with a number: the nearest fragments are kept, and the others counted.
+#[test]
+fn fragments_beyond_the_last_iteration_are_counted() {
+    let stage = device();
+    let variant = technique("k_peeling", &[("k", "2"), ("peeling.iterations", "3"), ("counters", "all")]);
+    let quads = scene(3, 21);
+    let (seen, loops, [_, lost]) = drawn(&stage, &variant, &quads, None);
+    let reference = image(&quads, SIZE, Some(6), BACKGROUND);
+    assert_eq!(first_difference(&seen, &reference), None);
+    assert_eq!((loops[0].iterations, loops[0].end), (3, LoopEnd::LimitReached));
+    let beyond: u32 = (0..SIZE[0] * SIZE[1])
+        .map(|pixel| {
+            let (x, y) = (pixel % SIZE[0], pixel / SIZE[0]);
+            let covers = |quad: &&Quad| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
+            (quads.iter().filter(covers).count() as u32).saturating_sub(6)
+        })
+        .sum();
+    assert!(beyond > 0);
+    assert_eq!(lost, u64::from(beyond));
+}
