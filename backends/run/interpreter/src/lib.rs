@@ -20,6 +20,7 @@ mod arithmetic;
 mod bytecode;
 mod compile;
 mod half;
+mod lanes;
 mod layout;
 mod live;
 mod machine;
@@ -33,6 +34,7 @@ mod workgroup;
 
 pub use bytecode::{Buffer, Bytecode, InterfaceVariable, Marker, Options, Space, Texture, Unsupported};
 pub use half::{from_half, to_half};
+pub use lanes::{LANES, LaneMachine, LaneMemory, LaneSet, LaneWorkgroup};
 pub use machine::{Exit, Machine, OutOfBoundsAccess};
 pub use memory::{Access, Atomic, Barrier, Event, Operation, Reply, Sequential, SharedMemory, WordAddress};
 pub use retry::LEAST_RETRY_LIMIT;
