@@ -40,6 +40,8 @@ fn lanes_change_no_word_of_any_technique() {
                 let case = format!("{key}, {width} x {height}");
                 assert!(bits(&seen) == bits(&expected), "{case}: the images differ");
                 assert_eq!(seen.counters, expected.counters, "{case}");
+                assert_eq!(seen.samples, expected.samples, "{case}");
+                assert_eq!(seen.out_of_bounds, expected.out_of_bounds, "{case}");
                 for planned in &single.plan().resources {
                     let name = &planned.resource.name;
                     assert!(in_lanes.words(name) == single.words(name), "{case}: words of {name} differ");

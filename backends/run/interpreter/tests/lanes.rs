@@ -164,6 +164,20 @@ fn accesses_out_of_bounds_are_reported_and_have_no_effect() {
     let ([single, lanes], ends) = both(&program, 32);
     assert!(ends.iter().all(|end| matches!(end, DispatchEnd::OutOfBounds(_))), "{ends:?}");
     assert!(single == lanes);
+    let unused = "fn run(id: u32) -> u32 {
+        var local: array<u32, 64>;
+        var index = id;
+        index = index * 2u;
+        var seen = local[index];
+        seen = results[index << 8u];
+        return id;
+    }";
+    let unused = self::program(unused);
+    let (_, ends) = both(&unused, 8);
+    assert_eq!(ends, [DispatchEnd::Ended; 2], "reads whose results have no use are within the bounds");
+    let (_, ends) = both(&unused, 33);
+    assert!(ends.iter().all(|end| matches!(end, DispatchEnd::OutOfBounds(_))), "{ends:?}");
+    assert_eq!(ends[0], ends[1]);
     let (_, ends) = both(&program, 21);
     assert_eq!(ends, [DispatchEnd::Ended; 2], "lanes that do not run access nothing");
 }

@@ -3,6 +3,7 @@
 use super::arithmetic::{binary, ternary, unary};
 use super::flow::Flow;
 use super::memory::LaneMemory;
+use super::program::LaneProgram;
 use super::set::{LANES, LaneSet, Lanes};
 use crate::bytecode::Bytecode;
 use crate::machine::{BACKWARD_JUMP_LIMIT, OutOfBoundsAccess, index_address};
@@ -17,7 +18,8 @@ const PATIENCE: u32 = 1 << 16;
 /// A group of invocations of a program.
 #[derive(Clone, Debug)]
 pub struct LaneMachine<'p> {
-    pub(super) program: &'p Bytecode,
+    program: &'p Bytecode,
+    lanes: &'p LaneProgram,
     pub(super) words: Vec<Lanes>,
     pub(super) flow: Flow,
     /// The backward jumps of each lane.
@@ -33,6 +35,7 @@ impl<'p> LaneMachine<'p> {
     pub fn new(program: &'p Bytecode) -> Option<Self> {
         (program.initial_words.len() <= MOST_WORDS).then(|| LaneMachine {
             program,
+            lanes: program.in_lanes.get_or_init(|| LaneProgram::of(program)),
             words: program.initial_words.iter().map(|word| [*word; LANES]).collect(),
             flow: Flow::default(),
             jumps: [0; LANES],
@@ -74,13 +77,13 @@ impl<'p> LaneMachine<'p> {
     /// Runs the lanes from where they are until each has ended, has discarded its fragment or has stopped at a barrier. `Err`: a lane reached
     /// the limit of backward jumps at this instruction.
     pub fn run<M: LaneMemory>(&mut self, memory: &M) -> Result<(), u32> {
-        let program = self.program;
+        let ops = self.lanes.ops.as_slice();
         let Some(mut at) = self.flow.resume() else { return Ok(()) };
         loop {
             if at >= self.flow.join {
                 at = self.flow.arrive(at);
             }
-            match program.ops[at as usize] {
+            match ops[at as usize] {
                 Op::Copy { to, from, count: 1 } => {
                     let value = self.words[from as usize];
                     self.write(to, value);
@@ -122,7 +125,7 @@ impl<'p> LaneMachine<'p> {
                     self.write(to, value);
                 }
                 Op::Discard | Op::End | Op::Barrier(_) => {
-                    let next = match program.ops[at as usize] {
+                    let next = match ops[at as usize] {
                         Op::Discard => self.flow.discard(),
                         Op::End => self.flow.end(),
                         _ => self.flow.stop(at),
@@ -163,6 +166,11 @@ impl<'p> LaneMachine<'p> {
         if to <= from { (0..count).for_each(&mut copy) } else { (0..count).rev().for_each(&mut copy) }
     }
 
+    /// Returns the instruction of the program that an instruction of the lanes comes from.
+    pub(super) fn origin(&self, at: u32) -> u32 {
+        self.lanes.origins.get(at as usize).copied().unwrap_or(at)
+    }
+
     /// Counts a jump back from `at` to `to`. Returns the instruction that runs next. `Err`: a lane reached the limit.
     fn jump_back(&mut self, at: u32, to: u32) -> Result<u32, u32> {
         for lane in 0..LANES {
@@ -175,7 +183,7 @@ impl<'p> LaneMachine<'p> {
         }
         let most = self.jumps.iter().copied().max().unwrap_or(0);
         if most >= BACKWARD_JUMP_LIMIT {
-            return Err(at);
+            return Err(self.origin(at));
         }
         self.until_review = PATIENCE.min(BACKWARD_JUMP_LIMIT - most);
         Ok(self.flow.park(to))

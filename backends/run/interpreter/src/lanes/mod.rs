@@ -9,11 +9,13 @@ mod arithmetic;
 mod flow;
 mod machine;
 mod memory;
+mod program;
 mod set;
 mod shared;
 mod workgroup;
 
 pub use machine::LaneMachine;
 pub use memory::LaneMemory;
+pub(crate) use program::LaneProgram;
 pub use set::{LANES, LaneSet};
 pub use workgroup::LaneWorkgroup;

@@ -6,6 +6,17 @@ pub const LANES: usize = 16;
 /// A word of every lane.
 pub(crate) type Lanes = [u32; LANES];
 
+/// The bit of each lane.
+const BITS: Lanes = {
+    let mut bits = [0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        bits[lane] = 1 << lane;
+        lane += 1;
+    }
+    bits
+};
+
 /// A set of lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LaneSet(u32);
@@ -17,12 +28,13 @@ impl LaneSet {
     }
 
     /// Returns the lanes whose word is zero.
+    #[inline]
     pub(super) fn zeros(words: &Lanes) -> Self {
-        let mut bits = 0;
-        for (lane, word) in words.iter().enumerate() {
-            bits |= if *word == 0 { 1 << lane } else { 0 };
+        let mut bits = [0; LANES];
+        for lane in 0..LANES {
+            bits[lane] = if words[lane] == 0 { BITS[lane] } else { 0 };
         }
-        LaneSet(bits)
+        LaneSet(bits.iter().fold(0, |all, bit| all | bit))
     }
 
     /// Returns whether the set has no lanes.
@@ -56,7 +68,7 @@ impl LaneSet {
     pub(super) fn mask(self) -> Lanes {
         let mut mask = [0; LANES];
         for (lane, word) in mask.iter_mut().enumerate() {
-            *word = if self.0 & (1 << lane) != 0 { u32::MAX } else { 0 };
+            *word = if self.0 & BITS[lane] != 0 { u32::MAX } else { 0 };
         }
         mask
     }

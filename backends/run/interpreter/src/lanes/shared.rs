@@ -8,6 +8,7 @@ use super::set::{LANES, Lanes};
 use crate::machine::{OutOfBoundsAccess, index_address};
 use crate::memory::{Access, Atomic, Operation, WordAddress};
 use crate::operation::Op;
+use crate::packing::Pack;
 
 impl LaneMachine<'_> {
     /// Runs the instruction at `at` for the active lanes.
@@ -102,14 +103,8 @@ impl LaneMachine<'_> {
                 }
             }
             Op::Pack { op, to, a } => {
-                for lane in self.flow.active {
-                    let components = op.components() as usize;
-                    let mut words = [0; 4];
-                    for (number, word) in words.iter_mut().take(components).enumerate() {
-                        *word = self.words[a as usize + number][lane];
-                    }
-                    self.words[to as usize][lane] = op.apply(&words[..components]);
-                }
+                let value = self.packed(op, a);
+                self.write(to, value);
             }
             Op::Unpack { op, to, a } => {
                 let packed = self.words[a as usize];
@@ -139,6 +134,7 @@ impl LaneMachine<'_> {
     }
 
     fn report_out_of_bounds(&mut self, at: u32) {
+        let at = self.origin(at);
         self.out_of_bounds.get_or_insert(OutOfBoundsAccess { at });
     }
 
@@ -146,12 +142,33 @@ impl LaneMachine<'_> {
     fn runtime_addresses(&self, base: u32, index: u32, stride: u32, length: u32) -> Lanes {
         let [base, index] = [base, index].map(|word| &self.words[word as usize]);
         let bound = |base: u32| length.saturating_sub(base) / stride.max(1);
-        let is_uniform = base.iter().fold(0, |differences, other| differences | (other ^ base[0])) == 0;
-        let first = bound(base[0]);
+        let bounds = match uniform(base) {
+            Some(base) => [bound(base); LANES],
+            None => base.map(bound),
+        };
         let mut value = [0; LANES];
         for lane in 0..LANES {
-            let bound = if is_uniform { first } else { bound(base[lane]) };
-            value[lane] = index_address(base[lane], index[lane], stride, bound, false);
+            value[lane] = index_address(base[lane], index[lane], stride, bounds[lane], false);
+        }
+        value
+    }
+
+    fn packed(&self, op: Pack, a: u32) -> Lanes {
+        let words = &self.words[a as usize..(a + op.components()) as usize];
+        let mut value = [0; LANES];
+        if op == Pack::Unorm8 {
+            // The operation of colours, as a loop of vector instructions.
+            for (number, word) in words.iter().enumerate() {
+                for lane in 0..LANES {
+                    value[lane] |= Pack::Unorm8.component(word[lane]) << (8 * number);
+                }
+            }
+            return value;
+        }
+        for lane in self.flow.active {
+            let mut components = [0; 4];
+            components.iter_mut().zip(words).for_each(|(component, word)| *component = word[lane]);
+            value[lane] = op.apply(&components[..words.len()]);
         }
         value
     }
@@ -187,13 +204,13 @@ impl LaneMachine<'_> {
     }
 
     fn load(&mut self, at: u32, words: &[AtomicU32], address: u32, offset: u32, to: u32) {
-        let addresses = self.words[address as usize];
-        let is_uniform = addresses.iter().fold(0, |differences, other| differences | (other ^ addresses[0])) == 0;
-        if is_uniform && let Some(word) = element(words, addresses[0], offset) {
+        if let Some(address) = uniform(&self.words[address as usize])
+            && let Some(word) = element(words, address, offset)
+        {
             self.write(to, [word.load(Ordering::Relaxed); LANES]);
             return;
         }
-        let mut value = self.words[to as usize];
+        let (addresses, mut value) = (self.words[address as usize], self.words[to as usize]);
         for lane in self.flow.active {
             value[lane] = match element(words, addresses[lane], offset) {
                 Some(word) => word.load(Ordering::Relaxed),
@@ -260,6 +277,16 @@ impl LaneMachine<'_> {
             self.words[word as usize + 1][lane] = (value >> 32) as u32;
         }
     }
+}
+
+/// Returns the word that all lanes have. `None`: they differ.
+#[inline]
+fn uniform(words: &Lanes) -> Option<u32> {
+    let mut differences = 0;
+    for lane in 0..LANES {
+        differences |= words[lane] ^ words[0];
+    }
+    (differences == 0).then_some(words[0])
 }
 
 /// Returns the word at `address + offset`. `None`: out of bounds, as [`OUT_OF_BOUNDS`](crate::operation::OUT_OF_BOUNDS) is in any buffer.
