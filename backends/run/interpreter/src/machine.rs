@@ -381,8 +381,7 @@ fn write_words(words: &mut [u32], at: u32, width: u32, value: u64) {
 pub(crate) fn index_address(base: u32, index: u32, stride: u32, bound: u32, clamps: bool) -> u32 {
     let index = if clamps { index.min(bound.saturating_sub(1)) } else { index };
     // Lanes that do not run have any words, so the address may wrap around.
-    let address = base.wrapping_add(index.wrapping_mul(stride));
-    if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { address }
+    if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { base.wrapping_add(index.wrapping_mul(stride)) }
 }
 
 /// Returns the address `address + offset` if all `words` words are inside the buffer.
