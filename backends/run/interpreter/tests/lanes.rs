@@ -2,6 +2,7 @@
 //! the other.
 #![allow(missing_docs, reason = "tests are read, not documented")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::needless_range_loop, reason = "a loop over the lanes of several words")]
 
 #[allow(dead_code, reason = "other tests use the rest")]
 mod device;

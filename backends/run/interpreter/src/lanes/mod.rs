@@ -5,6 +5,11 @@
 //! An access of several lanes takes effect lane by lane, in ascending order. A program of too many words has no lane machine: the caller runs
 //! a [`Machine`](crate::Machine) per invocation.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "a loop over the lanes of several words, which becomes vector instructions"
+)]
+
 mod arithmetic;
 mod flow;
 mod machine;
