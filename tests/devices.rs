@@ -231,7 +231,7 @@ fn auto_selects_the_device_by_the_work() {
     let (gpu, few, many) = (auto("always"), auto("frames of few fragments"), auto("frames of many fragments"));
     assert!(gpu.is_some() != (few.is_some() && many.is_some()), "{devices:?}");
     let cubes = |key: &str, size: &str| automatic(&out, &[key, "--scene", "builtin:cubes", "--size", size]);
-    for (size, expected) in [("48x32", few), ("1024x1024", many)] {
+    for (size, expected) in [("48x32", few), ("1280x1280", many)] {
         let (device, reason) = cubes("kplus_array", size);
         assert_eq!(Some(device.as_str()), gpu.or(expected), "{size}: {reason}");
         assert!(gpu.is_some() || reason.starts_with("estimated to be faster than "), "{size}: {reason}");
@@ -240,7 +240,7 @@ fn auto_selects_the_device_by_the_work() {
     // The camera decides how many fragments there are.
     let (device, _) = automatic(
         &out,
-        &["kplus_array", "--scene", "builtin:cubes", "--size", "1024x1024", "--camera", "eye:0,0,60,fov:60"],
+        &["kplus_array", "--scene", "builtin:cubes", "--size", "2048x2048", "--camera", "eye:0,0,60,fov:60"],
     );
     assert_eq!(Some(device.as_str()), gpu.or(many), "a frame of few fragments has many pixels");
     let (device, _) =
@@ -257,7 +257,8 @@ fn auto_selects_the_cpu_device_where_a_driver_is_unsuitable() {
     let ordered = automatic(&out, &[&["kb", "--order", "shuffle:1"], &view[..]].concat());
     assert_eq!(ordered, ("cpu".to_owned(), "the only device with `--order`".to_owned()));
     if listed().iter().any(|(_, auto)| auto == "frames of many fragments") {
-        let (device, reason) = automatic(&out, &[&["ab_ll", "--set", "sort.layers=512"], &view[..]].concat());
+        let large = ["ab_ll", "--set", "sort.layers=512", "--scene", "builtin:cubes", "--size", "1280x1280"];
+        let (device, reason) = automatic(&out, &large);
         assert!(device == "cpu" && reason.contains("may not sort more than 256 layers"), "{device}: {reason}");
     }
     // A device that is named is used, or it is an error that names another one.

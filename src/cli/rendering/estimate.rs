@@ -9,9 +9,9 @@ use fragbuf::{Registry, Selection, Variant, plan};
 use crate::cli::view::SceneView;
 
 /// The seconds that one core needs for a fragment, a triangle, and a pixel of a pass over the whole frame.
-const FRAGMENT: f64 = 2.0e-6;
-const TRIANGLE: f64 = 1.0e-6;
-const PIXEL: f64 = 0.5e-6;
+const FRAGMENT: f64 = 0.3e-6;
+const TRIANGLE: f64 = 0.35e-6;
+const PIXEL: f64 = 0.08e-6;
 
 /// The seconds of work from which a software driver is faster. It needs about as long to start and to compile, and works faster then.
 const DRIVER_START: f64 = 0.6;

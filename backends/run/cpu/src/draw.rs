@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::clip::{ClipResult, clip};
 use crate::draw_call::DrawCall;
 use crate::fragment_stage::FragmentStage;
-use crate::fragments::{FragmentBatch, TileResults};
+use crate::fragments::{FragmentBatch, Machines, TileResults};
 use crate::interface::{ClipInterpolation, VertexOutputLayout, fragment_inputs, fragment_outputs};
 use crate::tile::Bins;
 use crate::triangle::{Triangle, Vertex, fan};
@@ -62,7 +62,7 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
     let batch = if is_shuffled(draw) { numbers.len().max(1) } else { BATCH };
     let results = TileResults::default();
     for instance in draw.arguments.instances.clone() {
-        let mut words = vertices::run((draw.vertex.0, &draw.vertex.1), draw.vertices, count, instance)?;
+        let mut words = vertices::run((draw.vertex.0, &draw.vertex.1), draw.vertices, (count, instance), draw.lanes)?;
         for numbers_of_batch in numbers.chunks(batch) {
             let share = numbers_of_batch.len() as f64 / numbers.len() as f64 / draw.arguments.instances.len() as f64;
             let triangles = triangles(draw, &layout, &mut words, count, numbers_of_batch)?;
@@ -99,9 +99,9 @@ pub(crate) fn draw(draw: &DrawCall<'_>, done: &(dyn Fn(f64) + Sync)) -> Result<D
 /// Runs the tiles of a batch in parallel; calls `done` for every tile.
 fn run(batch: &FragmentBatch<'_>, done: &(dyn Fn() + Sync)) {
     batch.bins.tiles.par_iter().for_each_init(
-        || (batch.stage.machine(), batch.draw.fragment.1.clone()),
-        |(machine, view), bin| {
-            batch.run(bin, machine, view);
+        || (Machines::of(&batch.stage, batch.draw.lanes), batch.draw.fragment.1.clone()),
+        |(machines, view), bin| {
+            batch.run(bin, machines, view);
             done();
         },
     );

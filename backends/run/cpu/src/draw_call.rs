@@ -25,6 +25,8 @@ pub(crate) struct DrawCall<'a> {
     pub(crate) attachments: Attachments<'a>,
     pub(crate) coverage: Coverage,
     pub(crate) order: FragmentOrder,
+    /// Whether invocations run in lanes.
+    pub(crate) lanes: bool,
     /// The bytes for the triangles and the lists of the tiles. They limit a shuffled order only.
     pub(crate) memory: u64,
 }

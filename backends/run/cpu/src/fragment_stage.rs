@@ -1,8 +1,8 @@
 //! The fragment stage of a draw: sets the inputs of a fragment.
 //!
-//! A stage belongs to one thread, which runs one fragment after the other.
+//! A stage belongs to one thread, which runs one fragment or one group of fragments after the other.
 
-use fragbuf_interpreter::{Bytecode, Machine};
+use fragbuf_interpreter::{Bytecode, LaneMachine, Machine};
 
 use crate::interface::{FragmentInput, InputSource};
 use crate::triangle::{Triangle, Weights};
@@ -40,35 +40,64 @@ impl<'a> FragmentStage<'a> {
     pub(crate) fn begin(&self, machine: &mut Machine<'_>, triangle: &Triangle, position: &FragmentPosition) {
         machine.restart();
         for input in self.inputs {
-            let to = machine.words_mut(input.to.clone());
-            match input.from {
-                InputSource::Position => {
-                    let (x, y) = (position.x as f32 + 0.5, position.y as f32 + 0.5);
-                    let position = [x, y, position.weights.depth, position.weights.inverse_w];
-                    to.iter_mut().zip(position).for_each(|(word, value)| *word = value.to_bits());
-                }
-                InputSource::FrontFacing => to[0] = triangle.is_front.into(),
-                InputSource::PrimitiveIndex => to[0] = triangle.primitive,
-                InputSource::SampleIndex => to[0] = position.sample,
-                InputSource::SampleMask => to[0] = position.mask,
-                InputSource::Flat(first) => {
-                    let from = triangle.provoking as usize + first;
-                    to.copy_from_slice(&self.vertices[from..from + to.len()]);
-                }
-                InputSource::Perspective(first) => self.mix(to, triangle, first, position.weights.perspective),
-                InputSource::Linear(first) => {
-                    self.mix(to, triangle, first, position.weights.linear.map(|weight| weight as f32));
-                }
+            let words = machine.words_mut(input.to.clone());
+            self.input(input.from, words.len(), triangle, position, |number, value| words[number] = value);
+        }
+    }
+
+    /// Sets the inputs of a fragment in a lane of a machine.
+    #[inline]
+    pub(crate) fn set_lane(
+        &self,
+        machine: &mut LaneMachine<'_>,
+        lane: usize,
+        triangle: &Triangle,
+        position: &FragmentPosition,
+    ) {
+        for input in self.inputs {
+            let words = machine.words_mut(input.to.clone());
+            self.input(input.from, words.len(), triangle, position, |number, value| words[number][lane] = value);
+        }
+    }
+
+    /// Calls `set` with the number and value of each of the `count` words of an input.
+    #[inline(always)]
+    fn input(
+        &self,
+        source: InputSource,
+        count: usize,
+        triangle: &Triangle,
+        position: &FragmentPosition,
+        mut set: impl FnMut(usize, u32),
+    ) {
+        match source {
+            InputSource::Position => {
+                let (x, y) = (position.x as f32 + 0.5, position.y as f32 + 0.5);
+                let position = [x, y, position.weights.depth, position.weights.inverse_w];
+                position.iter().enumerate().take(count).for_each(|(number, value)| set(number, value.to_bits()));
+            }
+            InputSource::FrontFacing => set(0, triangle.is_front.into()),
+            InputSource::PrimitiveIndex => set(0, triangle.primitive),
+            InputSource::SampleIndex => set(0, position.sample),
+            InputSource::SampleMask => set(0, position.mask),
+            InputSource::Flat(first) => {
+                let from = &self.vertices[triangle.provoking as usize + first..][..count];
+                from.iter().enumerate().for_each(|(number, word)| set(number, *word));
+            }
+            InputSource::Perspective(first) => self.mix(count, triangle, first, position.weights.perspective, set),
+            InputSource::Linear(first) => {
+                self.mix(count, triangle, first, position.weights.linear.map(|weight| weight as f32), set);
             }
         }
     }
 
     /// Interpolates linearly; exact if the corners are equal.
-    fn mix(&self, to: &mut [u32], triangle: &Triangle, first: usize, weights: [f32; 2]) {
-        let [a, b, c] = triangle.vertices.map(|vertex| &self.vertices[vertex as usize + first..][..to.len()]);
-        for (word, ((a, b), c)) in to.iter_mut().zip(a.iter().zip(b).zip(c)) {
+    #[inline(always)]
+    fn mix(&self, count: usize, triangle: &Triangle, first: usize, weights: [f32; 2], mut set: impl FnMut(usize, u32)) {
+        let [a, b, c] = triangle.vertices.map(|vertex| &self.vertices[vertex as usize + first..][..count]);
+        for (number, ((a, b), c)) in a.iter().zip(b).zip(c).enumerate() {
             let [a, b, c] = [a, b, c].map(|word| f32::from_bits(*word));
-            *word = (a + weights[0] * (b - a) + weights[1] * (c - a)).to_bits();
+            set(number, (a + weights[0] * (b - a) + weights[1] * (c - a)).to_bits());
         }
     }
 }

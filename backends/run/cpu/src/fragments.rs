@@ -11,6 +11,7 @@ use fragbuf_templates::vocabulary::Coverage;
 use crate::draw_call::DrawCall;
 use crate::fragment_stage::{FragmentPosition, FragmentStage};
 use crate::interface::{FragmentOutputs, Rate};
+use crate::lane_group::LaneGroup;
 use crate::schedule::{PixelFragment, interleave};
 use crate::tile::{Bin, Bins, CoveredPixel, SIDE, cover};
 use crate::triangle::{PIXEL_CENTRE, Triangle, sample_positions};
@@ -51,13 +52,29 @@ pub(crate) struct FragmentBatch<'a> {
     pub(crate) results: &'a TileResults,
 }
 
+/// The machines of a thread.
+pub(crate) struct Machines<'a> {
+    machine: Machine<'a>,
+    /// The fragments that run at once; `None`: the program does not run in lanes.
+    group: Option<LaneGroup<'a>>,
+}
+
+impl<'a> Machines<'a> {
+    /// Creates the machines; those of groups only if `lanes` is set.
+    pub(crate) fn of(stage: &FragmentStage<'a>, lanes: bool) -> Self {
+        Machines { machine: stage.machine(), group: LaneGroup::of(stage).filter(|_| lanes) }
+    }
+}
+
 impl<'a> FragmentBatch<'a> {
     /// Runs the fragments of a tile, and its helper invocations outside of the frame.
-    pub(crate) fn run(&self, bin: &Bin, machine: &mut Machine<'a>, view: &mut View<'_>) {
+    pub(crate) fn run(&self, bin: &Bin, machines: &mut Machines<'a>, view: &mut View<'_>) {
         let mut samples = 0;
-        match self.draw.order.interleaving() {
-            Some(order) => self.interleaved(bin, view, order, &mut samples),
-            None => self.for_each_fragment(bin, |triangle, position| {
+        let Machines { machine, group } = machines;
+        match (self.draw.order.interleaving(), group) {
+            (Some(order), _) => self.interleaved(bin, view, order, &mut samples),
+            (None, Some(group)) => self.in_groups(bin, group, view, &mut samples),
+            (None, None) => self.for_each_fragment(bin, |triangle, position| {
                 // A fragment that does not terminate takes seconds; the others would too.
                 if self.results.endless.at().is_none() {
                     samples += u64::from(self.shade(machine, view, triangle, position));
@@ -93,6 +110,48 @@ impl<'a> FragmentBatch<'a> {
                 }
             });
         }
+    }
+
+    /// Runs the fragments of the tile in groups.
+    fn in_groups(&self, bin: &Bin, group: &mut LaneGroup<'a>, view: &View<'_>, samples: &mut u64) {
+        group.clear();
+        self.for_each_fragment(bin, |triangle, mut position| {
+            if self.draw.attachments.is_early {
+                position.mask = self.passing_samples(triangle, &position, None);
+                if position.mask == 0 {
+                    return;
+                }
+            }
+            if !group.has_lane_for(&position) {
+                *samples += self.run_group(group, view);
+            }
+            group.push(&self.stage, (triangle, position));
+        });
+        *samples += self.run_group(group, view);
+    }
+
+    /// Runs a group and empties it. Returns the number of samples that passed.
+    fn run_group(&self, group: &mut LaneGroup<'a>, view: &View<'_>) -> u64 {
+        let mut samples = 0;
+        // A fragment that does not terminate takes seconds; the others would too.
+        if self.results.endless.at().is_none() {
+            group.machine.restart(group.fragments.len());
+            match group.machine.run(view) {
+                Ok(()) => {
+                    let mut result = std::mem::take(&mut group.result);
+                    for lane in group.machine.ended() {
+                        let (triangle, position) = group.fragments[lane];
+                        group.machine.copy_result(lane, &mut result);
+                        samples += u64::from(self.test_and_blend(triangle, position, &result));
+                    }
+                    group.result = result;
+                }
+                Err(at) => self.results.endless.set(at),
+            }
+            self.record_out_of_bounds(&mut group.machine.out_of_bounds);
+        }
+        group.clear();
+        samples
     }
 
     /// Runs one fragment with its tests; returns the number of samples that passed.
@@ -204,7 +263,11 @@ impl<'a> FragmentBatch<'a> {
         if exit == Exit::Endless {
             self.results.endless.set(machine.at());
         }
-        if let Some(out_of_bounds) = machine.out_of_bounds.take() {
+        self.record_out_of_bounds(&mut machine.out_of_bounds);
+    }
+
+    fn record_out_of_bounds(&self, access: &mut Option<OutOfBoundsAccess>) {
+        if let Some(out_of_bounds) = access.take() {
             self.results.out_of_bounds.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(out_of_bounds);
         }
     }

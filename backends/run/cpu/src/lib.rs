@@ -5,9 +5,9 @@
 //!                                                                    ▲ Mesh: words of vertices and indices
 //! ```
 //!
-//! A frame is divided into tiles. The fragments of a pixel run one after the other in submission order on one thread. Tiles
-//! run in parallel, so memory that pixels share (pools, counters) is atomic. [`FragmentOrder::Shuffled`] interleaves the
-//! fragments of a pixel from one shared access to the next, as a GPU may.
+//! A frame is divided into tiles. The fragments of a pixel run one after the other in submission order on one thread, and those of
+//! different pixels of a tile in the lanes of one machine. Tiles run in parallel, so memory that pixels share (pools, counters) is
+//! atomic. [`FragmentOrder::Shuffled`] interleaves the fragments of a pixel from one shared access to the next, as a GPU may.
 //!
 //! Rasterisation follows the rules of the graphics APIs: 8 subpixel bits, top-left rule, perspective-correct, linear and flat
 //! attributes, clipping at the near and far planes, depth and stencil tests, blending, 1, 2, 4 or 8 samples, with or without
@@ -29,6 +29,7 @@ mod fragments;
 mod frame;
 mod helpers;
 mod interface;
+mod lane_group;
 mod memory;
 mod mesh;
 mod picture;

@@ -20,6 +20,9 @@ pub struct Settings {
     /// lists of one batch of its triangles, some tens of megabytes, are not part of them. With a shuffled order, a batch is the whole mesh;
     /// if its triangles and the lists of the tiles are larger than that, they must fit into the rest. Default: [`DEFAULT_MEMORY`], 2 GiB.
     pub memory: u64,
+    /// Whether invocations run in lanes, where the shaders and the order allow it: faster, with the same result. `false`: one after the
+    /// other.
+    pub lanes: bool,
 }
 
 impl Settings {
@@ -33,6 +36,7 @@ impl Settings {
             order: FragmentOrder::Submission,
             slice: None,
             memory: DEFAULT_MEMORY,
+            lanes: true,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Runs the vertex stage: every vertex once, in parallel.
 
-use fragbuf_interpreter::{Bytecode, Exit, Machine};
+use fragbuf_interpreter::{Bytecode, Exit, LANES, LaneMachine, Machine};
 use naga::BuiltIn;
 use rayon::prelude::*;
 
@@ -23,47 +23,94 @@ pub(crate) fn stride(program: &Bytecode) -> usize {
     program.inputs.iter().filter(|input| input.location().is_some()).map(|input| input.words.len()).sum()
 }
 
-/// Runs `count` vertices of an instance.
+/// Runs `count` vertices of an instance; in lanes, if `lanes` is set and the program allows it.
 pub(crate) fn run(
     (program, view): (&Bytecode, &View<'_>),
     vertices: &[u32],
-    count: usize,
-    instance: u32,
+    (count, instance): (usize, u32),
+    lanes: bool,
 ) -> Result<Vec<u32>, DrawError> {
-    let inputs = vertex_inputs(program)?;
-    let stride = stride(program);
+    let stage = VertexStage { inputs: vertex_inputs(program)?, stride: stride(program), program, vertices, instance };
     let words = program.result.len();
+    let lanes = lanes && program.buffers.iter().all(|buffer| !buffer.is_written);
     let mut results = vec![0; words * count];
     let endless: Vec<Option<u32>> = results
         .par_chunks_mut((words * CHUNK).max(1))
         .enumerate()
         .map(|(chunk, results)| {
-            let mut machine = Machine::new(program);
-            let mut view = view.clone();
-            for (offset, result) in results.chunks_mut(words.max(1)).enumerate() {
-                let vertex = chunk * CHUNK + offset;
-                machine.restart();
-                for (number, source) in inputs.iter().enumerate() {
-                    match source {
-                        VertexInput::VertexIndex => machine.set_input(number, &[vertex as u32]),
-                        VertexInput::InstanceIndex => machine.set_input(number, &[instance]),
-                        VertexInput::Words(first) => {
-                            let from = vertices.get(vertex * stride + first..).unwrap_or_default();
-                            machine.set_input(number, from);
-                        }
-                    }
-                }
-                if machine.run(&mut view) != Exit::Ended {
-                    return Some(machine.at());
-                }
-                result.copy_from_slice(machine.result());
-            }
-            None
+            let lanes = LaneMachine::new(program).filter(|_| lanes);
+            let end = match lanes {
+                Some(machine) => stage.run_in_lanes(machine, chunk * CHUNK, view, results),
+                None => stage.run(chunk * CHUNK, &mut view.clone(), results),
+            };
+            end.err()
         })
         .collect();
     match endless.into_iter().flatten().next() {
         None => Ok(results),
         Some(at) => Err(DrawError::EndlessVertex(at)),
+    }
+}
+
+/// The program, inputs and vertices of an instance.
+struct VertexStage<'a> {
+    program: &'a Bytecode,
+    inputs: Vec<VertexInput>,
+    vertices: &'a [u32],
+    stride: usize,
+    instance: u32,
+}
+
+impl VertexStage<'_> {
+    /// Runs consecutive vertices. `Err`: one reached the limit of backward jumps at this instruction.
+    fn run(&self, first: usize, view: &mut View<'_>, results: &mut [u32]) -> Result<(), u32> {
+        let mut machine = Machine::new(self.program);
+        for (vertex, result) in (first..).zip(results.chunks_mut(self.program.result.len().max(1))) {
+            machine.restart();
+            self.set_inputs(vertex, |word, value| machine.words_mut(word..word + 1)[0] = value);
+            if machine.run(view) != Exit::Ended {
+                return Err(machine.at());
+            }
+            result.copy_from_slice(machine.result());
+        }
+        Ok(())
+    }
+
+    /// The same in lanes.
+    fn run_in_lanes(
+        &self,
+        mut machine: LaneMachine<'_>,
+        first: usize,
+        view: &View<'_>,
+        results: &mut [u32],
+    ) -> Result<(), u32> {
+        let words = self.program.result.len().max(1);
+        for (first, results) in (first..).step_by(LANES).zip(results.chunks_mut(words * LANES)) {
+            let count = results.len() / words;
+            machine.restart(count);
+            for lane in 0..count {
+                self.set_inputs(first + lane, |word, value| machine.words_mut(word..word + 1)[0][lane] = value);
+            }
+            machine.run(view)?;
+            for (lane, result) in results.chunks_mut(words).enumerate() {
+                machine.copy_result(lane, result);
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `set` with the words of the machine that are inputs, and their values.
+    fn set_inputs(&self, vertex: usize, mut set: impl FnMut(usize, u32)) {
+        for (input, source) in self.program.inputs.iter().zip(&self.inputs) {
+            match source {
+                VertexInput::VertexIndex => set(input.words.start, vertex as u32),
+                VertexInput::InstanceIndex => set(input.words.start, self.instance),
+                VertexInput::Words(first) => {
+                    let from = self.vertices.get(vertex * self.stride + first..).unwrap_or_default();
+                    input.words.clone().zip(from).for_each(|(word, value)| set(word, *value));
+                }
+            }
+        }
     }
 }
 

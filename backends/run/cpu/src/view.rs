@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use fragbuf_interpreter::{Access, Atomic, Event, Operation, Reply, SharedMemory, WordAddress};
+use fragbuf_interpreter::{Access, Event, LaneMemory, Reply, SharedMemory, WordAddress};
 
 use crate::bound_texture::BoundTexture;
 
@@ -23,36 +23,10 @@ impl View<'_> {
 
     /// Performs an access; returns the old value.
     pub(crate) fn access(&self, access: &Access) -> u64 {
-        if access.words == 1 { self.narrow(access).into() } else { self.wide(access) }
+        if access.words == 1 { access.perform(self.word(access.address)).into() } else { self.perform_wide(access) }
     }
 
-    fn narrow(&self, access: &Access) -> u32 {
-        let word = self.word(access.address);
-        let value = access.value as u32;
-        match access.operation {
-            Operation::Load => word.load(Ordering::Relaxed),
-            Operation::Store => {
-                word.store(value, Ordering::Relaxed);
-                0
-            }
-            Operation::Atomic(function) => match function {
-                Atomic::Add => word.fetch_add(value, Ordering::Relaxed),
-                Atomic::Subtract => word.fetch_sub(value, Ordering::Relaxed),
-                Atomic::And => word.fetch_and(value, Ordering::Relaxed),
-                Atomic::Or => word.fetch_or(value, Ordering::Relaxed),
-                Atomic::ExclusiveOr => word.fetch_xor(value, Ordering::Relaxed),
-                Atomic::Min => word.fetch_min(value, Ordering::Relaxed),
-                Atomic::Max => word.fetch_max(value, Ordering::Relaxed),
-                Atomic::Exchange => word.swap(value, Ordering::Relaxed),
-                Atomic::SignedMin | Atomic::SignedMax | Atomic::CompareExchange => {
-                    let new = |old: u32| Some(access.new_value(old.into()) as u32);
-                    word.fetch_update(Ordering::Relaxed, Ordering::Relaxed, new).unwrap_or_else(|old| old)
-                }
-            },
-        }
-    }
-
-    fn wide(&self, access: &Access) -> u64 {
+    fn perform_wide(&self, access: &Access) -> u64 {
         let _guard = self.wide.lock().unwrap_or_else(PoisonError::into_inner);
         let low = self.word(access.address);
         let high = self.word(WordAddress { word: access.address.word + 1, ..access.address });
@@ -92,5 +66,24 @@ impl SharedMemory for View<'_> {
             Event::Barrier(_) => Reply::Stop,
             Event::Fence | Event::CriticalBegin | Event::CriticalEnd => Reply::Done(0),
         }
+    }
+}
+
+impl LaneMemory for View<'_> {
+    #[inline]
+    fn words(&self, buffer: u16) -> &[AtomicU32] {
+        self.buffers[usize::from(buffer)]
+    }
+
+    fn wide(&self, access: &Access) -> u64 {
+        self.perform_wide(access)
+    }
+
+    fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]> {
+        self.textures[usize::from(texture)].texel(coordinates)
+    }
+
+    fn extent(&self, texture: u16) -> [u32; 3] {
+        self.textures[usize::from(texture)].extent()
     }
 }

@@ -7,6 +7,7 @@ mod helpers;
 mod host;
 mod indirect;
 mod interleaved;
+mod lanes;
 mod objects;
 mod peeling;
 mod peeling_loop;

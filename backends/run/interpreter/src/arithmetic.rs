@@ -14,6 +14,7 @@ fn signed(word: u32) -> i32 {
     word as i32
 }
 
+#[inline(always)]
 pub(crate) fn unary(op: Unary, word: u32) -> u32 {
     let x = float(word);
     let real = |value: f32| value.to_bits();
@@ -102,6 +103,7 @@ fn fraction_and_exponent(x: f32) -> (f32, i32) {
     (f32::from_bits((bits & 0x807f_ffff) | (126 << 23)), exponent)
 }
 
+#[inline(always)]
 pub(crate) fn binary(op: Binary, left: u32, right: u32) -> u32 {
     let (x, y) = (float(left), float(right));
     let (i, j) = (signed(left), signed(right));
@@ -164,6 +166,7 @@ pub(crate) fn binary(op: Binary, left: u32, right: u32) -> u32 {
     }
 }
 
+#[inline(always)]
 pub(crate) fn ternary(op: Ternary, a: u32, b: u32, c: u32) -> u32 {
     let (x, y, z) = (float(a), float(b), float(c));
     match op {

@@ -4,9 +4,11 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use naga::{Binding, Span};
 
+use crate::lanes::LaneProgram;
 use crate::operation::Op;
 use crate::retry::RetryLoop;
 
@@ -146,6 +148,10 @@ pub struct Bytecode {
     pub(crate) initial_words: Vec<u32>,
     /// The number of words of private variables, which come first.
     pub(crate) privates: usize,
+    /// The number of constants, which come last.
+    pub(crate) constants: usize,
+    /// The instructions of lane machines, once one is created.
+    pub(crate) in_lanes: OnceLock<LaneProgram>,
     /// Per instruction that can stop a machine, the live words.
     pub(crate) live: BTreeMap<u32, Vec<Range<u32>>>,
     /// Per instruction, whether it is part of a loop.

@@ -11,7 +11,7 @@ use crate::operation::{Op, OperandUse};
 
 /// A set of words.
 #[derive(Clone, PartialEq, Eq)]
-struct WordSet(Vec<u64>);
+pub(crate) struct WordSet(Vec<u64>);
 
 impl WordSet {
     fn new(count: usize) -> Self {
@@ -26,8 +26,8 @@ impl WordSet {
         self.0[word as usize / 64] &= !(1 << (word % 64));
     }
 
-    fn contains(&self, word: u32) -> bool {
-        self.0[word as usize / 64] >> (word % 64) & 1 == 1
+    pub(crate) fn contains(&self, word: u32) -> bool {
+        self.0.get(word as usize / 64).is_some_and(|bits| bits >> (word % 64) & 1 == 1)
     }
 
     /// Adds the words of `other`; returns whether the set grew.
@@ -63,6 +63,11 @@ pub(crate) struct Liveness {
 }
 
 impl Liveness {
+    /// Returns the live words before every instruction.
+    pub(crate) fn before(&self) -> &[WordSet] {
+        &self.before
+    }
+
     /// Returns whether a word that is no constant is live before an instruction.
     pub(crate) fn is_live(&self, at: usize, word: u32) -> bool {
         self.before.get(at).is_some_and(|live| live.contains(word))
@@ -71,13 +76,23 @@ impl Liveness {
 
 /// Computes liveness. `words` is the number of words before the constants; `result` is live at the end.
 pub(crate) fn liveness(ops: &[Op], words: u32, result: &Range<usize>) -> Liveness {
+    liveness_with(ops, words, result, Op::is_pure)
+}
+
+/// Computes liveness, given which instructions read nothing if their results are dead.
+pub(crate) fn liveness_with(
+    ops: &[Op],
+    words: u32,
+    result: &Range<usize>,
+    is_removable: impl Fn(&Op) -> bool,
+) -> Liveness {
     let mut before: Vec<WordSet> = vec![WordSet::new(words as usize); ops.len()];
     let mut changed = true;
     while changed {
         changed = false;
         for at in (0..ops.len()).rev() {
             let mut live = live_after(ops, at, &before, words, result);
-            transfer(ops[at], words, &mut live);
+            transfer(ops[at], words, &mut live, is_removable(&ops[at]));
             changed |= before[at].extend(&live);
         }
     }
@@ -94,7 +109,8 @@ pub(crate) fn liveness(ops: &[Op], words: u32, result: &Range<usize>) -> Livenes
     Liveness { unread, at_stops: stops.map(|at| (at as u32, before[at].ranges(words))).collect(), before }
 }
 
-fn live_after(ops: &[Op], at: usize, before: &[WordSet], words: u32, result: &Range<usize>) -> WordSet {
+/// Returns the live words after an instruction, from those before all of them.
+pub(crate) fn live_after(ops: &[Op], at: usize, before: &[WordSet], words: u32, result: &Range<usize>) -> WordSet {
     let mut live = WordSet::new(words as usize);
     for next in ops[at].successors(at).into_iter().flatten() {
         live.extend(&before[next]);
@@ -106,8 +122,8 @@ fn live_after(ops: &[Op], at: usize, before: &[WordSet], words: u32, result: &Ra
 }
 
 /// Changes the words that are live after an instruction to those that are live before it.
-fn transfer(mut op: Op, words: u32, live: &mut WordSet) {
-    if op.is_pure() && !writes_any(&mut op, words, live) {
+fn transfer(mut op: Op, words: u32, live: &mut WordSet, is_removable: bool) {
+    if is_removable && !writes_any(&mut op, words, live) {
         return;
     }
     let mut read: Vec<u32> = Vec::new();

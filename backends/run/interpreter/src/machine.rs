@@ -29,7 +29,7 @@ pub struct OutOfBoundsAccess {
 }
 
 /// The limit of backward jumps of one run.
-const BACKWARD_JUMP_LIMIT: u32 = 1 << 24;
+pub(crate) const BACKWARD_JUMP_LIMIT: u32 = 1 << 24;
 
 /// The backward jumps after which [`Machine::run_or_repeat`] looks for a cycle. Few programs have so many.
 const FIRST_JUMPS: u32 = 1 << 12;
@@ -377,9 +377,11 @@ fn write_words(words: &mut [u32], at: u32, width: u32, value: u64) {
     }
 }
 
-fn index_address(base: u32, index: u32, stride: u32, bound: u32, clamps: bool) -> u32 {
+#[inline]
+pub(crate) fn index_address(base: u32, index: u32, stride: u32, bound: u32, clamps: bool) -> u32 {
     let index = if clamps { index.min(bound.saturating_sub(1)) } else { index };
-    if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { base + index * stride }
+    // Lanes that do not run have any words, so the address may wrap around.
+    if base == OUT_OF_BOUNDS || index >= bound { OUT_OF_BOUNDS } else { base.wrapping_add(index.wrapping_mul(stride)) }
 }
 
 /// Returns the address `address + offset` if all `words` words are inside the buffer.

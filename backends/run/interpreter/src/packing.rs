@@ -52,11 +52,12 @@ impl Pack {
             .fold(0, |packed, word| packed.checked_shl(bits).unwrap_or(0) | (self.component(*word) & mask))
     }
 
-    fn component(self, word: u32) -> u32 {
+    #[inline(always)]
+    pub(crate) fn component(self, word: u32) -> u32 {
         let x = f32::from_bits(word);
         // WGSL writes floor(0.5 + scale * x), whose sum may round up to the next integer; drivers round the product, ties to even.
-        let snorm = |scale: f32| (scale * x.clamp(-1.0, 1.0)).round_ties_even() as i32 as u32;
-        let unorm = |scale: f32| (scale * x.clamp(0.0, 1.0)).round_ties_even() as u32;
+        let snorm = |scale: f32| rounded(scale * x.clamp(-1.0, 1.0)) as u32;
+        let unorm = |scale: f32| rounded(scale * x.clamp(0.0, 1.0)) as u32;
         match self {
             Pack::Snorm8 => snorm(127.0),
             Pack::Unorm8 => unorm(255.0),
@@ -68,6 +69,13 @@ impl Pack {
             Pack::UnsignedClamped8 => word.min(255),
         }
     }
+}
+
+/// Rounds to an integer, ties to even; 0 for NaN. The magnitude of `x` is less than 2²². Adding 1.5 · 2²³ leaves no bits for a fraction.
+#[inline(always)]
+fn rounded(x: f32) -> i32 {
+    const SHIFT: f32 = 12_582_912.0;
+    ((x + SHIFT) - SHIFT) as i32
 }
 
 fn insert_bits(words: &[u32]) -> u32 {
@@ -102,5 +110,20 @@ impl Unpack {
             Unpack::Signed8 => i32::from(part as i8) as u32,
             Unpack::Unsigned8 => part & 0xff,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_to_the_nearest_integer_and_ties_to_even() {
+        for step in -2_000_000..2_000_000 {
+            let x = step as f32 / 16.0;
+            assert_eq!(rounded(x), x.round_ties_even() as i32, "{x}");
+            assert_eq!(rounded(x.next_up()), x.next_up().round_ties_even() as i32, "{x}");
+        }
+        assert_eq!(rounded(f32::NAN), 0);
     }
 }

@@ -4,7 +4,7 @@
 
 use naga::BuiltIn;
 
-use crate::bytecode::{Bytecode, Space};
+use crate::bytecode::{Bytecode, InterfaceVariable, Space};
 use crate::machine::{Exit, Machine, OutOfBoundsAccess};
 use crate::memory::{Event, Reply, Sequential, SharedMemory, WordAddress};
 
@@ -141,19 +141,32 @@ impl<S: SharedMemory> SharedMemory for BarrierSegment<'_, S> {
 /// Sets the ids of an invocation with this index in one of `groups` workgroups.
 pub fn set_invocation_ids(machine: &mut Machine<'_>, index: u32, group: [u32; 3], groups: [u32; 3]) {
     let program = machine.program();
-    let size = program.workgroup_size;
-    let local = [index % size[0], index / size[0] % size[1], index / (size[0] * size[1])];
-    let global = [0, 1, 2].map(|axis| group[axis] * size[axis] + local[axis]);
     for (number, input) in program.inputs.iter().enumerate() {
-        let Some(naga::Binding::BuiltIn(built_in)) = &input.binding else { continue };
-        match built_in {
-            BuiltIn::GlobalInvocationId => machine.set_input(number, &global),
-            BuiltIn::LocalInvocationId => machine.set_input(number, &local),
-            BuiltIn::LocalInvocationIndex => machine.set_input(number, &[index]),
-            BuiltIn::WorkGroupId => machine.set_input(number, &group),
-            BuiltIn::NumWorkGroups => machine.set_input(number, &groups),
-            BuiltIn::WorkGroupSize => machine.set_input(number, &size),
-            _ => {}
+        if let Some(id) = invocation_id(program, input, index, group, groups) {
+            machine.set_input(number, &id);
         }
     }
+}
+
+/// Returns the id that an input is, of an invocation with this index in one of `groups` workgroups; the first words of it, if the input has
+/// fewer. `None`: it is no id.
+pub(crate) fn invocation_id(
+    program: &Bytecode,
+    input: &InterfaceVariable,
+    index: u32,
+    group: [u32; 3],
+    groups: [u32; 3],
+) -> Option<[u32; 3]> {
+    let Some(naga::Binding::BuiltIn(built_in)) = &input.binding else { return None };
+    let size = program.workgroup_size;
+    let local = [index % size[0], index / size[0] % size[1], index / (size[0] * size[1])];
+    Some(match built_in {
+        BuiltIn::GlobalInvocationId => [0, 1, 2].map(|axis| group[axis] * size[axis] + local[axis]),
+        BuiltIn::LocalInvocationId => local,
+        BuiltIn::LocalInvocationIndex => [index; 3],
+        BuiltIn::WorkGroupId => group,
+        BuiltIn::NumWorkGroups => groups,
+        BuiltIn::WorkGroupSize => size,
+        _ => return None,
+    })
 }

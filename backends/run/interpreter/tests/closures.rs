@@ -5,6 +5,7 @@
 
 mod device;
 mod functions;
+mod lane_dispatch;
 
 use std::fmt::Write;
 
@@ -13,6 +14,7 @@ use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
 use functions::vectors::vectors;
 use functions::{Function, Word, loops, numbers, whole_numbers};
+use lane_dispatch::dispatch_in_lanes;
 
 /// Seeded numbers.
 struct Random(u32);
@@ -97,6 +99,9 @@ fn differences(functions: &[Function]) -> Vec<String> {
     let at = program.buffers.iter().position(|buffer| buffer.name == "results").unwrap();
     let mut interpreted = initial.clone();
     assert_eq!(dispatch(&program, [ROUNDS as u32, 1, 1], &mut interpreted), DispatchEnd::Ended);
+    let mut in_lanes = initial.clone();
+    assert_eq!(dispatch_in_lanes(&program, [ROUNDS as u32, 1, 1], &mut in_lanes), DispatchEnd::Ended);
+    assert!(in_lanes == interpreted, "lanes give other words than single invocations");
     let headless = Headless::open(&Choice::Cpu, wgpu::Features::empty()).unwrap();
     let run = device::run(&headless, &source, "main", &program, [ROUNDS as u32, 1, 1], &initial);
     let mut found = Vec::new();

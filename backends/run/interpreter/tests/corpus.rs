@@ -3,10 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod device;
+mod lane_dispatch;
 
 use fragbuf_interpreter::{Bytecode, DispatchEnd, Options, dispatch};
 use fragbuf_runtime::headless::{Choice, Headless};
 use fragbuf_runtime::wgpu;
+use lane_dispatch::dispatch_in_lanes;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The allowed difference between two words.
@@ -98,6 +100,20 @@ fn a_device_leaves_the_same_words() {
         assert!(ours.iter().flatten().any(|word| *word != 0), "{name} writes nothing");
     }
     assert!(differences.is_empty(), "{} words differ:\n{}", differences.len(), differences.join("\n"));
+}
+
+/// The same shaders in lanes. `tests/lanes.rs` has shaders whose lanes differ.
+#[test]
+fn lanes_leave_the_same_words() {
+    for (name, source, _, groups) in CORPUS {
+        let (program, expected) = interpreted(source, groups);
+        let mut buffers = initial(&program);
+        assert_eq!(dispatch_in_lanes(&program, groups, &mut buffers), DispatchEnd::Ended, "{name}");
+        for (buffer, (found, expected)) in program.buffers.iter().zip(buffers.iter().zip(&expected)) {
+            let different = (0..expected.len()).find(|at| found[*at] != expected[*at]);
+            assert_eq!(different, None, "{name}: the first different word of {}", buffer.name);
+        }
+    }
 }
 
 fn agree(ours: u32, theirs: u32, tolerance: Tolerance) -> bool {

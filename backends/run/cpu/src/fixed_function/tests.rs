@@ -82,6 +82,7 @@ impl TestDraw<'_> {
             attachments: self.attachments.clone(),
             coverage: self.coverage,
             order: FragmentOrder::Submission,
+            lanes: true,
             memory: 0,
         };
         match draw(&call, &|_| {}) {

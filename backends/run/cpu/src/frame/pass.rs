@@ -44,7 +44,7 @@ impl Frame<'_> {
             (PassCode::Compute(program), Kind::Compute { .. }) => {
                 let counts = workgroups(self, pass, &values)?;
                 let view = self.view(program, &uniforms)?;
-                compute(program, &view, counts).map_err(|error| match error {
+                compute(program, &view, counts, self.device.settings.lanes).map_err(|error| match error {
                     ComputeError::Endless(instruction) => code.endless(at, program, instruction),
                     ComputeError::DivergentBarrier => Error::NotTerminating {
                         pass: pass.name.clone(),
@@ -122,7 +122,7 @@ impl Frame<'_> {
             visible.push(1);
             let is_queried = !self.cursor.is_dropped(&self.code.plan, query, number);
             let Some(corners) = self.corners(object, stride).filter(|_| is_queried) else { continue };
-            let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, BOX_CORNERS, 0);
+            let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, (BOX_CORNERS, 0), empty.lanes);
             let transformed = transformed.map_err(|error| self.draw_error(query, stages, 0, 0, error))?;
             let crosses = transformed.chunks(layout.stride).any(|vertex| {
                 let [_, _, z, w] = layout.position_in(vertex);
@@ -200,6 +200,7 @@ impl Frame<'_> {
             attachments: Attachments::of(pass, numbers, &textures, (&self.output, &self.slice))?,
             coverage,
             order: settings.order,
+            lanes: settings.lanes,
             memory: self.device.limits.left(plan, &self.device.values)?.max(BATCH_BYTES),
         })
     }

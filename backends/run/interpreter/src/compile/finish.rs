@@ -1,5 +1,7 @@
 //! Finishes a compilation: numbers the constants and analyses the program.
 
+use std::sync::OnceLock;
+
 use crate::bytecode::{Bytecode, InterfaceVariable};
 use crate::live::{in_loops, liveness};
 use crate::memory::Atomic;
@@ -55,6 +57,7 @@ impl Compiler<'_> {
         let mut initial_words = self.privates;
         let privates = initial_words.len();
         initial_words.resize(first_constant as usize, 0);
+        let constants = self.constants.len();
         initial_words.extend(self.constants);
         Bytecode {
             in_loop: in_loops(&self.ops),
@@ -64,6 +67,8 @@ impl Compiler<'_> {
             sites: self.sites,
             initial_words,
             privates,
+            constants,
+            in_lanes: OnceLock::new(),
             live: live.at_stops,
             inputs,
             result,

@@ -10,6 +10,7 @@ use super::device;
 use super::evaluator::TOO_LONG;
 use super::generator::Program;
 use super::harness::{Parsed, RESULT_WORDS, lowered, shader};
+use super::lane_dispatch::dispatch_in_lanes;
 use super::range::Undefined;
 use super::shrink::shrink;
 use super::value::{Input, Value};
@@ -224,13 +225,19 @@ pub fn difference(program: &Program, input: &Input, device: &str, expected: &Val
     )
 }
 
-/// Runs a shader on the interpreter.
+/// Runs a shader on the interpreter: one invocation after the other, and in lanes, which must give the same words.
 pub fn interpret(shader: &Shader) -> Result<Vec<u32>, String> {
     let program = Bytecode::entry_point(&shader.module, &shader.info, "main", &Options::default()).unwrap();
-    let mut buffers = buffers(&program, shader);
+    let initial = buffers(&program, shader);
+    let mut buffers = initial.clone();
     let end = dispatch(&program, [shader.groups, 1, 1], &mut buffers);
     if end != DispatchEnd::Ended {
         return Err(format!("the shader does not end: {end:?}"));
+    }
+    let mut in_lanes = initial;
+    let end = dispatch_in_lanes(&program, [shader.groups, 1, 1], &mut in_lanes);
+    if end != DispatchEnd::Ended || in_lanes != buffers {
+        return Err(format!("lanes differ from single invocations: {end:?}"));
     }
     Ok(buffers.swap_remove(results(&program)))
 }

@@ -23,6 +23,8 @@ mod expressions;
 mod generator;
 mod harness;
 mod inputs;
+#[path = "../lane_dispatch/mod.rs"]
+mod lane_dispatch;
 mod methods;
 mod opengl;
 mod operators;
