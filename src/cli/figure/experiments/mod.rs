@@ -10,6 +10,7 @@ mod k15_fig_4;
 mod k15_fig_6;
 mod k15_fig_7;
 mod k15_fig_9_left;
+mod k15_fig_9_right;
 mod k15_sec_5_1_2;
 mod k15_table_1;
 mod peers;
@@ -17,7 +18,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 13] = [
+pub(super) const EXPERIMENTS: [Experiment; 14] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -25,6 +26,7 @@ pub(super) const EXPERIMENTS: [Experiment; 13] = [
     k15_fig_6::ROW,
     k15_fig_7::ROW,
     k15_fig_9_left::ROW,
+    k15_fig_9_right::ROW,
     k15_fig_10::ROW,
     k15_sec_5_1_2::ROW,
     c15_fig_1::ROW,
