@@ -197,12 +197,61 @@ fn records_without_properties_are_nothing() {
     }
 }
 
+/// Counts that disagree with the file are told with both numbers, in either encoding.
+#[test]
+fn counts_of_a_ply_that_disagree_with_the_file_are_told() {
+    let elements =
+        |vertices: u32, faces: u32| format!("element vertex {vertices}\n{VERTEX}element face {faces}\n{FACE}");
+    let text = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (vertices, faces, line, expected) in [
+        (3, 2, 13, "line 7 declares 2 of `face`, and the file has 1"),
+        (4, 1, 13, "the header declares 4 `vertex` and 1 `face`, and 4 lines follow it"),
+        // The third vertex is read as a face.
+        (2, 1, 0, "the header declares 2 `vertex` and 1 `face`, and the file has 1 more line"),
+        (5, 2, 13, "line 3 declares 5 of `vertex`, and the file has 4"),
+    ] {
+        let file = ply("ascii", &elements(vertices, faces), text);
+        let told = match loaded(&[("m.ply", &file)], SMALL) {
+            Err(Error::Malformed { position, message, .. }) => {
+                assert_eq!(position, FilePosition::Line(line), "{message}");
+                message
+            }
+            Err(other) => panic!("{other}"),
+            Ok(scene) => scene.warnings.iter().map(|warning| warning.to_string()).collect::<Vec<_>>().join("\n"),
+        };
+        assert!(told.contains(expected), "{vertices} {faces}: {told}");
+    }
+    // A vertex too many shifts the faces.
+    let file = ply("ascii", &elements(3, 1), b"0 0 0\n1 0 0\n0 1 0\n0.5 1 0\n3 0 1 2\n");
+    let (position, message) = malformed(&[("m.ply", &file)]);
+    assert_eq!(position, FilePosition::Line(14), "{message}");
+    assert!(message.contains("the header declares 3 `vertex` and 1 `face`, and 5 lines follow it"), "{message}");
+    let binary = |vertices, faces| ply("binary_little_endian", &elements(vertices, faces), &body());
+    let (position, message) = malformed(&[("m.ply", &binary(3, 2))]);
+    assert_eq!(position, FilePosition::Byte(binary(3, 2).len()));
+    assert!(message.contains("line 7 declares 2 of `face`, and the file has 1"), "{message}");
+    let (_, message) = malformed(&[("m.ply", &binary(2, 1))]);
+    assert!(
+        message.contains("a list of 0 numbers") || message.ends_with("the header declares 2 `vertex` and 1 `face`"),
+        "{message}"
+    );
+    let scene = loaded(&[("m.ply", &binary(3, 0))], SMALL).unwrap();
+    let warnings: Vec<String> = scene.warnings.iter().map(|warning| warning.to_string()).collect();
+    let expected = "16 bytes follow the last element: the header declares 3 `vertex` and 0 `face`: it is skipped";
+    assert!(warnings.iter().any(|warning| warning.contains(expected)), "{warnings:?}");
+    // Bytes that align a file are no records.
+    let aligned = [binary(3, 1), vec![0; 8]].concat();
+    assert!(loaded(&[("m.ply", &aligned)], SMALL).unwrap().warnings.is_empty());
+}
+
 #[test]
 fn counts_of_a_ply_beyond_the_file_are_errors() {
     for count in ["4294967295", "18446744073709551615"] {
         let elements = format!("element vertex {count}\n{VERTEX}element face 1\n{FACE}");
         let (position, message) = malformed(&[("m.ply", &ply("ascii", &elements, b"0 0 0\n"))]);
-        assert_eq!((position, message.as_str()), (FilePosition::Line(10), "the file ends before its last element"));
+        let ended =
+            format!("the file ends before its last element: line 3 declares {count} of `vertex`, and the file has 1");
+        assert_eq!((position, message.as_str()), (FilePosition::Line(10), ended.as_str()));
         let file = ply("binary_little_endian", &elements, &[0; 12]);
         assert_eq!(malformed(&[("m.ply", &file)]).0, FilePosition::Byte(file.len()));
         let elements = format!("element vertex 3\n{VERTEX}element face {count}\n{FACE}");
