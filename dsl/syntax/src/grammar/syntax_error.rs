@@ -3,7 +3,7 @@
 //! Input: the tokens of a function, and syn's error. Output: the error with a fix, at the part that has to change: syn reports a missing
 //! `;` at the statement after it.
 
-use fragbuf_model::{SourceSpan, codes};
+use fragbuf_model::codes;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use super::c_syntax;
@@ -20,7 +20,7 @@ pub(super) fn syntax_error(tokens: &TokenStream, error: &syn::Error, report: &mu
     let at = report.at(error.span());
     let foreign = c_syntax::help(tokens);
     // A missing `;` belongs to the statement before the token that is not expected.
-    let last = token_before(tokens, &at, report).filter(|_| foreign.is_none() && is_missing_semicolon(error));
+    let last = token_before(tokens, error.span()).filter(|_| foreign.is_none() && is_missing_semicolon(error));
     let (span, after) = match last {
         Some(last) => (report.at(end_of(&last)), format!(" after `{}`", described_end(&last))),
         None => (at, String::new()),
@@ -34,25 +34,22 @@ fn is_missing_semicolon(error: &syn::Error) -> bool {
     error.to_string().ends_with("expected `;`")
 }
 
-/// Returns the token before the one at `at`, inside the same brackets.
-fn token_before(tokens: &TokenStream, at: &SourceSpan, report: &Report) -> Option<TokenTree> {
-    let is_at = |span: Span| {
-        let found = report.at(span);
-        (found.line, found.column) == (at.line, at.column)
-    };
+/// Returns the token before the one at `at`, inside the same brackets. Spans are compared before they are mapped to the user's source:
+/// all tokens of source that a program generated have one place there.
+fn token_before(tokens: &TokenStream, at: Span) -> Option<TokenTree> {
     let mut last: Option<TokenTree> = None;
     for token in tokens.clone() {
         let begin = match &token {
             TokenTree::Group(group) => group.span_open(),
             other => other.span(),
         };
-        if is_at(begin) {
+        if begin.start() == at.start() {
             return last;
         }
-        if let TokenTree::Group(group) = &token {
-            if let Some(found) = token_before(&group.stream(), at, report) {
-                return Some(found);
-            }
+        if let TokenTree::Group(group) = &token
+            && let Some(found) = token_before(&group.stream(), at)
+        {
+            return Some(found);
         }
         last = Some(token);
     }
