@@ -72,7 +72,7 @@ pub fn load(
     };
     let mut sources = vec![(description.name().to_owned(), text.clone())];
     let variant = draft(description).and_then(|(mut draft, mut diagnostics)| {
-        change(&mut draft, (set, defaults), registry, &mut diagnostics);
+        change(&mut draft, set, defaults, registry, &mut diagnostics);
         let user = user_file::read(&draft, registry);
         sources.extend(user.sources);
         draft.file_warnings = user.warnings;
@@ -156,7 +156,8 @@ const DEFAULTS: &str = "chosen by the command";
 /// Applies `set`, then `defaults`.
 fn change(
     draft: &mut Draft,
-    (set, defaults): (&[(String, String)], &[(&str, &str)]),
+    set: &[(String, String)],
+    defaults: &[(&str, &str)],
     registry: &Registry,
     diagnostics: &mut Diagnostics,
 ) {

@@ -672,6 +672,16 @@ fn a_function_with_a_path_is_suggested_as_the_language_has_it() {
         ));
         follow(&text, call, str::to_owned);
     }
+    // A literal alone has no type that a method could be called on: the declaration gets one, too.
+    let text = with_items(
+        "resolve |fragments| { let mut m = 0; for f in fragments { m = max(m, f.depth); } vec4(m, m, m, 1.0) }",
+    );
+    let error = only(&text, &[]);
+    let parts: Vec<&str> = error.help.split('`').collect();
+    let fixed = text.replace("max(m, f.depth)", parts[1]).replace("let mut m = 0;", parts[3]);
+    assert_eq!(found(&fixed, &[]), [], "{error}");
+    let list = "resolve |fragments| { if fragments.length > 1 { fragments[1].color } else { fragments[0].color } }";
+    follow(&with_items(list), "fragments.length", str::to_owned);
     let error = only(&with_items("where |f| foo::shade(f.depth, f.id, 2) < 0.5;"), &[]);
     assert!(error.help.contains("declare `fn shade(depth: f32, id: u32, x: i32) -> f32 { … }`"), "{error}");
     assert!(error.help.ends_with("call it as `shade(f.depth, f.id, 2)`"), "{error}");

@@ -74,13 +74,13 @@ fn accessors(planned: &PlannedResource, access: Access) -> Vec<String> {
         return list;
     }
     let value = scalar.map_or("entry: Packed".to_owned(), |scalar| format!("value: {scalar}"));
-    list.push(format!("{name}_store({})", with(&[value.clone()])));
+    list.push(format!("{name}_store({})", with(std::slice::from_ref(&value))));
     let Some(scalar) = scalar else { return list };
     match access {
         Access::Atomic => {
-            let operations = OPERATIONS
-                .iter()
-                .map(|(operation, _)| format!("{name}_atomic_{operation}({}) -> {scalar}", with(&[value.clone()])));
+            let operations = OPERATIONS.iter().map(|(operation, _)| {
+                format!("{name}_atomic_{operation}({}) -> {scalar}", with(std::slice::from_ref(&value)))
+            });
             list.extend(operations);
             let expected = format!("expected: {scalar}");
             list.push(format!("{name}_atomic_compare_exchange({}) -> bool", with(&[expected, value])));

@@ -62,6 +62,11 @@ impl Given {
         if self.is_literal { Type::F32 } else { self.ty }
     }
 
+    /// Returns whether it is a vector.
+    pub(crate) fn ty_is_vector(&self) -> bool {
+        self.size().is_some()
+    }
+
     fn size(&self) -> Option<u8> {
         match self.ty {
             Type::Vector(size) => Some(size),

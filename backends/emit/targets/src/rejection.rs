@@ -182,10 +182,10 @@ mod tests {
             ("fn f() {\n    let a = 1u\n    let b = 2u;\n}\n", 2, 14),
             ("fn f() {\n    let a = g(1u) // one\n\n    // two\n    let b = 2u;\n}\n", 2, 17),
         ] {
-            let offset = text.find("let b").unwrap();
+            let offset = text.find("let b").unwrap_or_default();
             let location = SourceLocation { line_number: 0, line_position: 0, offset: offset as u32, length: 3 };
-            let found = before_missing_semicolon("expected `;`, found \"let\"", location, text).unwrap();
-            assert_eq!((found.line_number, found.line_position), (line, column), "{text}");
+            let found = before_missing_semicolon("expected `;`, found \"let\"", location, text);
+            assert_eq!(found.map(|found| (found.line_number, found.line_position)), Some((line, column)), "{text}");
             assert_eq!(before_missing_semicolon("expected `)`, found \"let\"", location, text), None);
         }
     }

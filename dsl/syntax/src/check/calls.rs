@@ -63,9 +63,25 @@ impl Checker<'_, '_, '_> {
         Expr::new(Kind::Error, Type::Vector(size), span)
     }
 
+    /// Returns the declaration that a variable needs as the receiver of a method, if it is declared with a literal: `max(m, f.depth)` is
+    /// `m.max(f.depth)`. Its other uses are not reported.
+    fn typed_receiver(&mut self, checked: &[Expr], given: &[Given]) -> String {
+        let has_float = given.iter().any(|argument| argument.ty == Type::F32 || argument.ty_is_vector());
+        let ty = if has_float { Type::F32 } else { Type::U32 };
+        let Some(receiver) = checked.first() else { return String::new() };
+        let Some(declaration) = self.typed_declaration(receiver, ty) else { return String::new() };
+        self.ignore(receiver);
+        format!(", and give the variable its type: `{declaration}`")
+    }
+
     /// Checks an argument of a call that is not of the language.
     fn given(&mut self, argument: &syn::Expr) -> Given {
         let checked = self.expr(argument, None);
+        self.given_of(argument, &checked)
+    }
+
+    /// Returns an argument that is checked.
+    fn given_of(&self, argument: &syn::Expr, checked: &Expr) -> Given {
         let ty = self.inference.resolve_or_default(checked.ty);
         let is_literal =
             matches!(self.inference.resolve(checked.ty), Type::Unknown(_)) && matches!(argument, syn::Expr::Lit(_));
@@ -135,14 +151,16 @@ impl Checker<'_, '_, '_> {
         name_span: &SourceSpan,
     ) -> Expr {
         // The arguments are checked for errors all the same.
-        let given: Vec<Given> = arguments.iter().map(|argument| self.given(argument)).collect();
+        let checked: Vec<Expr> = arguments.iter().map(|argument| self.expr(argument, None)).collect();
+        let given: Vec<Given> =
+            arguments.iter().zip(&checked).map(|(argument, checked)| self.given_of(argument, checked)).collect();
         let foreign = foreign_names::function(name, &given);
         if self.environment.incomplete.helpers {
             return self.without_declaration(span);
         }
         let help = match self.lookup(name) {
             Some(_) => format!("`{name}` is a variable: remove `(…)`"),
-            None => self.help_for_function(name, &given, foreign),
+            None => self.help_for_function(name, &given, foreign) + &self.typed_receiver(&checked, &given),
         };
         self.report.error(codes::UNKNOWN_NAME, name_span, format!("cannot find function `{name}`"), help);
         Expr::error(span)

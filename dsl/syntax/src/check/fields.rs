@@ -32,6 +32,9 @@ impl Checker<'_, '_, '_> {
             other => {
                 let message = format!("no field `{name}` on {}", quoted(self.inference.name(other)));
                 let help = match other {
+                    Type::Fragments if matches!(name.as_str(), "len" | "length" | "count" | "size") => {
+                        format!("write `{}.len()`", source_of_operand(&field.base))
+                    }
                     Type::Fragments => "select a fragment: `fragments[i].depth`, or `for f in fragments`".to_owned(),
                     other if methods::find(other, &name).is_some() => {
                         let has_parameters = methods::find(other, &name).is_some_and(|row| !row.parameters.is_empty());

@@ -77,7 +77,7 @@ impl Checker<'_, '_, '_> {
         fix: Redeclaration,
     ) {
         let diagnostic = Diagnostic::new(code, &variable.span, message, fix.help);
-        self.report.push(diagnostic.label(&fix.declared, &format!("declared here with the literal `{}`", fix.literal)));
+        self.report.push(diagnostic.label(&fix.declared, format!("declared here with the literal `{}`", fix.literal)));
         self.ignore(variable);
     }
 
