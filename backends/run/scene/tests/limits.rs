@@ -234,9 +234,10 @@ fn counts_of_a_ply_that_disagree_with_the_file_are_told() {
     // The third vertex is read as a face without vertices.
     let expected = "24 bytes follow the last element: the header declares 2 `vertex` and 1 `face`";
     assert!(message.contains(expected), "{message}");
-    let scene = loaded(&[("m.ply", &binary(3, 0))], SMALL).unwrap();
+    let face = [3_u32, 0, 1, 2].map(u32::to_le_bytes).concat();
+    let scene = loaded(&[("m.ply", &[binary(3, 1), face].concat())], SMALL).unwrap();
     let warnings: Vec<String> = scene.warnings.iter().map(|warning| warning.to_string()).collect();
-    let expected = "16 bytes follow the last element: the header declares 3 `vertex` and 0 `face`: it is skipped";
+    let expected = "16 bytes follow the last element: the header declares 3 `vertex` and 1 `face`: it is skipped";
     assert!(warnings.iter().any(|warning| warning.contains(expected)), "{warnings:?}");
     // Bytes that align a file are no records.
     let aligned = [binary(3, 1), vec![0; 8]].concat();
