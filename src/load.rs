@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fragbuf_model::{Diagnostics, Draft, MissingFeature, SourceSpan, Variant};
+use fragbuf_model::{Choice, Diagnostics, Draft, MissingFeature, SourceSpan, Spanned, Variant};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_targets::{Request, Target, select};
 use fragbuf_templates::Registry;
@@ -72,7 +72,7 @@ pub fn load(
     };
     let mut sources = vec![(description.name().to_owned(), text.clone())];
     let variant = draft(description).and_then(|(mut draft, mut diagnostics)| {
-        change(&mut draft, set, defaults, &mut diagnostics);
+        change(&mut draft, set, defaults, registry, &mut diagnostics);
         let user = user_file::read(&draft, registry);
         sources.extend(user.sources);
         draft.file_warnings = user.warnings;
@@ -154,12 +154,24 @@ pub const SET: &str = "--set";
 const DEFAULTS: &str = "chosen by the command";
 
 /// Applies `set`, then `defaults`.
-fn change(draft: &mut Draft, set: &[(String, String)], defaults: &[(&str, &str)], diagnostics: &mut Diagnostics) {
+fn change(
+    draft: &mut Draft,
+    set: &[(String, String)],
+    defaults: &[(&str, &str)],
+    registry: &Registry,
+    diagnostics: &mut Diagnostics,
+) {
     let length = |name: &str, value: &str| name.chars().count() as u32 + 1 + value.chars().count() as u32;
     for (line, (name, value)) in (1..).zip(set) {
         let span = SourceSpan::new(SET, line, 1).with_length(length(name, value));
-        if let Err(error) = draft.set(name, value, &span) {
-            diagnostics.push(*error);
+        match choice_with_options(name, value, &span, registry) {
+            Some(Ok(choice)) => draft.choose(choice),
+            Some(Err(errors)) => diagnostics.extend(errors),
+            None => {
+                if let Err(error) = draft.set(name, value, &span) {
+                    diagnostics.push(*error);
+                }
+            }
         }
     }
     for (line, (name, value)) in (1..).zip(defaults) {
@@ -172,4 +184,21 @@ fn change(draft: &mut Draft, set: &[(String, String)], defaults: &[(&str, &str)]
             let _ = draft.set(name, value, &SourceSpan::new(DEFAULTS, line, 1).with_length(length(name, value)));
         }
     }
+}
+
+/// Returns the choice of a change whose value has options or names a user file. `None`: it is a name, or no choice on an axis.
+fn choice_with_options(
+    name: &str,
+    value: &str,
+    span: &SourceSpan,
+    registry: &Registry,
+) -> Option<Result<Choice, Diagnostics>> {
+    let is_axis = registry.axis(name).is_some_and(|axis| axis.chosen);
+    let has_more = value.contains(['{', '(', '"']) || value.contains(".wgsl");
+    if !is_axis || !has_more {
+        return None;
+    }
+    let axis = Spanned::new(name.to_owned(), span.clone().with_length(name.chars().count() as u32));
+    let start = SourceSpan::new(SET, span.line, name.chars().count() as u32 + 2);
+    Some(fragbuf_syntax::choice(&axis, value, &start))
 }

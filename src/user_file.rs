@@ -11,6 +11,7 @@ use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
 
+use crate::load::SET;
 use crate::source_file::{self, NotUtf8};
 
 /// The user files of a draft.
@@ -67,7 +68,11 @@ fn read_row(
             return found.diagnostic(&file).label(&value.span, "the description names it here");
         }
         let message = format!("`{file}` cannot be read: {error}");
-        Diagnostic::new(codes::MISSING_FILE, &value.span, message, "paths are relative to the file that names them")
+        let help = match &*value.span.file == SET {
+            true => "paths of `--set` are relative to the current folder",
+            false => "paths are relative to the file that names them",
+        };
+        Diagnostic::new(codes::MISSING_FILE, &value.span, message, help)
     })?;
     if !sources.iter().any(|(known, _)| *known == file) {
         sources.push((file.clone(), text.clone()));

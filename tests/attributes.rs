@@ -143,6 +143,7 @@ fn invalid_values_of_attributes_are_errors() {
         ("haet=1", "no attribute `haet` to set: did you mean `heat`? it has heat"),
         ("depth=1", "no attribute `depth` to set: it has heat"),
         ("heat=nan", "attribute `heat: f32` takes one number, not `nan`"),
+        ("heat=flow", "not `flow`; for the attribute `flow` of the scene, name it so in the description: `flow: f32`"),
         ("heat=1,2", "attribute `heat: f32` takes one number, not `1,2`"),
         ("heat", "write name=value: an attribute of the fragments"),
     ];
@@ -208,7 +209,8 @@ fn compare_has_uniforms_of_each_description() {
     assert!(read(&out).2.contains(&[255; 4]), "the greatest difference is white");
     // The second has no uniform.
     compare("ab_array", &["--uniform", "scale=0.4", "--uniform-first", "scale=0.5"]);
-    let cases: [(&[&str], &str); 3] = [
+    let cases: [(&[&str], &str); 4] = [
+        (&["--uniform", "u.scale=1"], "did you mean `scale`?"),
         (&["--uniform", "scal=1"], "neither description has a uniform `scal`: did you mean `scale`? they have scale"),
         (&["--uniform-second", "scale=1"], "the description has no uniform `scale`: it has none"),
         (&["--uniform-first", "scale=red"], "uniform `scale` takes one number, not `red`"),

@@ -111,7 +111,7 @@ fn syntax_of_other_shading_languages_has_its_rust_syntax() {
     }
     assert_eq!(found(&with("where |f| { let x = - -f.depth; x < 0.5 };")), []);
     let ternary = found(&with("where |f| f.depth < 0.5 ? true : false;"));
-    assert!(ternary[0].help.contains("`if condition { a } else { b }`"), "{ternary:?}");
+    assert!(ternary[0].help.contains("`if f.depth < 0.5 { true } else { false }`"), "{ternary:?}");
 }
 
 /// Every code has a section in the guide with its meaning, cause and fix; its example has this diagnostic, and `explain` prints it.

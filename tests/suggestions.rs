@@ -283,15 +283,15 @@ fn wrong_items_say_what_to_write() {
     let set = |name: &str, value: &str| only("buffer B from kplus_array { }", &[(name, value)]).help;
     assert!(set("fragment", "vec4").contains("`fragment.name=format`"));
     assert!(set("uniform.far", "1").contains("`--uniform far=1`"));
-    assert!(set("storage", "wgsl(\"a.wgsl\")").contains("in a .fragbuf file"));
+    assert!(set("storage", "wgsl(\"a.wgsl\")").contains("relative to the current folder"));
 }
 
 /// Closures with slips of other languages: the help fits the types.
 #[test]
 fn wrong_expressions_say_what_to_write() {
     for (closure, expected) in [
-        ("where |f| 2.sqrt() < f.depth;", "write `2.0_f32.sqrt(…)`"),
-        ("where |f| f.depth.sin < 0.5;", "it is a method: write `.sin(…)`"),
+        ("where |f| 2.sqrt() < f.depth;", "write `2.0_f32.sqrt()`"),
+        ("where |f| f.depth.sin < 0.5;", "it is a method: write `f.depth.sin()`"),
         ("where |f| f.depth ** 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
         ("where |f| f.depth ^ 2.0 < 0.5;", "for a power, write `x.powf(2.0)`"),
         ("where |f| dFdx(f.depth) < 0.5;", "closures have no derivatives"),
@@ -322,13 +322,13 @@ fn slips_are_one_error_each() {
             "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = Vec3::ZERO;\n        for f in fragments { c += f.color; }\n        \
              c.extend(1.0)\n    }\n}",
             "type-mismatch",
-            "write `.truncate()` or `.xyz()`",
+            "write `f.color.truncate()` or `f.color.xyz()`",
         ),
         (
             "buffer B from kplus_array {\n    resolve |fragments| {\n        let mut c = 0.0;\n        for f in fragments { c += f.color; }\n        \
              vec4(c, c, c, 1.0)\n    }\n}",
             "type-mismatch",
-            "declare a vector: `let mut … = Vec4::ZERO;`",
+            "declare it with a vector: `let mut c = Vec4::ZERO;`",
         ),
     ] {
         let error = only(text, &[]);
@@ -582,4 +582,216 @@ fn choices_and_names_have_suggestions_for_what_was_meant() {
     let error =
         only("buffer B from kplus_array { uniform { far: f32 } where |f, u| f.depth < u.far; }", &[("far", "1")]);
     assert_eq!(error.help, "it is a uniform: write `--uniform far=1`");
+}
+
+const PAYLOAD: &str = "fragment { color: rgba8, depth: f32, id: u32, normal: octahedral }\n    uniform { cut: f32, steps: u32 }\n    \
+                       ties: attribute { by: id };\n    where |f, u| f.normal.x + f.color.x < u.cut && f.id < u.steps;";
+
+/// Returns a description with these items.
+fn with_items(items: &str) -> String {
+    format!("buffer B from kplus_array {{\n    {PAYLOAD}\n    {items}\n}}")
+}
+
+/// A variable that is declared with an integer literal and used as a float: its declaration is what has to change, as in Rust.
+#[test]
+fn a_declaration_that_does_not_fit_its_uses_is_replaced() {
+    for (closure, wrong) in [
+        ("let mut s = 0; for f in fragments { s += f.depth; } vec4(s, s, s, 1.0)", "let mut s = 0;"),
+        ("let mut s = 0; for f in fragments { s = s + f.depth; } vec4(s, s, s, 1.0)", "let mut s = 0;"),
+        ("let mut s = 0; for f in fragments { s = f.depth; } vec4(s, s, s, 1.0)", "let mut s = 0;"),
+        ("let mut s = 0; for f in fragments { s = f.depth.max(s); } vec4(s, s, s, 1.0)", "let mut s = 0;"),
+        ("let mut s = 0; for f in fragments { s = s.max(f.depth); } vec4(s, s, s, 1.0)", "let mut s = 0;"),
+        (
+            "let mut s = -1; for f in fragments { if f.depth > s { s = f.depth; } } vec4(s, s, s, 1.0)",
+            "let mut s = -1;",
+        ),
+        ("let mut s = 0; for f in fragments { s = s.max(f.id); } vec4(s as f32, 0.0, 0.0, 1.0)", "let mut s = 0;"),
+        ("let mut c = 0; for f in fragments { c += f.color; } c", "let mut c = 0;"),
+        ("let mut c = 0.0; for f in fragments { c += f.color; } c", "let mut c = 0.0;"),
+        ("let mut c = 0.0; for f in fragments { c = c + f.color; } c", "let mut c = 0.0;"),
+        ("let n = 3; fragments[0].color / n", "let n = 3;"),
+        ("let n = 0.0; fragments[n].color", "let n = 0.0;"),
+        ("let mut n: u32 = 0; for f in fragments { n += f.depth; } vec4(n as f32, 0.0, 0.0, 1.0)", "f.depth"),
+        ("let mut n = 0; for f in fragments { n += f.id; n += f.depth; } vec4(n as f32, 0.0, 0.0, 1.0)", "f.depth"),
+        ("let mut s = 0.0; for f in fragments { s += f.id; } vec4(s, s, s, 1.0)", "f.id"),
+        ("let mut s = 0.0; for f in fragments { s += 1; } vec4(s, s, s, 1.0)", "1"),
+    ] {
+        let text = with_items(&format!("resolve |fragments| {{ {closure} }}"));
+        let error = only(&text, &[]);
+        let (before, rest) = text.split_once("resolve").unwrap();
+        let rest = match wrong {
+            // The literal after `+=`.
+            "1" => rest.replacen("+= 1", &format!("+= {}", code(&error.help)), 1),
+            _ => rest.replacen(wrong, code(&error.help), 1),
+        };
+        assert_eq!(found(&format!("{before}resolve{rest}"), &[]), [], "{closure}: {error}");
+    }
+    // A literal takes the integer type of its uses, as in Rust.
+    let counted =
+        "resolve |fragments| { let mut n = 0; for f in fragments { n += f.id; } vec4(n as f32, 0.0, 0.0, 1.0) }";
+    assert_eq!(found(&with_items(counted), &[]), []);
+}
+
+/// An assignment to several components has the statements that replace it, whatever swizzles its value has.
+#[test]
+fn a_swizzled_assignment_has_its_statements() {
+    for wrong in [
+        "c.xyz += v.xyz()",
+        "c.xyz += v.xyz",
+        "c.rgb = v.bgr",
+        "c.rgb += v.rgb * v.a",
+        "c.xy = c.yx",
+        "c.xy = c.yx()",
+        "c.rgb *= 2",
+        "c.xyz() += fragments[0].normal",
+        "c.xyz = 1.0 - c.xyz",
+        "c.zw = v.xy * 0.5",
+    ] {
+        let closure = format!("let mut c = Vec4::ONE; let v = fragments[0].color; {wrong}; c * v");
+        follow(&with_items(&format!("resolve |fragments| {{ {closure} }}")), &format!("{wrong};"), str::to_owned);
+    }
+    let text = with_items("resolve |fragments| { let mut c = Vec4::ONE; c.xy = c.yx; c }");
+    assert_eq!(code(&only(&text, &[]).help), "let v = c.yx(); c.x = v.x; c.y = v.y;", "both values are read first");
+}
+
+#[test]
+fn a_function_with_a_path_is_suggested_as_the_language_has_it() {
+    for (call, rest) in [
+        ("std::cmp::min(f.id, 3)", " < 2"),
+        ("f32::lerp(f.depth, 0.5, 0.1)", " < 0.5"),
+        ("Vec3::from(f.color)", ".x < 0.5"),
+        ("f32::from(f.id)", " < 0.5"),
+        ("u32::from(f.depth)", " < 2"),
+        ("self::half(f.depth)", " < 0.5"),
+        ("glam::vec3(f.depth, 0.0, 0.0)", ".x < 0.5"),
+        ("2.max(f.id)", " < 4"),
+        ("(2.0 * 3.0).sqrt()", " < f.depth"),
+    ] {
+        let text = with_items(&format!(
+            "fn half(x: f32) -> f32 {{ 0.5 * x }}\n    where |f| half(f.depth) < 0.4;\n    where |f| {call}{rest};"
+        ));
+        follow(&text, call, str::to_owned);
+    }
+    // A literal alone has no type that a method could be called on: the declaration gets one, too.
+    let text = with_items(
+        "resolve |fragments| { let mut m = 0; for f in fragments { m = max(m, f.depth); } vec4(m, m, m, 1.0) }",
+    );
+    let error = only(&text, &[]);
+    let parts: Vec<&str> = error.help.split('`').collect();
+    let fixed = text.replace("max(m, f.depth)", parts[1]).replace("let mut m = 0;", parts[3]);
+    assert_eq!(found(&fixed, &[]), [], "{error}");
+    let list = "resolve |fragments| { if fragments.length > 1 { fragments[1].color } else { fragments[0].color } }";
+    follow(&with_items(list), "fragments.length", str::to_owned);
+    let error = only(&with_items("where |f| foo::shade(f.depth, f.id, 2) < 0.5;"), &[]);
+    assert!(error.help.contains("declare `fn shade(depth: f32, id: u32, x: i32) -> f32 { … }`"), "{error}");
+    assert!(error.help.ends_with("call it as `shade(f.depth, f.id, 2)`"), "{error}");
+    let error = only(&with_items("where |f| smoothtep(0.1, 0.2, f.depth) < 0.5;"), &[]);
+    assert!(error.help.starts_with("did you mean `smoothstep`? write `({ let t = "), "{error}");
+}
+
+#[test]
+fn a_ternary_is_an_if_with_the_same_parts() {
+    for (closure, wrong) in [
+        ("where |f| f.depth > 0.5 ? true : false;", "f.depth > 0.5 ? true : false"),
+        (
+            "resolve |fragments| { let a = fragments[0].depth > 0.5 ? 1.0 : 0.0; vec4(a, a, a, 1.0) }",
+            "fragments[0].depth > 0.5 ? 1.0 : 0.0",
+        ),
+        (
+            "resolve |fragments| { let a = 1.0 + ((fragments.len() > 1) ? 1.0 : 0.0); vec4(a, a, a, 1.0) }",
+            "(fragments.len() > 1) ? 1.0 : 0.0",
+        ),
+        (
+            "fn f(x: f32) -> f32 { return x > 0.5 ? x : x < 0.1 ? 2.0 * x : 0.0; }\n    where |g| f(g.depth) > 0.1;",
+            "x > 0.5 ? x : x < 0.1 ? 2.0 * x : 0.0",
+        ),
+        (
+            "resolve |fragments| { let mut a = 0.0; a += fragments.len() >= 2 ? 1.0 : 0.0; vec4(a, a, a, 1.0) }",
+            "fragments.len() >= 2 ? 1.0 : 0.0",
+        ),
+        (
+            "resolve |fragments| { vec4(0.0, fragments.len() == 2 ? 1.0 : 0.0, 0.0, 1.0) }",
+            "fragments.len() == 2 ? 1.0 : 0.0",
+        ),
+    ] {
+        let text = with_items(closure);
+        follow(&text, wrong, str::to_owned);
+        let error = only(&text, &[]);
+        let line = text.lines().nth(error.span.line as usize - 1).unwrap();
+        assert_eq!(line.chars().nth(error.span.column as usize - 1), Some('?'), "{error}");
+    }
+}
+
+/// A missing `;` is at the end of what it should end.
+#[test]
+fn a_missing_semicolon_is_at_the_end_of_its_statement() {
+    for (items, last) in [
+        (
+            "resolve |fragments| {\n        let a = 1.0\n        let b = 2.0;\n        vec4(a, b, 0.0, 1.0)\n    }",
+            "1.0\n",
+        ),
+        (
+            "resolve |fragments| {\n        let mut a = 1.0;\n        a += vec2(2.0, 1.0).length()\n        a += 1.0;\n        vec4(a, a, 0.0, 1.0)\n    }",
+            ")\n        a",
+        ),
+        ("sort: insertion\n    keep 4;", "insertion\n"),
+        ("keep 4\n    sort: insertion;", "4\n    sort"),
+        ("where |f| f.depth < 0.5\n    keep 4;", "0.5\n    keep"),
+    ] {
+        let text = with_items(items);
+        let error = only(&text, &[]);
+        let at = text.rfind(last).unwrap();
+        let line = text[..at].matches('\n').count() as u32 + 1;
+        let column = (at - text[..at].rfind('\n').unwrap()) as u32;
+        assert_eq!((error.span.line, error.span.column), (line, column), "{error}");
+        assert!(error.message.contains("expected `;` after"), "{error}");
+        let end = text.split('\n').take(line as usize).map(|line| line.len() + 1).sum::<usize>() - 1;
+        assert_eq!(found(&format!("{};{}", &text[..end], &text[end..]), &[]), [], "{error}");
+    }
+}
+
+/// `else` separates alternatives of a choice. Other items have none, and their error is one.
+#[test]
+fn only_choices_have_alternatives() {
+    for (items, wrong) in [
+        ("keep 4 else all;", " else all"),
+        ("keep 4 else 8;", " else 8"),
+        ("keep 4 least |f| f.depth else all;", " else all"),
+        ("where |f| f.depth > 0.5 else true;", " else true"),
+        ("resolve |fragments| { fragments[0].color } else over;", " else over"),
+    ] {
+        let text = with_items(items);
+        let error = only(&text, &[]);
+        assert_eq!(code(&error.help), format!("remove `{}`", wrong.trim()).split('`').nth(1).unwrap(), "{error}");
+        assert!(error.help.contains(&format!("remove `{}`", wrong.trim())), "{error}");
+        assert_eq!(found(&text.replacen(wrong, "", 1), &[]), [], "{error}");
+    }
+}
+
+/// Attributes and uniforms without their prefix, with the wrong one, or nearly right.
+#[test]
+fn a_name_is_suggested_with_its_prefix() {
+    for (closure, wrong, right) in [
+        ("where |f, u| f.depth > cutt;", "cutt", "u.cut"),
+        ("where |f, u| f.depth > cut;", "cut;", "u.cut;"),
+        ("where |f, u| dpth > u.cut;", "dpth", "f.depth"),
+        ("where |f, u| f.depth > u.depth;", "u.depth", "f.depth"),
+        ("where |f, u| f.depth > f.cut;", "f.cut", "u.cut"),
+        ("where |f, u| f.cuut > 0.5 * u.cut;", "f.cuut", "u.cut"),
+        ("where |f, u| f.dpeth > u.cut;", "dpeth", "depth"),
+        ("where |f, u| f.depth > u.cutt;", "cutt", "cut"),
+        ("where |p, v| p.depth > cutt && v.cut > 0.0;", "cutt", "v.cut"),
+    ] {
+        let text = with_items(closure);
+        let error = only(&text, &[]);
+        assert_eq!(code(&error.help), right.trim_end_matches(';'), "{error}");
+        assert_eq!(found(&text.replacen(wrong, right, 1), &[]), [], "{error}");
+    }
+    let help = |items: &str| only(&with_items(items), &[]).help;
+    assert_eq!(help("where |f| f.depth > cut;"), "it is a uniform: add a parameter, `|f, u|`, and write `u.cut`");
+    assert_eq!(help("where |f| f.depth > u.cut;"), "declare the uniforms as a parameter: `|f, u|`");
+    let helper = "fn g(x: f32) -> f32 { x * cut } where |f| g(f.depth) > 0.5;";
+    assert_eq!(help(helper), "it is a uniform: add a parameter, `u: Uniforms`, and write `u.cut`");
+    assert!(help("resolve |fragments| { f.color }").starts_with("iterate over the fragments: `for f in fragments"));
+    assert!(help("keep 4 least |f| fragments[0].depth;").contains("only `resolve` has all fragments"));
 }

@@ -242,7 +242,55 @@ const BAD: &[Bad] = &[
     bad("fn first_k_cursor", "//: paper none\nfn first_k_cursor", "invalid-row", "//: paper", "the file header"),
     bad("fn first_k_cursor", "}\nfn first_k_cursor", "invalid-wgsl", "}\nfn first", "every brace closed"),
     bad("atomic_add(pixel, 1u)", "atomic_add(pixel, 1.5)", "invalid-wgsl", "1.5)", "accessors"),
-    bad("    return slots_load(", "    return slots_lode(", "invalid-wgsl", "slots_lode(", "`x_load`"),
+    bad(
+        "    return slots_load(",
+        "    return slots_lode(",
+        "invalid-wgsl",
+        "slots_lode(",
+        "did you mean `slots_load`? It is `fn slots_load(slot: u32, pixel: u32) -> Packed`",
+    ),
+    bad(
+        "taken_load(pixel), frame.k",
+        "taken_atomic_add(pixel, 0u), frame.k",
+        "invalid-wgsl",
+        "taken_atomic_add(pixel, 0u)",
+        "write `taken atomic` in the line of the pass, `//: pass resolve: …`; it has `taken_load(pixel: u32) -> u32`",
+    ),
+    bad(
+        "taken read, slots read",
+        "taken read",
+        "invalid-wgsl",
+        "slots_load",
+        "write `slots read` in the line of the pass, `//: pass resolve: …`",
+    ),
+    bad(
+        "= taken_atomic_add(pixel, 1u);",
+        "= keys_laod(pixel);",
+        "invalid-wgsl",
+        "keys_laod",
+        "`taken_load(pixel: u32) -> u32`",
+    ),
+    bad(
+        "on_lost(pixel,",
+        "on_lots(pixel,",
+        "invalid-wgsl",
+        "on_lots",
+        "`fn on_lost(pixel: u32, lost: Packed, reason: u32)`",
+    ),
+    bad(
+        "storage_read(pixel: u32, cursor: u32)",
+        "storage_read(cursor: u32, pixel: u32)",
+        "contract-mismatch",
+        "storage_read(cursor",
+        "write `fn storage_read(pixel: u32, cursor: u32) -> Packed`: the argument for `cursor` is the second",
+    ),
+    bad(
+        "pixel, 1u);\n    if slot",
+        "pixel, 1u) // one per fragment\n    if slot",
+        "invalid-wgsl",
+        ") // one",
+        "end the statement with `;`",
+    ),
     bad("taken_load(pixel), frame.k", "taken_load(pixel), frame.cut", "invalid-wgsl", "cut)", "accessors"),
     bad("fn first_k_cursor", "const EMPTY = 1u;\n\nfn first_k_cursor", "invalid-wgsl", "const EMPTY", "private names"),
 ];
@@ -837,5 +885,42 @@ fn what_a_row_leaves_out_is_a_warning() {
         let description = Description::read(&folder.join("own.fragbuf")).unwrap();
         let variant = load(&description, &[], &[], &Registry::builtin()).variant.unwrap();
         assert_eq!(variant.warnings.iter().count(), 0, "{}", variant.warnings);
+    }
+}
+
+/// `--set` chooses a user file by its path from the current folder, and options of a value; errors are inside the argument.
+#[test]
+fn a_file_and_options_are_chosen_from_outside() {
+    let folder = with("outside", "buffer Own from kplus_array { keep 8; }", &example("first_k.wgsl"));
+    let run = |set: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_fragbuf"));
+        command.args(["show", "own.fragbuf"]).current_dir(&folder);
+        for set in set {
+            command.args(["--set", set]);
+        }
+        let output = command.output().unwrap();
+        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+    };
+    for file in ["storage=mine.wgsl", "storage=wgsl(mine.wgsl)", "storage=wgsl(\"mine.wgsl\")", "storage=./mine.wgsl"] {
+        let (is_right, text) = run(&[file, "sync=slot_counter", "cull=none"]);
+        assert!(is_right, "{file}: {text}");
+    }
+    for right in ["sync=spin_lock { limit: 4 }", "sync=interlock else spin_lock { limit: 4 }"] {
+        let (is_right, text) = run(&[right]);
+        assert!(is_right, "{right}: {text}");
+    }
+    for (wrong, code, column, help) in [
+        ("sync=spin_lock { limt: 4 }", "unknown-option", 18, "did you mean `limit`?"),
+        ("sync=spin_lock { limit 4 }", "unexpected-token", 24, "write `limit: 4`"),
+        ("sync=spin_lock(limit: 4)", "unexpected-token", 15, "sync=spin_lock { limit: 4096 }"),
+        ("storage=yours.wgsl", "missing-file", 9, "relative to the current folder"),
+        ("storage=max_array else yours.wgsl", "missing-file", 24, "relative to the current folder"),
+        ("storage=/tmp/mine.wgsl", "unexpected-token", 9, "wgsl(\"my_storage.wgsl\")"),
+        ("sync=spin_lock { limit: 4", "invalid-token", 16, "add the `}`"),
+    ] {
+        let (is_right, text) = run(&[wrong]);
+        assert!(!is_right, "{wrong}");
+        assert!(text.contains(&format!("error[{code}]")) && text.contains(help), "{wrong}: {text}");
+        assert!(text.contains(&format!("--set:1:{column}")), "{wrong}: {text}");
     }
 }

@@ -26,6 +26,7 @@ mod user_file;
 
 pub use contract::{CONTRACTS, Contract};
 pub use contract_check::verify;
+pub use emit::UserBuffer;
 pub use entry_point::{EntryPoint, Stage};
 pub use frame::{
     Action, Command, Decision, Loop, LoopId, LoopUntil, LoweredFrame, Parity, PassId, PlannedPass, Range, ResourceId,

@@ -7,7 +7,7 @@ use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Kind, Pass};
 
 use crate::link::{self, Source};
-use crate::{EntryPoint, Form, GENERATOR, Linking, Plan, Profile, SourceMap, emit};
+use crate::{EntryPoint, Form, GENERATOR, Linking, Plan, Profile, SourceMap, UserBuffer, emit};
 
 /// The linked sources of a plan. The plan describes how to run them.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,8 @@ pub struct PassSource {
     /// Names of functions whose atomic loads and stores may be plain accesses of coherent words, because only the critical section
     /// calls them. Empty where the language cannot access a word in both ways.
     pub guarded: Vec<String>,
+    /// The buffers of user files, for messages about the files.
+    pub user_buffers: Vec<UserBuffer>,
     /// Generator and algorithms, for targets that lose the comments of templates.
     pub notes: Notes,
 }
@@ -126,6 +128,7 @@ fn link_pass(plan: &Plan, pass: &Pass, linking: &Linking, registry: &Registry) -
             .collect(),
         written_first: linked.private_arrays,
         guarded: guarded(pass, linking, &prefix),
+        user_buffers: emit::user_buffers(plan, pass),
         notes,
     })
 }

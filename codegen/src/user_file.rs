@@ -11,7 +11,7 @@ use fragbuf_model::{Diagnostic, Diagnostics, RowSpans, SourceSpan, UserRow, mang
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Access, Capability, Element, Host, Init, Kind, Lifetime, Pass, Row, State, Step};
 
-use crate::link::{FunctionSignature, GrammarError, Item, grammar_errors, items, signatures, types};
+use crate::link::{FunctionSignature, GrammarError, Item, grammar_errors, items, parameter_names, signatures, types};
 use crate::{CONTRACTS, Contract};
 
 /// Returns an error about the first expression or `if` of a source that is too long for naga, which recurses over both.
@@ -288,6 +288,14 @@ fn functions(row: &Row, file: &File<'_>, spans: &RowSpans, registry: &Registry, 
             let message = format!("`fn {name}{signature}` does not match the contract");
             let help = format!("write `fn {name}{}`: {}", contract.signature, contract.behaviour);
             diagnostics.push(Diagnostic::new(CONTRACT_MISMATCH, &span, message, help));
+        } else if let Some((found, index)) = moved_parameter(signature, contract) {
+            let message = format!("the parameters of `fn {name}{signature}` are in another order than in the contract");
+            let help = format!(
+                "write `fn {name}{}`: the argument for `{found}` is the {}",
+                contract.signature,
+                ["first", "second", "third", "fourth"].get(index).unwrap_or(&"last")
+            );
+            diagnostics.push(Diagnostic::new(CONTRACT_MISMATCH, &span, message, help));
         }
     }
     for (contract, caller, span) in required(row, spans, registry) {
@@ -298,6 +306,17 @@ fn functions(row: &Row, file: &File<'_>, spans: &RowSpans, registry: &Registry, 
             diagnostics.push(Diagnostic::new(CONTRACT_MISMATCH, &span, message, help));
         }
     }
+}
+
+/// Returns a parameter whose name another parameter of the contract has, and the index of that one. The types are equal, so that no
+/// compiler notices an exchange such as `(cursor: u32, pixel: u32)`.
+fn moved_parameter<'s>(signature: &'s str, contract: &Contract) -> Option<(&'s str, usize)> {
+    let (found, expected) = (parameter_names(signature), parameter_names(contract.signature));
+    let moved = |(index, name): (usize, &'s str)| {
+        let other = expected.iter().position(|other| *other == name)?;
+        (other != index).then_some((name, other))
+    };
+    found.into_iter().enumerate().find_map(moved)
 }
 
 /// Tests whether a source has a function of this name. Rows without one use the shared function.

@@ -278,7 +278,16 @@ fn value(name: &str, format: Format, given: &[(String, String)]) -> Result<Optio
                 (_, 1) => "one number".to_owned(),
                 _ => format!("{count} numbers, separated by commas"),
             };
-            Err(Failure::Usage(format!("attribute `{name}: {}` takes {expected}, not `{text}`", format.keyword())))
+            let is_name = text.starts_with(|letter: char| letter.is_ascii_alphabetic()) && text.parse::<f32>().is_err();
+            let help = match is_name {
+                true => format!(
+                    "; for the attribute `{text}` of the scene, name it so in the description: `{text}: {}`",
+                    format.keyword()
+                ),
+                false => String::new(),
+            };
+            let message = format!("attribute `{name}: {}` takes {expected}, not `{text}`{help}", format.keyword());
+            Err(Failure::Usage(message))
         }
     }
 }

@@ -41,7 +41,9 @@ fn unknown(missing: &str, name: &str, they_have: &str, variants: &[&Variant]) ->
             names.push(&uniform.name.value);
         }
     }
-    let known = match (nearest_name(name, &names), names.is_empty()) {
+    // `u.cut`, as in closures.
+    let plain = name.rsplit('.').next().unwrap_or(name);
+    let known = match (nearest_name(plain, &names), names.is_empty()) {
         (_, true) => format!("{they_have} none"),
         (Some(nearest), false) => format!("did you mean `{nearest}`? {they_have} {}", names.join(", ")),
         (None, false) => format!("{they_have} {}", names.join(", ")),

@@ -73,7 +73,7 @@ struct Accessors<'a> {
 }
 
 /// Atomic operations that return the old value.
-const OPERATIONS: [(&str, &str); 7] = [
+pub(super) const OPERATIONS: [(&str, &str); 7] = [
     ("add", "atomicAdd"),
     ("sub", "atomicSub"),
     ("min", "atomicMin"),

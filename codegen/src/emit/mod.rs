@@ -5,11 +5,15 @@ mod buffers;
 mod fragment;
 mod surface;
 mod textures;
+mod user_buffers;
 
 use fragbuf_templates::vocabulary::{Kind, Pass};
 
 use crate::link::Source;
 use crate::{Linking, Plan};
+
+pub use user_buffers::UserBuffer;
+pub(crate) use user_buffers::user_buffers;
 
 /// Returns the generated sources of one pass. `called` are the accessors other than loads and stores that its templates mention. The linker removes other
 /// unused declarations.

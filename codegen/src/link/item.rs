@@ -131,6 +131,15 @@ pub(crate) fn types(signature: &str) -> String {
     kept.map(|(_, token)| token.text).collect()
 }
 
+/// Returns the names of the parameters of a signature, in order.
+pub(crate) fn parameter_names(signature: &str) -> Vec<&str> {
+    let (code, _) = tokens(signature);
+    let named = code
+        .windows(2)
+        .filter(|pair| matches!(pair, [name, colon] if colon.text == ":" && name.kind == TokenKind::Name));
+    named.filter_map(|pair| pair.first().map(|name| name.text)).collect()
+}
+
 /// Returns the names of all declarations of a source.
 pub(crate) fn names(text: &str) -> Vec<String> {
     parse(text).unwrap_or_default().into_iter().map(|item| item.name.to_owned()).collect()

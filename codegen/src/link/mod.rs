@@ -17,7 +17,7 @@ mod token;
 mod writer;
 
 pub(crate) use grammar::{GrammarError, grammar_errors};
-pub(crate) use item::{FunctionSignature, Item, names, parse as items, signatures, types};
+pub(crate) use item::{FunctionSignature, Item, names, parameter_names, parse as items, signatures, types};
 pub(crate) use rename::Renames;
 pub(crate) use source::{LinkError, Source};
 

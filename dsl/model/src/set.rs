@@ -68,12 +68,6 @@ impl Draft {
             None if name == "fragment" => {
                 Err(unknown(name, span, "give the format of one attribute: `fragment.name=format`".to_owned()))
             }
-            None if value.starts_with("wgsl(") => {
-                let help =
-                    format!("write `{name}: {value};` in a .fragbuf file, because its path is relative to the file");
-                let message = format!("the user file {value} is not chosen in a description");
-                Err(Box::new(Diagnostic::new(codes::UNKNOWN_VALUE, span, message, help)))
-            }
             None => {
                 self.set_axis(name, value, span);
                 Ok(())
@@ -142,11 +136,16 @@ impl Draft {
                 options: Vec::new(),
             })
             .collect();
-        self.choices.retain(|choice| choice.axis.value != axis);
-        self.choices.push(Choice { axis: Spanned::new(axis.to_owned(), span.clone()), alternatives });
-        if axis == fragbuf_templates::Registry::CLOSURE_AXIS {
+        self.choose(Choice { axis: Spanned::new(axis.to_owned(), span.clone()), alternatives });
+    }
+
+    /// Replaces the choice on an axis.
+    pub fn choose(&mut self, choice: Choice) {
+        if choice.axis.value == fragbuf_templates::Registry::CLOSURE_AXIS {
             self.resolve = None;
         }
+        self.choices.retain(|other| other.axis.value != choice.axis.value);
+        self.choices.push(choice);
     }
 
     /// Sets an option. If the draft does not choose on the axis, the new choice has no value: the rules add the option to

@@ -3,6 +3,8 @@
 //! Input: the name of an unknown function, and the sources and types of its arguments. Output: an expression that replaces the whole call.
 //! It is in parentheses unless it is a call itself, so it is right inside of any other expression.
 
+use fragbuf_model::nearest_name;
+
 use crate::methods::{self, MethodType};
 use crate::types::Type;
 
@@ -25,6 +27,25 @@ impl Given {
         }
     }
 
+    /// Returns its source as a receiver of methods of a number of this type, which the source alone does not have.
+    pub(crate) fn typed(&self, ty: Type) -> String {
+        let is_plain = self.source.starts_with(|letter: char| letter.is_ascii_digit());
+        match ty {
+            _ if !is_plain => format!("({} as {})", self.source, ty.rust()),
+            Type::F32 => format!("{}_f32", self.float()),
+            _ => format!("{}_{}", self.source, ty.rust()),
+        }
+    }
+
+    /// Returns its source as an argument of a number of this type.
+    pub(crate) fn of_type(&self, ty: Type) -> String {
+        match ty {
+            Type::F32 => self.as_float().source,
+            ty if self.is_literal || self.ty == ty || !self.ty.is_integer() => self.source.clone(),
+            ty => format!("({} as {})", self.source, ty.rust()),
+        }
+    }
+
     /// Returns it as a float: an integer is converted.
     fn as_float(&self) -> Given {
         match self.ty {
@@ -39,6 +60,11 @@ impl Given {
     /// Returns its type as an operand of floats.
     fn ty_as_float(&self) -> Type {
         if self.is_literal { Type::F32 } else { self.ty }
+    }
+
+    /// Returns whether it is a vector.
+    pub(crate) fn ty_is_vector(&self) -> bool {
+        self.size().is_some()
     }
 
     fn size(&self) -> Option<u8> {
@@ -138,6 +164,58 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
         }
         None => Some(each_component(&filled(row.number, &components(given)))),
     }
+}
+
+/// Returns the help for a function with a path, `std::cmp::min(a, b)` or `f32::from(x)`.
+pub(crate) fn associated(path: &str, given: &[Given]) -> Option<String> {
+    let (owner, name) = path.rsplit_once("::")?;
+    let owner = Type::from_rust(owner.rsplit("::").next().unwrap_or(owner));
+    match (owner, name, given) {
+        (Some(Type::Vector(size)), "from" | "from_array" | "from_slice" | "new", given) => {
+            vector(size, given).or_else(|| Some(format!("write `{}`", constructor(size))))
+        }
+        (Some(ty), "from" | "try_from" | "new", [only]) if ty == Type::F32 || ty.is_integer() => {
+            Some(format!("convert: `({} as {})`", only.source, ty.rust()))
+        }
+        _ => help(name, given),
+    }
+}
+
+/// Returns the constructor of a vector with names for its components.
+fn constructor(size: u8) -> String {
+    let components: Vec<String> =
+        "xyzw".chars().take(usize::from(size)).map(|component| component.to_string()).collect();
+    format!("vec{size}({})", components.join(", "))
+}
+
+/// Returns the help for the method or the function of another language whose name is nearest to an unknown one.
+pub(crate) fn nearest(name: &str, given: &[Given]) -> Option<String> {
+    let foreign = ROWS.iter().flat_map(|row| row.names.iter().copied());
+    let known: Vec<&str> = methods::METHODS.iter().map(|method| method.name).chain(foreign).collect();
+    // Many names of three letters are near to one of a method.
+    let nearest = nearest_name(name, &known).filter(|_| name.len() > 3)?;
+    Some(format!("did you mean `{nearest}`? {}", help(nearest, given)?))
+}
+
+/// Returns the declaration of a function with these arguments.
+pub(crate) fn declaration(name: &str, given: &[Given]) -> String {
+    let mut parameters: Vec<String> = Vec::new();
+    for argument in given {
+        let begins = |parameter: &String, name: &str| parameter.split(':').next() == Some(name);
+        // `f.depth` is the parameter `depth`.
+        let last = argument.source.rsplit('.').next().unwrap_or_default();
+        let is_name = |name: &&str| syn::parse_str::<syn::Ident>(name).is_ok() && *name != "_";
+        let is_new = |name: &&str| !parameters.iter().any(|parameter| begins(parameter, name));
+        let letters = ["x", "y", "z", "w", "a", "b", "c", "d"];
+        let name = std::iter::once(last).filter(is_name).chain(letters).find(is_new).unwrap_or("e");
+        let ty = match argument.ty {
+            ty if ty.is_value() && ty != Type::Error => ty.rust(),
+            Type::Uniforms => Type::Uniforms.rust(),
+            _ => Type::F32.rust(),
+        };
+        parameters.push(format!("{name}: {ty}"));
+    }
+    format!("fn {name}({}) -> f32 {{ … }}", parameters.join(", "))
 }
 
 /// Returns the help for `max(a, b, c)` and the like: a chain of calls of a method of two operands.

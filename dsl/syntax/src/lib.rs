@@ -28,6 +28,7 @@ mod lexer;
 mod lower;
 mod methods;
 mod names;
+mod outside;
 mod parse;
 mod parts;
 mod raw_function;
@@ -41,6 +42,7 @@ mod types;
 mod unknown_name;
 
 pub use captured_tokens::CapturedTokens;
+pub use outside::choice;
 pub use parse::{Parsed, parse, parse_tokens, read_tokens};
 pub use parts::{Part, Parts, assemble};
 pub use raw_function::{FunctionTokens, Role};

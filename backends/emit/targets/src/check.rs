@@ -7,7 +7,7 @@ use naga::SourceLocation;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use crate::Workgroup;
-use crate::rejection::explained;
+use crate::user_file_error::user_file_error;
 
 /// A pass that naga accepts. Only [`check`] constructs it.
 #[derive(Clone, Debug)]
@@ -111,34 +111,6 @@ fn error_at(
     let message = format!("naga rejects {at} of pass `{}`: {message}", pass.name);
     let help = "this is a defect of fragbuf: report it with the description; `show --dump wgsl` prints the source";
     Diagnostic::new(codes::INTERNAL, &span, message, help).into()
-}
-
-/// Returns an error in a user file. It does not name the pass: the same line in several passes gives one error.
-fn user_file_error(
-    pass: &PassSource,
-    location: Option<SourceLocation>,
-    message: &str,
-    line: &SourceSpan,
-) -> Diagnostics {
-    let span = location.and_then(|location| narrowed(pass, location, line)).unwrap_or_else(|| line.clone());
-    let (message, fix) = explained(message, &pass.text);
-    let separator = if fix.ends_with('?') { "" } else { ";" };
-    let help = format!(
-        "{fix}{separator} in scope are the file's own names, the functions of contracts, and the accessors of the row's buffers: `x_load`, `x_store` \
-         if the pass writes, `x_atomic_…` if the pass has `x atomic`"
-    );
-    Diagnostic::new(codes::INVALID_WGSL, &span, message, help).into()
-}
-
-/// Returns naga's location within a line of a user file; `None` if renaming has changed the line's length.
-fn narrowed(pass: &PassSource, location: SourceLocation, line: &SourceSpan) -> Option<SourceSpan> {
-    let text = pass.text.lines().nth(location.line_number.checked_sub(1)? as usize)?;
-    let indent = text.chars().count() - text.trim_start().chars().count();
-    let is_same = indent as u32 + 1 == line.column && text.trim().chars().count() == line.length as usize;
-    let before = text.get(..location.line_position.checked_sub(1)? as usize)?.chars().count() as u32;
-    let most = (line.column + line.length).checked_sub(before + 1)?;
-    let span = SourceSpan::new(line.file.clone(), line.line, before + 1).with_length(location.length.min(most));
-    is_same.then_some(span)
 }
 
 /// Returns an error and its causes on one line.

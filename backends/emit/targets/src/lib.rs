@@ -20,6 +20,7 @@ mod names;
 mod rejection;
 mod spirv;
 mod target;
+mod user_file_error;
 mod wgsl;
 
 pub use check::{Checked, Rejection, causes, check, validate};
@@ -27,5 +28,5 @@ pub use emission::{Emission, File, Guards};
 pub use generate::{Generation, PlanForTargets, Request, generate, select};
 pub use limits::{Limit, Needed, Sharing, WebGpuLimit, Workgroup, limits};
 pub use manifest::{SCHEMA, manifest, plan_json};
-pub use rejection::explained;
+pub use rejection::{before_missing_semicolon, explained};
 pub use target::{TARGETS, TIERS, Target, target, tier};

@@ -4,6 +4,7 @@
 //! line and column, and a help text. A message that is not known keeps naga's words.
 
 use fragbuf_model::nearest_name;
+use naga::SourceLocation;
 
 /// Parts of naga's messages, what the error is, and the fix. An empty message keeps naga's.
 const KNOWN: &[(&str, &str, &str)] = &[
@@ -59,8 +60,8 @@ const UNKNOWN: &str = "no definition in scope for identifier: `";
 
 /// Returns the message and the help for naga's message about the source `text`.
 pub fn explained(message: &str, text: &str) -> (String, String) {
-    if let Some(name) = message.strip_prefix(UNKNOWN).and_then(|rest| rest.split('`').next()) {
-        let names = names(text, name);
+    if let Some(name) = unknown_name(message) {
+        let names = declared_names(text, name);
         let help = match nearest_name(name, &names) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => "declare it, or correct its name".to_owned(),
@@ -75,10 +76,41 @@ pub fn explained(message: &str, text: &str) -> (String, String) {
         return (with_backquotes(&what), (*help).to_owned());
     }
     let help = match plain.starts_with("expected ") {
+        true if plain.starts_with("expected `;`") => "end the statement with `;`",
         true => "correct the syntax here, or the end of the statement before it",
         false => DEFAULT,
     };
     (with_backquotes(&plain), help.to_owned())
+}
+
+/// Returns the unknown name of a message; `None`: it is about something else.
+pub(crate) fn unknown_name(message: &str) -> Option<&str> {
+    message.strip_prefix(UNKNOWN)?.split('`').next()
+}
+
+/// Returns the place of the last character before a token that naga found instead of `;`. The statement that lacks it ends there.
+pub fn before_missing_semicolon(message: &str, location: SourceLocation, text: &str) -> Option<SourceLocation> {
+    if !message.starts_with("expected `;`") {
+        return None;
+    }
+    let mut before = text.get(..location.offset as usize)?.trim_end();
+    // Comments are between the statements.
+    loop {
+        let line = before.rsplit('\n').next()?;
+        before = match line.find("//") {
+            Some(comment) => before.get(..before.len() - line.len() + comment)?.trim_end(),
+            None => break,
+        };
+    }
+    let last = before.chars().next_back()?;
+    let offset = before.len() - last.len_utf8();
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    Some(SourceLocation {
+        line_number: before.matches('\n').count() as u32 + 1,
+        line_position: (offset - line_start) as u32 + 1,
+        offset: offset as u32,
+        length: last.len_utf8() as u32,
+    })
 }
 
 /// Removes the numbers of handles, ` [12]`.
@@ -123,7 +155,7 @@ fn with_backquotes(message: &str) -> String {
 const DECLARATORS: [&str; 7] = ["fn", "let", "var", "const", "struct", "alias", "override"];
 
 /// Returns the other names that a source declares: those after a keyword of declarations, and those before a type.
-fn names<'t>(text: &'t str, unknown: &str) -> Vec<&'t str> {
+pub(crate) fn declared_names<'t>(text: &'t str, unknown: &str) -> Vec<&'t str> {
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
     let (mut names, mut before, mut rest) = (Vec::new(), "", text);
     while let Some(begin) = rest.find(is_part) {
@@ -145,6 +177,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_missing_semicolon_is_before_the_next_token() {
+        for (text, line, column) in [
+            ("fn f() {\n    let a = 1u\n    let b = 2u;\n}\n", 2, 14),
+            ("fn f() {\n    let a = g(1u) // one\n\n    // two\n    let b = 2u;\n}\n", 2, 17),
+        ] {
+            let offset = text.find("let b").unwrap_or_default();
+            let location = SourceLocation { line_number: 0, line_position: 0, offset: offset as u32, length: 3 };
+            let found = before_missing_semicolon("expected `;`, found \"let\"", location, text);
+            assert_eq!(found.map(|found| (found.line_number, found.line_position)), Some((line, column)), "{text}");
+            assert_eq!(before_missing_semicolon("expected `)`, found \"let\"", location, text), None);
+        }
+    }
+
+    #[test]
     fn messages_name_the_source_and_not_handles() {
         for (message, expected, part_of_help) in [
             ("no definition in scope for identifier: `coutn`", "cannot find `coutn`", "did you mean `count`?"),
@@ -160,7 +206,8 @@ mod tests {
                 "the index is [a] wrong",
                 "valid WGSL",
             ),
-            ("expected `;`, found \"@\"", "expected `;`, found `@`", "the statement before it"),
+            ("expected `;`, found \"@\"", "expected `;`, found `@`", "end the statement with `;`"),
+            ("expected `)`, found \"@\"", "expected `)`, found `@`", "the statement before it"),
             ("expected expression, found \"\"", "expected expression, found the end of the file", "correct the syntax"),
             (
                 "expected global item (`struct`) or the end of the file, found \"#\"",

@@ -192,9 +192,56 @@ fn records_without_properties_are_nothing() {
         let elements = format!("element nothing {count}\nelement vertex 3\n{VERTEX}element face 1\n{FACE}");
         let scene = loaded(&[("m.ply", &ply("binary_little_endian", &elements, &body()))], SMALL).unwrap();
         assert_eq!(scene.triangles(), 1);
-        let text = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+        let text: &[u8] = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
         assert_eq!(loaded(&[("m.ply", &ply("ascii", &elements, text))], SMALL).unwrap().triangles(), 1);
     }
+}
+
+/// Counts that disagree with the file are told with both numbers, in either encoding.
+#[test]
+fn counts_of_a_ply_that_disagree_with_the_file_are_told() {
+    let elements =
+        |vertices: u32, faces: u32| format!("element vertex {vertices}\n{VERTEX}element face {faces}\n{FACE}");
+    let text = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (vertices, faces, line, expected) in [
+        (3, 2, 13, "line 7 declares 2 of `face`, and the file has 1"),
+        (4, 1, 13, "the header declares 4 `vertex` and 1 `face`, and 4 lines follow it"),
+        // The third vertex is read as a face.
+        (2, 1, 12, "the header declares 2 `vertex` and 1 `face`, and the file has 2 more lines"),
+        (5, 2, 13, "line 3 declares 5 of `vertex`, and the file has 4"),
+    ] {
+        let file = ply("ascii", &elements(vertices, faces), text);
+        let told = match loaded(&[("m.ply", &file)], SMALL) {
+            Err(Error::Malformed { position, message, .. }) => {
+                assert_eq!(position, FilePosition::Line(line), "{message}");
+                message
+            }
+            Err(other) => panic!("{other}"),
+            Ok(scene) => scene.warnings.iter().map(|warning| warning.to_string()).collect::<Vec<_>>().join("\n"),
+        };
+        assert!(told.contains(expected), "{vertices} {faces}: {told}");
+    }
+    // A vertex too many shifts the faces.
+    let file = ply("ascii", &elements(3, 1), b"0 0 0\n1 0 0\n0 1 0\n0.5 1 0\n3 0 1 2\n");
+    let (position, message) = malformed(&[("m.ply", &file)]);
+    assert_eq!(position, FilePosition::Line(13), "{message}");
+    assert!(message.contains("the header declares 3 `vertex` and 1 `face`, and 5 lines follow it"), "{message}");
+    let binary = |vertices, faces| ply("binary_little_endian", &elements(vertices, faces), &body());
+    let (position, message) = malformed(&[("m.ply", &binary(3, 2))]);
+    assert_eq!(position, FilePosition::Byte(binary(3, 2).len()));
+    assert!(message.contains("line 7 declares 2 of `face`, and the file has 1"), "{message}");
+    let (_, message) = malformed(&[("m.ply", &binary(2, 1))]);
+    // The third vertex is read as a face without vertices.
+    let expected = "24 bytes follow the last element: the header declares 2 `vertex` and 1 `face`";
+    assert!(message.contains(expected), "{message}");
+    let face = [3_u32, 0, 1, 2].map(u32::to_le_bytes).concat();
+    let scene = loaded(&[("m.ply", &[binary(3, 1), face].concat())], SMALL).unwrap();
+    let warnings: Vec<String> = scene.warnings.iter().map(|warning| warning.to_string()).collect();
+    let expected = "16 bytes follow the last element: the header declares 3 `vertex` and 1 `face`: it is skipped";
+    assert!(warnings.iter().any(|warning| warning.contains(expected)), "{warnings:?}");
+    // Bytes that align a file are no records.
+    let aligned = [binary(3, 1), vec![0; 8]].concat();
+    assert!(loaded(&[("m.ply", &aligned)], SMALL).unwrap().warnings.is_empty());
 }
 
 #[test]
@@ -202,7 +249,9 @@ fn counts_of_a_ply_beyond_the_file_are_errors() {
     for count in ["4294967295", "18446744073709551615"] {
         let elements = format!("element vertex {count}\n{VERTEX}element face 1\n{FACE}");
         let (position, message) = malformed(&[("m.ply", &ply("ascii", &elements, b"0 0 0\n"))]);
-        assert_eq!((position, message.as_str()), (FilePosition::Line(10), "the file ends before its last element"));
+        let ended =
+            format!("the file ends before its last element: line 3 declares {count} of `vertex`, and the file has 1");
+        assert_eq!((position, message.as_str()), (FilePosition::Line(10), ended.as_str()));
         let file = ply("binary_little_endian", &elements, &[0; 12]);
         assert_eq!(malformed(&[("m.ply", &file)]).0, FilePosition::Byte(file.len()));
         let elements = format!("element vertex 3\n{VERTEX}element face {count}\n{FACE}");
@@ -222,7 +271,10 @@ fn lists_of_a_ply_beyond_the_file_are_errors() {
     long.extend(u32::MAX.to_le_bytes());
     long.extend([0; 8]);
     let (_, message) = malformed(&[("m.ply", &ply("binary_little_endian", &elements, &long))]);
-    assert_eq!(message, "a list of 4294967295 numbers, and 8 bytes follow");
+    assert_eq!(
+        message,
+        "a list of 4294967295 numbers, and 8 bytes follow; the header declares 3 `vertex` and 1 `face`"
+    );
     let text = b"0 0 0\n1 0 0\n0 1 0\n4294967295 0 1 2\n";
     let (position, message) = malformed(&[("m.ply", &ply("ascii", &elements, text))]);
     assert_eq!(position, FilePosition::Line(13));
@@ -230,7 +282,7 @@ fn lists_of_a_ply_beyond_the_file_are_errors() {
     // The list of an element that is skipped.
     let elements = "element other 1\nproperty list int double values\n";
     let (_, message) = malformed(&[("m.ply", &ply("binary_little_endian", elements, &[255, 255, 255, 127]))]);
-    assert_eq!(message, "a list of 2147483647 numbers, and 0 bytes follow");
+    assert_eq!(message, "a list of 2147483647 numbers, and 0 bytes follow; the header declares 1 `other`");
 }
 
 #[test]

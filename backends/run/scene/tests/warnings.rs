@@ -312,7 +312,7 @@ fn colours_of_a_ply_are_what_their_names_and_numbers_say() {
     let words = "property ushort red\nproperty ushort green\nproperty ushort blue\n";
     assert_eq!(colors(&clean(&[("m.ply", &ply(words, "65535 0 0"))])), [RED]);
     let (_, warnings) = loaded(&[("m.ply", &format!("{}end\n", ply(short, "1 0 0")))]);
-    assert!(warnings[0].ends_with("`end` follows the last element: it is skipped"), "{warnings:?}");
+    assert!(warnings[0].ends_with("`end` follows the last element: the header declares 3 `vertex` and 1 `face`, and the file has 1 more line: it is skipped"), "{warnings:?}");
 }
 
 #[test]

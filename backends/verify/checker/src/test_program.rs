@@ -28,6 +28,7 @@ pub(crate) fn compiled(source: &str) -> Bytecode {
         resources: Vec::new(),
         written_first: Vec::new(),
         guarded: Vec::new(),
+        user_buffers: Vec::new(),
         notes: Notes::default(),
     };
     let checked = check(source, Profile::Native, &SourceSpan::new("test", 1, 1)).unwrap();

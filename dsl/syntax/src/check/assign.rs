@@ -7,6 +7,8 @@ use syn::spanned::Spanned;
 
 use super::checker::Checker;
 use super::given::{source, source_of_operand};
+use super::mismatch::quoted;
+use super::swizzles;
 use crate::foreign_names;
 use crate::tree::{Expr, Kind, Operator};
 use crate::types::Type;
@@ -18,9 +20,32 @@ impl Checker<'_, '_, '_> {
             return error;
         }
         let place = self.place(&assign.left);
-        let value = self.value(&assign.right, place.ty);
+        let value = self.expr(&assign.right, Some(place.ty));
+        if self.is_ignored(&place) {
+            return Expr::error(span);
+        }
+        if self.inference.unify(value.ty, place.ty).is_none() && self.redeclare_place(&place, &value, "assign") {
+            return Expr::error(span);
+        }
+        let value = self.require(value, place.ty, &assign.right);
         let kind = Kind::Assign { place: Box::new(place), operator: None, value: Box::new(value) };
         Expr::new(kind, Type::Unit, span)
+    }
+
+    /// Reports a place whose declaration with a literal does not fit a value that is assigned: `let mut s = 0; s += f.depth;`. Returns
+    /// whether it is one.
+    fn redeclare_place(&mut self, place: &Expr, value: &Expr, verb: &str) -> bool {
+        let fits = self.inference.is_float(value.ty)
+            || matches!(self.inference.resolve(value.ty), Type::Vector(_))
+            || self.inference.is_integer(value.ty) && verb == "assign";
+        let Some(fix) = self.redeclared(place, value.ty).filter(|_| fits) else { return false };
+        let (a, b) = (quoted(self.inference.name(value.ty)), quoted(self.inference.name(place.ty)));
+        let message = match verb {
+            "assign" => format!("mismatched types: expected {b}, found {a}"),
+            operator => format!("cannot apply `{operator}` to {b} and {a}"),
+        };
+        self.report_declaration(codes::TYPE_MISMATCH, place, message, fix);
+        true
     }
 
     /// Reports an assignment in place of a comparison: `a = b` where a `bool` is expected.
@@ -55,14 +80,42 @@ impl Checker<'_, '_, '_> {
         }
         let place = self.place(left);
         let value = self.expr(right, None);
+        if self.is_ignored(&place) {
+            return Expr::error(span);
+        }
         let ty = self.operation(operator, &place, &value);
         // `x += v` with a scalar `x` and a vector `v` is invalid: it would change the type of `x`.
         if ty.is_none_or(|ty| self.inference.unify(ty, place.ty).is_none()) {
-            self.no_operation(operator, &place, &value, &span);
+            self.no_assignment(operator, (&place, left), (&value, right), &span);
             return Expr::error(span);
         }
         let kind = Kind::Assign { place: Box::new(place), operator: Some(operator), value: Box::new(value) };
         Expr::new(kind, Type::Unit, span)
+    }
+
+    /// Reports a compound assignment that Rust does not have. Only the value can be converted, or the variable declared differently.
+    fn no_assignment(
+        &mut self,
+        operator: Operator,
+        (place, left): (&Expr, &syn::Expr),
+        (value, right): (&Expr, &syn::Expr),
+        span: &SourceSpan,
+    ) {
+        let symbol = format!("{}=", operator.symbol());
+        if operator.is_arithmetic() && self.redeclare_place(place, value, &symbol) {
+            return;
+        }
+        let (a, b) = (self.inference.resolve(place.ty), self.inference.resolve(value.ty));
+        let are_numbers = self.is_number(a) && self.is_number(b);
+        let is_vector = matches!(b, Type::Vector(_)) && self.is_number(a);
+        if !operator.is_arithmetic() || !are_numbers && !is_vector {
+            self.no_operation(operator, (place, left), (value, right), span);
+            return;
+        }
+        let (a, b) = (quoted(self.inference.name(place.ty)), quoted(self.inference.name(value.ty)));
+        let message = format!("cannot apply `{symbol}` to {a} and {b}");
+        let help = self.fix(value, place.ty, right);
+        self.report.error(codes::TYPE_MISMATCH, &value.span, message, help);
     }
 
     /// Reports an assignment to several components, `v.xyz = …` or `v.xyz() += …`; `None`: it is another place.
@@ -86,28 +139,65 @@ impl Checker<'_, '_, '_> {
             return (self.report.count() > errors).then(|| Expr::error(vector.span));
         };
         let span = self.at(left.span());
-        let value = self.expr(right, None);
-        let value_type = self.inference.resolve(value.ty);
-        let is_vector = matches!(value_type, Type::Vector(_));
-        let (base, value) = (source(base), source_of_operand(right));
-        let parts: Vec<String> = xyzw
-            .chars()
-            .zip("xyzw".chars())
-            .map(|(to, from)| match is_vector {
-                true => format!("{base}.{to} {operator} {value}.{from}"),
-                false => format!("{base}.{to} {operator} {value}"),
-            })
-            .collect();
+        // The fix repeats the value, so that its swizzles are methods.
+        let mut right = right.clone();
+        swizzles::correct(&mut right, self.environment);
+        let value = self.expr(&right, None);
         let is_inside = xyzw.chars().all(|letter| "xyzw".find(letter).is_some_and(|at| at < usize::from(size)));
         let help = match is_inside {
-            true => format!("assign each component: `{};`", parts.join("; ")),
+            true => format!("assign each component: `{}`", self.components(base, &xyzw, operator, (&value, &right))),
             false => {
                 let components = "x, y, z, w".get(..usize::from(size) * 3 - 2).unwrap_or_default();
                 format!("the components of `Vec{size}` are {components}")
             }
         };
         self.report.error(codes::NOT_MUTABLE, &span, "cannot assign to several components at once", help);
+        self.require_mutable(&vector, &vector.span);
         Some(Expr::error(span))
+    }
+
+    /// Returns the statements that assign the components `xyzw` of `base`. A value that is no name is computed once, before the first
+    /// assignment may change what it reads.
+    fn components(&self, base: &syn::Expr, xyzw: &str, operator: &str, (value, right): (&Expr, &syn::Expr)) -> String {
+        let is_vector = matches!(self.inference.resolve(value.ty), Type::Vector(_) | Type::Error);
+        let base_source = source(base);
+        // The swizzle of a name is a choice of its components: `c.xy = v.yx()`.
+        let (from, letters) = match right {
+            syn::Expr::MethodCall(call) if call.args.is_empty() && swizzles::is_swizzle(&call.method.to_string()) => {
+                (&*call.receiver, call.method.to_string())
+            }
+            other => (other, "xyzw".to_owned()),
+        };
+        let is_simple = |expr: &syn::Expr| matches!(expr, syn::Expr::Path(_) | syn::Expr::Lit(_));
+        let is_place = |expr: &syn::Expr| match expr {
+            syn::Expr::Field(field) => is_simple(&field.base),
+            other => is_simple(other),
+        };
+        let value = match self.literal_as_float(right) {
+            Some(literal) => literal,
+            None => source_of_operand(from),
+        };
+        let is_once = !is_place(from) || source(from) == base_source;
+        let name = ["v", "value", "components"].into_iter().find(|name| self.lookup(name).is_none()).unwrap_or("v_");
+        let (before, operand, letters) = match is_once {
+            true => (format!("let {name} = {}; ", source(right)), name.to_owned(), "xyzw".to_owned()),
+            false => (String::new(), value, letters),
+        };
+        let parts = xyzw.chars().zip(letters.chars()).map(|(to, from)| match is_vector {
+            true => format!("{base_source}.{to} {operator} {operand}.{from};"),
+            false => format!("{base_source}.{to} {operator} {operand};"),
+        });
+        before + &parts.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Returns an integer literal as a float.
+    fn literal_as_float(&self, expr: &syn::Expr) -> Option<String> {
+        match expr {
+            syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(number), .. }) if number.suffix().is_empty() => {
+                Some(format!("{}.0", number.base10_digits()))
+            }
+            _ => None,
+        }
     }
 
     /// Checks the left side of an assignment.

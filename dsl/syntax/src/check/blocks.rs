@@ -128,8 +128,11 @@ impl Checker<'_, '_, '_> {
         };
         let ty = written.unwrap_or(value.ty);
         self.require_storable(&value, ty);
-        let variable = self.local_name(pattern, written.is_some(), ty)?;
-        Some(Statement::Let { variable: variable.id(), value, span })
+        let variable = self.local_name(pattern, written.is_some(), ty)?.id();
+        if let (Some(id), None) = (variable, written) {
+            self.record_literal(id, &init.expr);
+        }
+        Some(Statement::Let { variable, value, span })
     }
 
     /// Rejects a `let` of a value that WGSL cannot store in a variable.

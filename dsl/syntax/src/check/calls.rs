@@ -63,9 +63,25 @@ impl Checker<'_, '_, '_> {
         Expr::new(Kind::Error, Type::Vector(size), span)
     }
 
+    /// Returns the declaration that a variable needs as the receiver of a method, if it is declared with a literal: `max(m, f.depth)` is
+    /// `m.max(f.depth)`. Its other uses are not reported.
+    fn typed_receiver(&mut self, checked: &[Expr], given: &[Given]) -> String {
+        let has_float = given.iter().any(|argument| argument.ty == Type::F32 || argument.ty_is_vector());
+        let ty = if has_float { Type::F32 } else { Type::U32 };
+        let Some(receiver) = checked.first() else { return String::new() };
+        let Some(declaration) = self.typed_declaration(receiver, ty) else { return String::new() };
+        self.ignore(receiver);
+        format!(", and give the variable its type: `{declaration}`")
+    }
+
     /// Checks an argument of a call that is not of the language.
     fn given(&mut self, argument: &syn::Expr) -> Given {
         let checked = self.expr(argument, None);
+        self.given_of(argument, &checked)
+    }
+
+    /// Returns an argument that is checked.
+    fn given_of(&self, argument: &syn::Expr, checked: &Expr) -> Given {
         let ty = self.inference.resolve_or_default(checked.ty);
         let is_literal =
             matches!(self.inference.resolve(checked.ty), Type::Unknown(_)) && matches!(argument, syn::Expr::Lit(_));
@@ -135,21 +151,51 @@ impl Checker<'_, '_, '_> {
         name_span: &SourceSpan,
     ) -> Expr {
         // The arguments are checked for errors all the same.
-        let given: Vec<Given> = arguments.iter().map(|argument| self.given(argument)).collect();
+        let checked: Vec<Expr> = arguments.iter().map(|argument| self.expr(argument, None)).collect();
+        let given: Vec<Given> =
+            arguments.iter().zip(&checked).map(|(argument, checked)| self.given_of(argument, checked)).collect();
         let foreign = foreign_names::function(name, &given);
         if self.environment.incomplete.helpers {
             return self.without_declaration(span);
         }
-        let mut existing: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
-        existing.extend(["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"]);
-        let help = match (foreign, nearest_name(name, &existing)) {
-            _ if self.lookup(name).is_some() => format!("`{name}` is a variable: remove `(…)`"),
-            (Some(instead), _) => instead,
-            (None, Some(nearest)) => format!("did you mean `{nearest}`?"),
-            (None, None) => format!("declare it in the buffer: `fn {}(x: f32) -> f32 {{ … }}`", last_segment(name)),
+        let help = match self.lookup(name) {
+            Some(_) => format!("`{name}` is a variable: remove `(…)`"),
+            None => self.help_for_function(name, &given, foreign) + &self.typed_receiver(&checked, &given),
         };
         self.report.error(codes::UNKNOWN_NAME, name_span, format!("cannot find function `{name}`"), help);
         Expr::error(span)
+    }
+
+    /// Returns what to write instead of an unknown function: what another language's function is here, or else a function of the
+    /// description.
+    fn help_for_function(&self, name: &str, given: &[Given], foreign: Option<String>) -> String {
+        const KNOWN: [&str; 7] =
+            ["vec2", "vec3", "vec4", "Vec2::splat", "Vec3::splat", "Vec4::splat", "f32::from_bits"];
+        let last = last_segment(name);
+        let helpers: Vec<&str> = self.environment.helpers.iter().map(|helper| helper.name.as_str()).collect();
+        let arguments: Vec<&str> = given.iter().map(|argument| argument.source.as_str()).collect();
+        let call = format!("{last}({})", arguments.join(", "));
+        if last != name && (helpers.contains(&last) || KNOWN.contains(&last)) {
+            return format!("it is called without a path: write `{call}`");
+        }
+        let nearest = nearest_name(name, &[&helpers[..], &KNOWN].concat()).map(str::to_owned);
+        let of_path = || foreign_functions::associated(name, given).filter(|_| last != name);
+        if let Some(instead) = foreign.or_else(of_path) {
+            return instead;
+        }
+        if let Some(nearest) = nearest {
+            return format!("did you mean `{nearest}`?");
+        }
+        if let Some(nearest) = foreign_functions::nearest(last, given) {
+            return nearest;
+        }
+        let declaration = foreign_functions::declaration(last, given);
+        match last == name {
+            true => format!("declare it in the buffer: `{declaration}`"),
+            false => format!(
+                "closures call functions of the description alone: declare `{declaration}` in the buffer, and call it as `{call}`"
+            ),
+        }
     }
 
     pub(super) fn method_call(&mut self, call: &syn::ExprMethodCall) -> Expr {
@@ -170,7 +216,7 @@ impl Checker<'_, '_, '_> {
                 Expr::error(span)
             }
             Type::Fragments => self.list_method(&name, arguments.len(), span, &name_span),
-            Type::Unknown(_) => self.unknown_receiver(&receiver, &name, span, &name_span),
+            Type::Unknown(_) => self.unknown_receiver(&receiver, call, span, &name_span),
             ty => self.method((receiver, &call.receiver), ty, &name, &arguments, span, &name_span),
         }
     }
@@ -251,18 +297,31 @@ impl Checker<'_, '_, '_> {
     }
 
     /// Reports a method call on a number of unknown type, as Rust does.
-    fn unknown_receiver(&mut self, receiver: &Expr, name: &str, span: SourceSpan, name_span: &SourceSpan) -> Expr {
-        let is_integer = self.inference.is_integer(receiver.ty);
-        let has_integers = methods::find(Type::U32, name).is_some();
-        let suffix = if is_integer && has_integers { "u32" } else { "f32" };
-        let help = match receiver.kind {
-            Kind::Integer(value) if !has_integers => format!("write `{value}.0_f32.{name}(…)`"),
-            Kind::Float(value) => format!("write `{value:?}_{suffix}.{name}(…)`"),
-            Kind::Integer(value) => format!("write `{value}_{suffix}.{name}(…)`"),
-            _ => format!("give the variable its type: `let x: {suffix} = …;`"),
-        };
+    fn unknown_receiver(
+        &mut self,
+        receiver: &Expr,
+        call: &syn::ExprMethodCall,
+        span: SourceSpan,
+        name_span: &SourceSpan,
+    ) -> Expr {
+        let name = call.method.to_string();
+        let arguments: Vec<Given> = call.args.iter().map(|argument| self.given(argument)).collect();
+        let has_float = arguments.iter().any(|argument| argument.ty == Type::F32 && !argument.is_literal);
+        let has_integers = methods::find(Type::U32, &name).is_some();
+        let ty =
+            if self.inference.is_integer(receiver.ty) && has_integers && !has_float { Type::U32 } else { Type::F32 };
         let message = format!("cannot call method `{name}` on a number of unknown type");
+        let help = match self.typed_declaration(receiver, ty) {
+            Some(declaration) => format!("give the variable its type: `{declaration}`"),
+            None => {
+                let arguments: Vec<String> = arguments.iter().map(|argument| argument.of_type(ty)).collect();
+                let receiver_type = self.inference.resolve_or_default(receiver.ty);
+                let receiver = given(&call.receiver, receiver_type, true).typed(ty);
+                format!("write `{receiver}.{name}({})`", arguments.join(", "))
+            }
+        };
         self.report.error(codes::TYPE_MISMATCH, name_span, message, help);
+        self.ignore(receiver);
         Expr::error(span)
     }
 

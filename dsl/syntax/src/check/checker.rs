@@ -6,6 +6,7 @@
 use fragbuf_model::{SourceSpan, Spanned, codes};
 use proc_macro2::Span;
 
+use super::literal_variables::LiteralVariable;
 use crate::environment::Environment;
 use crate::infer::Inference;
 use crate::report::Report;
@@ -23,6 +24,8 @@ pub(super) struct Checker<'e, 'r, 'p> {
     pub uses: Vec<Use>,
     /// The result type of the function.
     pub result: Type,
+    /// Whether the function is a helper, whose parameters the user chooses.
+    pub is_helper: bool,
     /// The number of loops around the current statement.
     pub loops: usize,
     /// The nesting depth of the current expression.
@@ -33,6 +36,8 @@ pub(super) struct Checker<'e, 'r, 'p> {
     pub negated: Vec<(Type, SourceSpan)>,
     /// The variables of `let`s.
     pub lets: Vec<VariableId>,
+    /// The variables that are declared with a literal alone.
+    pub literal_variables: Vec<LiteralVariable>,
     /// Whether the function uses a name whose declaration has an error.
     pub lacks_declaration: bool,
 }
@@ -57,11 +62,13 @@ impl<'e, 'r, 'p> Checker<'e, 'r, 'p> {
             scopes: vec![Vec::new()],
             uses: Vec::new(),
             result,
+            is_helper: false,
             loops: 0,
             depth: 0,
             integers: Vec::new(),
             negated: Vec::new(),
             lets: Vec::new(),
+            literal_variables: Vec::new(),
             lacks_declaration: false,
         }
     }

@@ -18,7 +18,7 @@ impl Checker<'_, '_, '_> {
     /// Checks an expression that must have this type.
     pub(super) fn value(&mut self, expr: &syn::Expr, expected: Type) -> Expr {
         let found = self.expr(expr, Some(expected));
-        self.require(found, expected)
+        self.require(found, expected, expr)
     }
 
     /// Checks an expression.

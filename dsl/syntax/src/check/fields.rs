@@ -6,10 +6,12 @@ use fragbuf_model::{SourceSpan, codes};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
+use super::declared_names::Place;
+use super::given::source_of_operand;
 use super::mismatch::quoted;
 use crate::tree::{Expr, Kind, Use};
 use crate::types::Type;
-use crate::{foreign_names, methods, unknown_name};
+use crate::{foreign_names, methods};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -30,8 +32,15 @@ impl Checker<'_, '_, '_> {
             other => {
                 let message = format!("no field `{name}` on {}", quoted(self.inference.name(other)));
                 let help = match other {
+                    Type::Fragments if matches!(name.as_str(), "len" | "length" | "count" | "size") => {
+                        format!("write `{}.len()`", source_of_operand(&field.base))
+                    }
                     Type::Fragments => "select a fragment: `fragments[i].depth`, or `for f in fragments`".to_owned(),
-                    other if methods::find(other, &name).is_some() => format!("it is a method: write `.{name}(…)`"),
+                    other if methods::find(other, &name).is_some() => {
+                        let has_parameters = methods::find(other, &name).is_some_and(|row| !row.parameters.is_empty());
+                        let arguments = if has_parameters { "…" } else { "" };
+                        format!("it is a method: write `{}.{name}({arguments})`", source_of_operand(&field.base))
+                    }
                     _ => "only fragments, uniforms and vectors have fields".to_owned(),
                 };
                 self.report.error(codes::UNKNOWN_FIELD, &name_span, message, help);
@@ -45,8 +54,7 @@ impl Checker<'_, '_, '_> {
             if self.environment.incomplete.attributes {
                 return self.without_declaration(span);
             }
-            let existing: Vec<&str> = self.environment.attributes.iter().map(|(name, _)| name.as_str()).collect();
-            let help = unknown_name::help(&name, &existing);
+            let help = self.help_for_name(&name, Place::Attribute);
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("no attribute `{name}` on a fragment"), help);
             return Expr::error(span);
         };
@@ -59,11 +67,7 @@ impl Checker<'_, '_, '_> {
             if self.environment.incomplete.uniforms {
                 return self.without_declaration(span);
             }
-            let existing: Vec<&str> = self.environment.uniforms.iter().map(|(name, _)| name.as_str()).collect();
-            let help = match existing.is_empty() {
-                true => format!("declare it: `uniform {{ {name}: f32 }}`"),
-                false => unknown_name::help(&name, &existing),
-            };
+            let help = self.help_for_name(&name, Place::Uniform);
             self.report.error(codes::UNKNOWN_FIELD, name_span, format!("cannot find uniform `{name}`"), help);
             return Expr::error(span);
         };

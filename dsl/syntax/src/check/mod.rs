@@ -8,14 +8,17 @@ mod blocks;
 mod branches;
 mod calls;
 mod checker;
+mod declared_names;
 mod expressions;
 mod fields;
 mod given;
+mod literal_variables;
 mod literals;
 mod loops;
 mod mismatch;
 mod operators;
 mod paths;
+mod swizzles;
 mod unsupported;
 mod written_types;
 
@@ -36,6 +39,7 @@ pub(crate) fn function(raw: RawFunction, environment: &Environment, report: &mut
     let before = report.count();
     let (expected, result) = signature(&raw, environment);
     let mut checker = Checker::new(environment, report, result);
+    checker.is_helper = matches!(raw.role, Role::Helper(_));
     let expected = checker.with_swapped_parameters(&raw, expected);
     let parameters = checker.parameters(&raw, &expected);
     checker.written_result(&raw);
@@ -116,8 +120,9 @@ impl Checker<'_, '_, '_> {
             false => has(attributes, field) && !has(uniforms, field),
         };
         let is_uniform = |field: &str| has(uniforms, field) && (is_list || !has(attributes, field));
-        let is_right = uses(first).any(|field| is_kept(&field)) || uses(second).any(|field| is_uniform(&field));
-        !is_right && (uses(first).any(|field| is_uniform(&field)) || uses(second).any(|field| is_kept(&field)))
+        let are_uniforms = uses(first).all(|field| is_uniform(&field));
+        let are_kept = uses(second).all(|field| is_kept(&field));
+        are_uniforms && are_kept && uses(first).chain(uses(second)).next().is_some()
     }
 
     fn declare_parameter(&mut self, parameter: &RawParameter, ty: Type) -> VariableId {

@@ -9,7 +9,7 @@ use syn::{BinOp, UnOp};
 
 use super::checker::Checker;
 use super::given::{source, source_of_operand};
-use super::mismatch::{fix, quoted};
+use super::mismatch::quoted;
 use super::written_types::written_type;
 use crate::tree::{Expr, Kind, Operator};
 use crate::types::Type;
@@ -128,7 +128,7 @@ impl Checker<'_, '_, '_> {
         match self.operation(operator, &left, &right) {
             Some(ty) => Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, span),
             None => {
-                self.no_operation(operator, &left, &right, &span);
+                self.no_operation(operator, (&left, &binary.left), (&right, &binary.right), &span);
                 Expr::error(span)
             }
         }
@@ -191,37 +191,44 @@ impl Checker<'_, '_, '_> {
         fits.then_some(Type::Bool)
     }
 
-    pub(super) fn no_operation(&mut self, operator: Operator, left: &Expr, right: &Expr, span: &SourceSpan) {
+    /// Reports an operation that Rust does not have. Each operand has its source.
+    pub(super) fn no_operation(
+        &mut self,
+        operator: Operator,
+        (left, left_source): (&Expr, &syn::Expr),
+        (right, right_source): (&Expr, &syn::Expr),
+        span: &SourceSpan,
+    ) {
         let (a, b) = (self.inference.name(left.ty), self.inference.name(right.ty));
         let message = format!("cannot apply `{}` to {} and {}", operator.symbol(), quoted(a), quoted(b));
         let (a, b) = (self.inference.resolve(left.ty), self.inference.resolve(right.ty));
+        let is_numeric = !operator.is_bitwise() && !operator.is_shift() && !operator.is_logical();
+        if is_numeric && self.redeclare_operand(left, right, &message) {
+            return;
+        }
         let comparison = operator.is_comparison() || operator.is_logical();
         let (span, help) = match (a, b) {
             (Type::Vector(_), _) | (_, Type::Vector(_)) if comparison => {
                 (span, "compare components, `a.x < b.x`, or lengths".to_string())
             }
             (Type::Vector(_), _) if self.inference.is_integer(b) && operator.is_arithmetic() => {
-                (&right.span, fix(&self.inference, right, Type::F32))
+                (&right.span, self.fix(right, Type::F32, right_source))
             }
             (_, Type::Vector(_)) if self.inference.is_integer(a) && operator.is_arithmetic() => {
-                (&left.span, fix(&self.inference, left, Type::F32))
+                (&left.span, self.fix(left, Type::F32, left_source))
             }
             (Type::Vector(n), Type::Vector(m)) if operator.is_arithmetic() && n > m => {
-                (&left.span, fix(&self.inference, left, b))
+                (&left.span, self.fix(left, b, left_source))
             }
             (Type::Vector(_), Type::Vector(_)) if operator.is_arithmetic() => {
-                (&right.span, fix(&self.inference, right, a))
+                (&right.span, self.fix(right, a, right_source))
             }
-            // Only an assignment has this: `number += vector`.
-            (_, Type::Vector(size)) if operator.is_arithmetic() && self.inference.is_float(a) => {
-                (span, format!("use a component, `.x`, or declare a vector: `let mut … = Vec{size}::ZERO;`"))
-            }
-            _ if self.is_number(a) && self.is_number(b) && !operator.is_shift() && !operator.is_bitwise() => {
+            _ if self.is_number(a) && self.is_number(b) && is_numeric => {
                 // Point to the integer, which is the operand to convert.
                 if self.inference.is_float(a) || !self.inference.is_float(b) {
-                    (&right.span, fix(&self.inference, right, a))
+                    (&right.span, self.fix(right, a, right_source))
                 } else {
-                    (&left.span, fix(&self.inference, left, b))
+                    (&left.span, self.fix(left, b, left_source))
                 }
             }
             (Type::F32, _) if operator == Operator::BitXor => (span, "for a power, write `x.powf(2.0)`".to_string()),
@@ -232,6 +239,24 @@ impl Checker<'_, '_, '_> {
             _ => (span, "both sides must be numbers of one type, or vectors of one size".to_string()),
         };
         self.report.error(codes::TYPE_MISMATCH, span, message, help);
+    }
+
+    /// Reports an operand that is an integer only because its variable is declared with an integer literal, `let mut s = 0;`, where the
+    /// other is a float or a vector. Returns whether there is one.
+    fn redeclare_operand(&mut self, left: &Expr, right: &Expr, message: &str) -> bool {
+        for (variable, other) in [(left, right), (right, left)] {
+            let is_float =
+                self.inference.is_float(other.ty) || matches!(self.inference.resolve(other.ty), Type::Vector(_));
+            let is_integer = self.inference.is_integer(variable.ty);
+            if is_integer
+                && is_float
+                && let Some(fix) = self.redeclared(variable, Type::F32)
+            {
+                self.report_declaration(codes::TYPE_MISMATCH, variable, message, fix);
+                return true;
+            }
+        }
+        false
     }
 
     pub(super) fn cast(&mut self, cast: &syn::ExprCast) -> Expr {
@@ -257,7 +282,7 @@ impl Checker<'_, '_, '_> {
             (Type::Bool, Type::F32) => "write `if … { 1.0 } else { 0.0 }`".to_string(),
             (_, Type::Bool) if self.inference.is_float(source) => "compare it: `x != 0.0`".to_string(),
             (_, Type::Bool) => "compare it: `x != 0`".to_string(),
-            _ => fix(&self.inference, &inner, target),
+            _ => self.fix(&inner, target, &cast.expr),
         };
         self.report.error(codes::TYPE_MISMATCH, &span, message, help);
         Expr::error(span)

@@ -6,11 +6,12 @@ use fragbuf_model::{SourceSpan, codes, nearest_name};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
+use super::declared_names::Place;
 use super::written_types::segments;
 use crate::constants::{self, Constant};
+use crate::foreign_names;
 use crate::tree::{Expr, Kind};
 use crate::types::Type;
-use crate::{foreign_names, unknown_name};
 
 impl Checker<'_, '_, '_> {
     pub(super) fn path(&mut self, path: &syn::ExprPath) -> Expr {
@@ -38,42 +39,9 @@ impl Checker<'_, '_, '_> {
         if self.environment.constants.iter().any(|constant| constant == name) {
             return self.without_declaration(span);
         }
-        let uniforms = self.variables.iter().any(|variable| variable.ty == Type::Uniforms);
-        let help = match name {
-            // The names that the examples use.
-            "u" | "uniforms" if !uniforms && !self.environment.uniforms.is_empty() => {
-                format!("declare the uniforms as the closure's second parameter: `|f, {name}| …`")
-            }
-            _ => foreign_names::value(name).unwrap_or_else(|| self.help_for_name(name)),
-        };
+        let help = foreign_names::value(name).unwrap_or_else(|| self.help_for_name(name, Place::Value));
         self.report.error(codes::UNKNOWN_NAME, &span, format!("cannot find value `{name}` in this scope"), help);
         Expr::error(span)
-    }
-
-    fn help_for_name(&self, name: &str) -> String {
-        let owner = |parameter: Type| {
-            let found = self.variables.iter().find(|variable| variable.ty == parameter && variable.name != "_");
-            found.map(|variable| variable.name.clone())
-        };
-        if self.environment.attributes.iter().any(|(other, _)| other == name) {
-            return match owner(Type::Fragment) {
-                Some(owner) => format!("it is an attribute: write `{owner}.{name}`"),
-                None => format!("it is an attribute: write `f.{name}` for a fragment `f`"),
-            };
-        }
-        if self.environment.uniforms.iter().any(|(other, _)| other == name) {
-            return match owner(Type::Uniforms) {
-                Some(owner) => format!("it is a uniform: write `{owner}.{name}`"),
-                None => format!("it is a uniform: add a second parameter, `|f, u|`, and write `u.{name}`"),
-            };
-        }
-        let mut existing: Vec<&str> = Vec::new();
-        for (other, _) in self.scopes.iter().flatten() {
-            if !existing.contains(&other.as_str()) {
-                existing.push(other);
-            }
-        }
-        if existing.is_empty() { "declare it with `let`".to_string() } else { unknown_name::help(name, &existing) }
     }
 
     fn constant(&mut self, path: &[String], span: SourceSpan) -> Expr {

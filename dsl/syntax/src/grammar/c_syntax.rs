@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
 use super::cursor::is_punct;
 use crate::{foreign_names, token_limits};
@@ -19,6 +19,84 @@ pub(super) fn help(tokens: &TokenStream) -> Option<Cow<'static, str>> {
             _ => pattern(rest),
         }
     })
+}
+
+/// Returns the `?` of the first `condition ? a : b`, and the help with the `if` of Rust.
+pub(super) fn ternary(tokens: &TokenStream) -> Option<(Span, Cow<'static, str>)> {
+    let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    let inside = |token: &TokenTree| match token {
+        TokenTree::Group(group) => ternary(&group.stream()),
+        _ => None,
+    };
+    if let Some(found) = tokens.iter().find_map(inside) {
+        return Some(found);
+    }
+    let question = tokens.iter().position(|token| is_punct(Some(token), '?'))?;
+    let span = tokens.get(question).map(TokenTree::span)?;
+    let begin = (0..question).rev().find(|at| is_before_condition(&tokens, *at)).map_or(0, |at| at + 1);
+    let rest = tokens.get(begin..)?;
+    let is_end = |token: &TokenTree| is_punct(Some(token), ';') || is_punct(Some(token), ',');
+    let end = rest.iter().position(is_end).unwrap_or(rest.len());
+    let branch = branches(rest.get(..end)?)?;
+    let help = if branch.chars().count() > LONGEST {
+        "write `if … { … } else { … }`".into()
+    } else {
+        format!("write `{branch}`")
+    };
+    Some((span, help.into()))
+}
+
+/// The greatest length of an `if` that a help repeats, in characters.
+const LONGEST: usize = 240;
+
+/// Returns the `if` for `condition ? a : b`; `b` may be a further one. `None`: the tokens are no such expression.
+fn branches(tokens: &[TokenTree]) -> Option<String> {
+    let question = tokens.iter().position(|token| is_punct(Some(token), '?'))?;
+    let (condition, rest) = (tokens.get(..question)?, tokens.get(question + 1..)?);
+    let mut depth = 0;
+    let colon = rest.iter().enumerate().position(|(at, token)| {
+        depth += usize::from(is_punct(Some(token), '?'));
+        let is_path = is_punct(rest.get(at + 1), ':') || at > 0 && is_punct(rest.get(at - 1), ':');
+        let is_colon = is_punct(Some(token), ':') && !is_path;
+        let is_own = is_colon && depth == 0;
+        depth = depth.saturating_sub(usize::from(is_colon));
+        is_own
+    })?;
+    let condition = match condition {
+        // `(a < b) ? …`: the brackets of the condition are no part of it in Rust.
+        [TokenTree::Group(group)] if group.delimiter() == Delimiter::Parenthesis => source(&group.stream()),
+        condition => source(&condition.iter().cloned().collect()),
+    };
+    let value = |tokens: &[TokenTree]| branches(tokens).unwrap_or_else(|| source(&tokens.iter().cloned().collect()));
+    let (then, other) = (rest.get(..colon)?, rest.get(colon + 1..)?);
+    let (then, is_chain, other) = (value(then), branches(other).is_some(), value(other));
+    if condition.is_empty() || then.is_empty() || other.is_empty() {
+        return None;
+    }
+    let other = if is_chain { other } else { format!("{{ {other} }}") };
+    Some(format!("if {condition} {{ {then} }} else {other}"))
+}
+
+fn source(tokens: &TokenStream) -> String {
+    token_limits::compact(&token_limits::spaced(tokens))
+}
+
+/// Whether the condition of `condition ? a : b` follows the token at `at`: it is `=`, `return`, the end of a statement or of an argument,
+/// or the end of a closure's parameters.
+fn is_before_condition(tokens: &[TokenTree], at: usize) -> bool {
+    let before = at.checked_sub(1).and_then(|before| tokens.get(before));
+    let is_joint = |characters: &str| matches!(before, Some(TokenTree::Punct(punct)) if punct.spacing() == Spacing::Joint && characters.contains(punct.as_char()));
+    match tokens.get(at) {
+        Some(TokenTree::Punct(punct)) => match punct.as_char() {
+            ';' | ',' => true,
+            '=' => punct.spacing() == Spacing::Alone && !is_joint("=<>!"),
+            '|' => punct.spacing() == Spacing::Alone && !is_joint("|"),
+            _ => false,
+        },
+        Some(TokenTree::Ident(word)) => word == "return",
+        Some(TokenTree::Group(group)) => group.delimiter() == Delimiter::Brace,
+        _ => false,
+    }
 }
 
 fn pattern(tokens: &[TokenTree]) -> Option<Cow<'static, str>> {

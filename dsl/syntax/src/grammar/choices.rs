@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spanned, codes};
-use proc_macro2::{Delimiter, Group, TokenTree};
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::cursor::{Cursor, is_punct};
 use super::recovery::{end_of_item_or, starts_item};
@@ -24,6 +24,13 @@ pub(super) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice,
     let axis = identifier(cursor, "an axis", VALUE_HELP, report)?;
     reject_items(&axis, report)?;
     cursor.take_punct(':');
+    let choice = alternatives(axis, cursor, report)?;
+    end_of_item_or(cursor, &help_after(&choice, cursor), report)?;
+    Ok(choice)
+}
+
+/// Parses `value { option: … } else value`.
+fn alternatives(axis: Spanned<String>, cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
     let mut alternatives: Vec<Alternative> = Vec::new();
     loop {
         alternatives.push(alternative(&axis.value, cursor, report)?);
@@ -31,9 +38,22 @@ pub(super) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice,
             break;
         }
     }
-    let choice = without_duplicates(Choice { axis, alternatives }, report);
-    end_of_item_or(cursor, &help_after(&choice, cursor), report)?;
-    Ok(choice)
+    Ok(without_duplicates(Choice { axis, alternatives }, report))
+}
+
+/// Parses the alternatives of a choice from all of these tokens.
+pub(crate) fn all_alternatives(
+    axis: &Spanned<String>,
+    tokens: TokenStream,
+    report: &mut Report,
+) -> Result<Choice, Stop> {
+    let mut cursor = Cursor::new(tokens);
+    let choice = alternatives(axis.clone(), &mut cursor, report)?;
+    if cursor.is_done() {
+        return Ok(choice);
+    }
+    let help = "a value is a name, and its options are in braces: `sync=spin_lock { limit: 4096 }`";
+    Err(cursor.expected("the end of the value", help, report))
 }
 
 /// Returns the help for what follows a choice in place of its `;`.

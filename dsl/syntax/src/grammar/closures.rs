@@ -8,9 +8,9 @@ use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::spanned::Spanned as _;
 
-use super::c_syntax;
 use super::cursor::{Cursor, is_punct};
-use super::recovery::starts_item;
+use super::recovery::{reject_alternatives, source_of_rest, starts_item};
+use super::syntax_error::syntax_error;
 use crate::raw_function::{FunctionTokens, RawFunction, RawParameter, Role};
 use crate::report::{Report, Stop};
 use crate::{names, token_limits};
@@ -27,12 +27,21 @@ pub(super) fn closure(
     reject_bare_let(cursor, report)?;
     let tokens = closure_tokens(cursor);
     let end = cursor.span();
-    let closed = cursor.take_punct(';');
+    let has_alternatives = cursor.at_keyword("else");
+    if has_alternatives {
+        let what = match role {
+            Role::Resolve => "the effect is",
+            Role::Criterion => "k and the criterion are",
+            _ => "the constraint is",
+        };
+        let help = format!("{what} the same on all targets: remove `{}`", source_of_rest(cursor));
+        reject_alternatives(cursor, "a closure", &help, report);
+    }
+    let closed = has_alternatives || cursor.take_punct(';');
     function_tokens.push(FunctionTokens { role: role.clone(), tokens: tokens.clone() });
     let (function, is_block) = parse_closure(&tokens, role, span, end, report)?;
     if !closed && !is_block {
-        let message = format!("expected `;`, found {}", cursor.describe());
-        report.error(codes::UNEXPECTED_TOKEN, &report.at(end), message, "end the closure with `;`");
+        cursor.missing_semicolon("end the closure with `;`", report);
     }
     Ok(function)
 }
@@ -126,10 +135,13 @@ fn parse_closure(
 /// Takes the tokens of a closure: up to the `;`, the end of its block, or the start of the next item.
 fn closure_tokens(cursor: &mut Cursor) -> TokenStream {
     let mut tokens: Vec<TokenTree> = Vec::new();
-    let mut bars = 0;
+    let (mut bars, mut conditions) = (0, 0_usize);
     let mut body_from = 0;
     while !cursor.is_done() && !cursor.at_punct(';') {
-        if bars >= 2 && starts_item(cursor) {
+        // `c ? a : b` of other languages has a colon that begins no item.
+        conditions += usize::from(cursor.at_punct('?'));
+        conditions = conditions.saturating_sub(usize::from(cursor.at_punct(':')));
+        if bars >= 2 && conditions == 0 && (starts_item(cursor) || is_alternative(cursor, tokens.last())) {
             break;
         }
         let Some(token) = cursor.take() else { break };
@@ -146,6 +158,12 @@ fn closure_tokens(cursor: &mut Cursor) -> TokenStream {
         }
     }
     tokens.into_iter().collect()
+}
+
+/// Whether the next token is an `else` that belongs to no `if`, as after a choice.
+fn is_alternative(cursor: &Cursor, last: Option<&TokenTree>) -> bool {
+    let is_block = matches!(last, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace);
+    cursor.at_keyword("else") && !is_block
 }
 
 /// Parses `fn name(…) -> … { … }`.
@@ -237,23 +255,9 @@ fn parse<T: syn::parse::Parse>(tokens: &TokenStream, end: Span, report: &mut Rep
         content.parse::<T>()
     };
     syn::parse::Parser::parse2(parser, TokenTree::from(group).into()).map_err(|error| {
-        let message = format!("invalid Rust syntax: {error}");
-        let help = c_syntax::help(tokens).unwrap_or_else(|| syntax_help(&error.to_string()).into());
-        report.error(codes::UNEXPECTED_TOKEN, &report.at(error.span()), message, help);
+        syntax_error(tokens, &error, report);
         Stop
     })
-}
-
-fn syntax_help(message: &str) -> &'static str {
-    if message.contains("expected `;`") {
-        "end the statement with `;`"
-    } else if message.contains("unexpected end of input") {
-        "add the missing code before this position"
-    } else if message.contains("expected `:`") {
-        "give each parameter its type, after its name: `x: f32`"
-    } else {
-        "functions use Rust syntax: check this token and the one before it"
-    }
 }
 
 /// Reports an attribute `#[…]`.

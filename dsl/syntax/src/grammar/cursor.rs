@@ -133,6 +133,18 @@ impl Cursor {
         Stop
     }
 
+    /// Reports that `;` is missing after the last token that was taken. The next token belongs to something else.
+    pub(super) fn missing_semicolon(&self, help: &str, report: &mut Report) -> Stop {
+        let last = self.next.checked_sub(1).and_then(|index| self.tokens.get(index));
+        let (span, after) = match last {
+            Some(last) => (end_of(last), format!(" after `{}`", described_end(last))),
+            None => (self.span(), String::new()),
+        };
+        let message = format!("expected `;`{after}, found {}", self.describe());
+        report.error(codes::UNEXPECTED_TOKEN, &report.at(span), message, help);
+        Stop
+    }
+
     /// Returns the source span of the next token, or of the end.
     pub(super) fn source_span(&self, report: &Report) -> SourceSpan {
         report.at(self.span())
@@ -160,6 +172,27 @@ impl Cursor {
             },
             Some(token) => format!("`{}`", shortened(&token.to_string())),
         }
+    }
+}
+
+/// Returns the span of the last character of a token tree: of a closing bracket, or of the token.
+pub(super) fn end_of(token: &TokenTree) -> Span {
+    match token {
+        TokenTree::Group(group) => group.span_close(),
+        other => other.span(),
+    }
+}
+
+/// Returns the last token of a token tree as a message names it.
+pub(super) fn described_end(token: &TokenTree) -> String {
+    match token {
+        TokenTree::Group(group) => match group.delimiter() {
+            Delimiter::Parenthesis => ")".to_owned(),
+            Delimiter::Brace => "}".to_owned(),
+            Delimiter::Bracket => "]".to_owned(),
+            Delimiter::None => "…".to_owned(),
+        },
+        token => shortened(&token.to_string()),
     }
 }
 

@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, TokenTree};
 
 use super::blocks::{self, DeclarationBlock};
 use super::cursor::{Cursor, is_punct};
-use super::recovery::{end_of_item, recover, starts_item};
+use super::recovery::{end_of_item, recover, reject_alternatives, source_of_rest, starts_item};
 use super::{choices, closures, constants};
 use crate::items::Items;
 use crate::raw_function::Role;
@@ -172,7 +172,13 @@ fn keep(items: &mut Items, cursor: &mut Cursor, span: SourceSpan, report: &mut R
                 report,
             ));
         }
-        end_of_item(cursor, report)?;
+        if cursor.at_keyword("else") {
+            let rest = source_of_rest(cursor);
+            let help = format!("k is the same on all targets: remove `{rest}`; `--set k=8` changes k for one command");
+            reject_alternatives(cursor, "`keep`", &help, report);
+        } else {
+            end_of_item(cursor, report)?;
+        }
         None
     };
     items.add_keep(count, criterion, span, report);

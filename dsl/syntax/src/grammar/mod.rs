@@ -12,7 +12,9 @@ mod constants;
 mod cursor;
 mod items;
 mod recovery;
+mod syntax_error;
 
+pub(crate) use choices::all_alternatives as alternatives;
 pub(crate) use choices::from_builder as choice_from_builder;
 pub(crate) use closures::{whole_closure, whole_helper};
 

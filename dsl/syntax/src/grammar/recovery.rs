@@ -2,10 +2,12 @@
 //!
 //! Input: a cursor inside the buffer's braces. Output: the cursor after an item, or at the next one.
 
+use fragbuf_model::codes;
 use proc_macro2::{Delimiter, Spacing, TokenTree};
 
 use super::cursor::{Cursor, is_punct};
 use crate::report::{Report, Stop};
+use crate::token_limits;
 
 /// Takes the `;` after an item. If it is missing and the next item starts here, parsing continues there.
 pub(super) fn end_of_item(cursor: &mut Cursor, report: &mut Report) -> Result<(), Stop> {
@@ -17,8 +19,30 @@ pub(super) fn end_of_item_or(cursor: &mut Cursor, help: &str, report: &mut Repor
     if cursor.take_punct(';') {
         return Ok(());
     }
-    cursor.expected("`;`", help, report);
-    if starts_item(cursor) { Ok(()) } else { Err(Stop) }
+    if starts_item(cursor) || cursor.is_done() {
+        cursor.missing_semicolon(help, report);
+        return Ok(());
+    }
+    Err(cursor.expected("`;`", help, report))
+}
+
+/// Returns the source of the rest of an item, without its `;`.
+pub(super) fn source_of_rest(cursor: &Cursor) -> String {
+    let is_end = |token: &&TokenTree| is_punct(Some(token), ';');
+    let rest = cursor.rest().iter().take_while(|token| !is_end(token)).take(12).cloned().collect();
+    token_limits::compact(&token_limits::spaced(&rest))
+}
+
+/// Reports `else` after an item that has no alternatives, and takes the rest of the item.
+pub(super) fn reject_alternatives(cursor: &mut Cursor, what: &str, help: &str, report: &mut Report) {
+    let message = format!("{what} has no alternatives: expected `;`, found `else`");
+    report.error(codes::UNEXPECTED_TOKEN, &cursor.source_span(report), message, help);
+    while !cursor.is_done() && !cursor.take_punct(';') {
+        cursor.take();
+        if starts_item(cursor) {
+            return;
+        }
+    }
 }
 
 /// Returns whether the next tokens can only start a new item.

@@ -3,10 +3,19 @@
 //!
 //! Nothing is collected: a number is read where it is in the file, so a body needs no memory beside its file.
 
-use super::header::{Encoding, Header, Kind};
+use super::header::{Element, Encoding, Header, Kind};
 use crate::error::{FileError, FilePosition};
-use crate::text::quoted_bytes;
+use crate::text::{quoted, quoted_bytes};
 use crate::warnings::{FileWarnings, Message, WarningKind};
+
+/// The least number of bytes after a binary body that a reader warns of: fewer may align the file.
+const LEAST_RECORD: usize = 4;
+
+/// Returns the number of lines that are not empty.
+pub(super) fn lines(bytes: &[u8]) -> usize {
+    let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r'));
+    lines.filter(|line| !line.trim_ascii().is_empty()).count()
+}
 
 /// A reader of the body.
 #[derive(Clone)]
@@ -17,13 +26,49 @@ pub(super) struct Body<'a> {
     at: usize,
     /// The line of the next byte, from 1; at the end of the file, the last line.
     line: usize,
+    /// The record that is read.
+    record: Option<Record>,
+}
+
+/// A record of an element, for messages.
+#[derive(Clone)]
+struct Record {
+    element: String,
+    /// The number that the header declares, and its line.
+    declared: (usize, usize),
+    /// The number of records before it.
+    before: usize,
 }
 
 impl<'a> Body<'a> {
     pub(super) fn new(header: &Header, bytes: &'a [u8]) -> Self {
         let is_empty = header.length >= bytes.len();
         let line = if is_empty { header.lines } else { header.lines + 1 };
-        Body { encoding: header.encoding, bytes, at: header.length, line }
+        Body { encoding: header.encoding, bytes, at: header.length, line, record: None }
+    }
+
+    /// Begins the records of an element.
+    pub(super) fn begin(&mut self, element: &Element) {
+        let declared = (element.count, element.line);
+        self.record = Some(Record { element: element.name.clone(), declared, before: 0 });
+    }
+
+    /// Ends a record.
+    pub(super) fn end_record(&mut self) {
+        if let Some(record) = &mut self.record {
+            record.before += 1;
+        }
+    }
+
+    /// Returns the error about a file that ends within a record.
+    fn ended(&self) -> FileError {
+        let Some(Record { element, declared: (count, line), before }) = &self.record else {
+            return self.error("the file ends before its last element");
+        };
+        let element = quoted(element);
+        self.error(format!(
+            "the file ends before its last element: line {line} declares {count} of {element}, and the file has {before}"
+        ))
     }
 
     /// Returns the current position.
@@ -39,15 +84,37 @@ impl<'a> Body<'a> {
         FileError::Malformed(self.position(), message.into())
     }
 
-    /// Warns of words after the last record. Bytes after a binary body are ignored.
-    pub(super) fn end(&mut self, warnings: FileWarnings<'_>) {
-        if self.encoding != Encoding::Ascii {
-            return;
-        }
-        if let Some(word) = self.word() {
-            let text = format!("{} follows the last element", quoted_bytes(word));
-            let message = Message::new(text, "it is skipped");
-            warnings.add(WarningKind::UnknownStatement, "", || (self.position(), message));
+    /// Warns of what follows the last record: more words, or more bytes than a writer appends for alignment. `header` declares too few
+    /// records, or the file is damaged.
+    pub(super) fn end(&mut self, header: &Header, warnings: FileWarnings<'_>) {
+        let declared = header.declared();
+        let text = match self.encoding {
+            Encoding::Ascii => {
+                let Some(word) = self.word() else { return };
+                let more = self.records_after(word);
+                format!(
+                    "{} follows the last element: the header declares {declared}, and the file has {more}",
+                    quoted_bytes(word)
+                )
+            }
+            Encoding::Little | Encoding::Big => {
+                let rest = self.bytes.get(self.at..).unwrap_or_default();
+                if rest.len() < LEAST_RECORD || rest.iter().all(|byte| *byte == 0 || byte.is_ascii_whitespace()) {
+                    return;
+                }
+                format!("{} bytes follow the last element: the header declares {declared}", rest.len())
+            }
+        };
+        let message = Message::new(text, "it is skipped");
+        warnings.add(WarningKind::UnknownStatement, "", || (self.position(), message));
+    }
+
+    /// Returns how many lines are left, in words; `word` was the last that was read.
+    fn records_after(&self, word: &[u8]) -> String {
+        let start = self.at.saturating_sub(word.len());
+        match lines(self.bytes.get(start..).unwrap_or_default()) {
+            1 => "1 more line".to_owned(),
+            count => format!("{count} more lines"),
         }
     }
 
@@ -88,7 +155,7 @@ impl<'a> Body<'a> {
 
     fn ascii_scalar(&mut self, kind: Kind) -> Result<f64, FileError> {
         let Some(word) = self.word() else {
-            return Err(self.error("the file ends before its last element"));
+            return Err(self.ended());
         };
         let value: Option<f64> = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
         let value = value.ok_or_else(|| self.error(format!("{} is not a number", quoted_bytes(word))))?;
@@ -100,7 +167,7 @@ impl<'a> Body<'a> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], FileError> {
         let found = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>());
         let Some(mut bytes) = found.copied() else {
-            return Err(self.error("the file ends before its last element"));
+            return Err(self.ended());
         };
         self.at += N;
         if self.encoding == Encoding::Big {

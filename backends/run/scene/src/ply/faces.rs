@@ -66,6 +66,7 @@ impl<'a> Faces<'a> {
             let message = || "the colours of triangle strips are not read".to_owned();
             self.warnings.line(WarningKind::NotRead, "tristrips", element.line, message);
         }
+        body.begin(element);
         for _ in 0..element.count {
             let mut color = [1.0; 4];
             // The memory of the corners is held until the end of the record.
@@ -89,6 +90,7 @@ impl<'a> Faces<'a> {
                 }
                 self.triangulator.end(self.object).map_err(|message| body.error(message))?;
             }
+            body.end_record();
         }
         // Only the copies of this element have the colours that were added.
         range.apply(self.object.colors.iter_mut().skip(first), self.warnings);

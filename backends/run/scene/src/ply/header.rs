@@ -1,6 +1,7 @@
 //! The header of a PLY file: its encoding, and the elements with their properties in the order of the body.
 
-use crate::error::FileError;
+use super::body::lines;
+use crate::error::{FileError, FilePosition};
 use crate::text::{first_line, quoted};
 
 /// The greatest length of a header in bytes.
@@ -17,6 +18,48 @@ pub(super) struct Header {
     /// The line of the first comment that names a texture.
     pub(super) texture: Option<usize>,
 }
+
+impl Header {
+    /// Returns the declared numbers of records, as "3 `vertex` and 1 `face`".
+    pub(super) fn declared(&self) -> String {
+        let counts: Vec<String> = self
+            .elements
+            .iter()
+            .take(MAX_COUNTS)
+            .map(|element| format!("{} {}", element.count, quoted(&element.name)))
+            .collect();
+        match counts.as_slice() {
+            [] => "no elements".to_owned(),
+            [only] => only.clone(),
+            [begin @ .., last] => format!("{} and {last}", begin.join(", ")),
+        }
+    }
+
+    /// Adds the declared numbers of records to an error that may be the consequence of a wrong one: an ASCII body has another number of
+    /// lines, or a list of a binary body does not fit the file.
+    pub(super) fn with_counts(&self, error: FileError, bytes: &[u8]) -> FileError {
+        let FileError::Malformed(position, message) = error else { return error };
+        let records =
+            self.elements.iter().filter(|element| !element.properties.is_empty()).map(|element| element.count);
+        let records = records.fold(0_usize, usize::saturating_add);
+        let counts = match position {
+            _ if message.contains("declares") => None,
+            FilePosition::Line(line) if line > self.lines && self.encoding == Encoding::Ascii => {
+                let found = lines(bytes.get(self.length..).unwrap_or_default());
+                (found != records).then(|| format!(", and {found} lines follow it"))
+            }
+            FilePosition::Byte(_) if ["a list", "no vertex"].iter().any(|begin| message.starts_with(begin)) => {
+                Some(String::new())
+            }
+            _ => None,
+        };
+        let counts = counts.map(|counts| format!("; the header declares {}{counts}", self.declared()));
+        FileError::Malformed(position, message + &counts.unwrap_or_default())
+    }
+}
+
+/// The greatest number of elements that a message lists.
+const MAX_COUNTS: usize = 8;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {

@@ -37,7 +37,19 @@ pub(crate) fn parse(
     }
     check_names(&header, warnings)?;
     budget.take(1, OBJECT, "the scene's objects")?;
-    let mut body = Body::new(&header, bytes);
+    read(&header, bytes, (color, attributes), (budget, warnings))
+        .map(|object| (vec![object], attributes.to_vec()))
+        .map_err(|error| header.with_counts(error, bytes))
+}
+
+/// Reads the body of a file.
+fn read(
+    header: &Header,
+    bytes: &[u8],
+    (color, attributes): ([f32; 4], &[AttributeRequest]),
+    (budget, warnings): (&Budget, FileWarnings<'_>),
+) -> Result<ModelObject, FileError> {
+    let mut body = Body::new(header, bytes);
     let mut object = ModelObject::new(String::new(), attributes.len());
     // The elements with faces, each with its position in the body.
     let mut face_elements = Vec::new();
@@ -55,12 +67,12 @@ pub(crate) fn parse(
             _ => skip(element, &mut body)?,
         }
     }
-    body.end(warnings);
-    let mut faces = Faces::new((&mut object, attributes), budget, warnings, has_colors(&header));
+    body.end(header, warnings);
+    let mut faces = Faces::new((&mut object, attributes), budget, warnings, has_colors(header));
     for (element, mut body) in face_elements {
         faces.read(element, &mut body)?;
     }
-    Ok((vec![object], attributes.to_vec()))
+    Ok(object)
 }
 
 /// Rejects a file whose vertices or faces have another name, and warns of other elements and properties with names that have no effect.
@@ -167,6 +179,7 @@ impl<'a> Vertices<'a> {
         let (first, mut range) = (object.colors.len(), color_range(self.element, &self.slots));
         let mut values = vec![[0.0; MAX_COMPONENTS]; self.attributes.len()];
         let mut line_before = None;
+        body.begin(self.element);
         for _ in 0..self.element.count {
             let line = body.next_line();
             let (mut position, mut direction, mut color) = ([0.0; 3], [0.0; 3], self.color.map(f64::from));
@@ -217,6 +230,7 @@ impl<'a> Vertices<'a> {
                 let values = values.iter().take(request.components);
                 words.extend(values.map(|value| request.word(*value, || body.position(), warnings)));
             }
+            body.end_record();
         }
         range.apply(object.colors.iter_mut().skip(first), warnings);
         Ok(())
@@ -228,10 +242,12 @@ fn skip(element: &Element, body: &mut Body<'_>) -> Result<(), FileError> {
     if element.properties.is_empty() {
         return Ok(());
     }
+    body.begin(element);
     for _ in 0..element.count {
         for property in &element.properties {
             skip_property(property, body)?;
         }
+        body.end_record();
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 use fragbuf_codegen::{Profile, SourceMap, too_long};
 use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT, Options, Space, Unsupported};
 use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
-use fragbuf_targets::{causes, explained, validate};
+use fragbuf_targets::{before_missing_semicolon, causes, explained, validate};
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides};
 use naga::valid::ModuleInfo;
 use naga::{Module, ResourceBinding, ShaderStage, SourceLocation, TypeInner};
@@ -159,7 +159,8 @@ fn validated(shader: &Shader<'_>, text: &str) -> Result<(Module, ModuleInfo), Er
 }
 
 fn invalid(shader: &Shader<'_>, location: Option<SourceLocation>, message: String) -> Error {
-    let span = location.map_or(SourceSpan::new(shader.file, 1, 1), |at| {
+    let before = location.and_then(|location| before_missing_semicolon(&message, location, shader.source));
+    let span = before.or(location).map_or(SourceSpan::new(shader.file, 1, 1), |at| {
         let line = shader.source.lines().nth(at.line_number.saturating_sub(1) as usize).unwrap_or_default();
         let before = line.get(..at.line_position.saturating_sub(1) as usize).map_or(0, |text| text.chars().count());
         SourceSpan::new(shader.file, at.line_number, before as u32 + 1).with_length(at.length.max(1))
