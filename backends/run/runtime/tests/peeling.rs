@@ -17,8 +17,10 @@ use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, shaders,
 const SIZE: [u32; 2] = [13, 7];
 const SLICES: [Option<u32>; 2] = [None, Some(3)];
 
-/// Storages with what they need on other axes, and the greatest k.
-const STORAGES: [(&str, &[(&str, &str)], u32); 9] = [
+/// A technique, changes of it, and the greatest k.
+type Peeled = (&'static str, &'static [(&'static str, &'static str)], u32);
+
+const STORAGES: [Peeled; 9] = [
     ("kplus_array", &[], 8),
     ("kplus_heap", &[], 8),
     ("kplus_array_revised", &[], 8),

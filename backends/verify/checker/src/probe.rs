@@ -24,7 +24,7 @@ pub(crate) fn probe_pass(plan: &Plan, name: &str) -> PlannedPass {
     let reads_storage = |pass: &&PlannedPass| {
         pass.kind == Kind::Fullscreen && pass.implementations.iter().any(|one| one.contract == "storage")
     };
-    if let Some(resolve) = passes.iter().rposition(|pass| reads_storage(pass)) {
+    if let Some(resolve) = passes.iter().rposition(reads_storage) {
         let resolve = passes.remove(resolve);
         let in_shader = |usage: &&Use| matches!(usage.access, Access::Read | Access::Atomic | Access::Sampled);
         pass.uses = resolve.uses.iter().filter(in_shader).cloned().collect();

@@ -126,12 +126,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     (
         "peeling/k_layers",
         "last = packed_of_key(0u);",
-        "",
-        "a pixel without fragments: only the count of hidden ones depends on it",
-    ),
-    (
-        "peeling/k_layers",
-        "last = packed_of_key(0u);",
         "last = packed_of_key(1u);",
         "a pixel without fragments: only the count of hidden ones depends on it",
     ),
