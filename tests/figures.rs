@@ -203,3 +203,70 @@ fn the_examples_have_every_figure() {
         }
     }
 }
+
+/// The bytes that are measured are those of the papers' formulas for the histogram of the scene.
+#[test]
+fn the_memory_of_k15_fig_8_is_that_of_the_formulas() {
+    let out = folder("figure-memory");
+    quick("k15-fig-8", "cpu", &out, &["--repeats", "1"]);
+    let (columns, rows) = table(&read(out.join("k15-fig-8.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    for percent in [25, 50, 75] {
+        for k in [2, 4] {
+            let scene = format!("builtin:layers,n={k}0,pixels={percent},fragments={percent}");
+            let histogram = histogram(&scene, SIDE);
+            let fragments = |most: u64| -> u64 { (1..).zip(&histogram).map(|(f, pixels)| most.min(f) * pixels).sum() };
+            let pixels = u64::from(SIDE * SIDE);
+            let covered: u64 = histogram.iter().sum();
+            assert_eq!(covered * 100 / pixels, percent, "{scene}");
+            let part = fragments(u64::MAX) as f64 / (covered * 10 * k) as f64;
+            assert!((part - percent as f64 / 100.0).abs() < 0.1, "{scene}: {part}");
+            let computed = [
+                ("K⁺B-Array", pixels * (2 * k + 2)),
+                ("K⁺B-Heap", pixels * (2 * k + 2)),
+                ("K⁺B-AB_SB", 2 * fragments(k) + 3 * pixels),
+                // The CPU device has an interlock.
+                ("KB-PS", pixels * 2 * k),
+                ("KB-MDT₃₂", pixels * 2 * k),
+                ("KB-AB_SB", 2 * fragments(u64::MAX) + 2 * pixels),
+            ];
+            let measured = |series: &str| -> u64 {
+                let is_point = |row: &&Vec<String>| {
+                    row[column("panel")] == format!("{percent} %")
+                        && row[column("series")] == series
+                        && row[column("x")] == k.to_string()
+                };
+                rows.iter().find(is_point).unwrap()[column("bytes")].parse().unwrap()
+            };
+            for (series, words) in computed {
+                // Counters, and the sums of blocks.
+                let rest = measured(series) - 4 * words;
+                assert!(rest <= 256, "{series}, {scene}: {words} words, and {rest} bytes");
+            }
+        }
+    }
+}
+
+/// The side of the images of `--quick`.
+const SIDE: u32 = 24;
+
+/// Returns the pixels with one, two, … fragments.
+fn histogram(scene: &str, side: u32) -> Vec<u64> {
+    let size = format!("{side}x{side}");
+    let output = fragbuf(&[
+        "predict",
+        "kplus_ab_sb",
+        "--scene",
+        scene,
+        "--camera",
+        "clip",
+        "--size",
+        &size,
+        "--device",
+        "cpu",
+        "--json",
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    found["histogram"].as_array().unwrap().iter().map(|bin| bin.as_u64().unwrap()).collect()
+}

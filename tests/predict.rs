@@ -189,12 +189,15 @@ fn show_computes_what_a_frame_needs() {
 fn a_capability_without_its_pass_is_an_error_of_the_row() {
     let folder = empty_folder("capability");
     let row = std::fs::read_to_string("examples/user_storage/first_k.wgsl").unwrap();
-    let row = row.replace("//: provides ", "//: provides slots-per-pixel, ");
-    assert!(row.contains("slots-per-pixel"));
+    let row = row.replace("//: provides ", "//: provides counted, ");
+    assert!(row.contains("counted"));
     std::fs::write(folder.join("u.wgsl"), row).unwrap();
     let file = folder.join("u.fragbuf");
-    std::fs::write(&file, "buffer U {\n    storage: wgsl(\"u.wgsl\");\n    keep 8;\n    allocation: predicted;\n}\n")
-        .unwrap();
+    std::fs::write(
+        &file,
+        "buffer U {\n    storage: wgsl(\"u.wgsl\");\n    keep 8;\n    allocation: predicted_exact;\n}\n",
+    )
+    .unwrap();
     let message = stderr(&fragbuf(&["show", file.to_str().unwrap()]));
-    assert!(message.contains("error[invalid-row]") && message.contains("the pass `reset`"), "{message}");
+    assert!(message.contains("error[invalid-row]") && message.contains("the pass `count`"), "{message}");
 }

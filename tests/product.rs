@@ -5,8 +5,8 @@
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{LazyLock, Mutex};
 
 use fragbuf::vocabulary::{Capability, Feature, Row, Template};
 use fragbuf::{File, Form, Registry, Request, TARGETS, Target, Variant, check, generate};
@@ -116,6 +116,13 @@ fn complete<'a>(
 fn outlook(begin: &[&Vec<&Row>], later: &[Classes<'_>]) -> Outlook {
     let rows = || begin.iter().map(|class| class[0]);
     let may_be = |capability: Capability| {
+        // The effect is none of the axes here: a description without a closure has the default.
+        static EFFECTS: LazyLock<Vec<Capability>> = LazyLock::new(|| {
+            Registry::builtin().rows_of(Registry::CLOSURE_AXIS).flat_map(|row| row.provides.clone()).collect()
+        });
+        if EFFECTS.contains(&capability) {
+            return true;
+        }
         let later = || later.iter().flat_map(|(_, classes)| classes.iter().map(|class| class[0]));
         rows().chain(later()).any(|row| row.may_provide(capability))
     };

@@ -44,7 +44,6 @@ pub(crate) fn rows() -> Vec<Row> {
                     .cleared(0)
                     .over_iterations(),
             ],
-            provides: vec![Capability::DropsDisplaced],
             uses: vec![Use::new("failed", Access::Atomic)],
             needs: vec![Feature::FragmentAtomics],
             ..row(

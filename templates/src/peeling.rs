@@ -27,6 +27,8 @@ fn k_layers() -> Row {
         requires: vec![
             Capability::KeepsBest,
             Capability::KeepsEqualKeys,
+            // The shader of a fragment counts it: a depth test would hide fragments from it that a later iteration keeps.
+            Capability::CullInShader,
             Capability::DropsDisplaced,
             Capability::TotalOrder,
             Capability::OneSample,

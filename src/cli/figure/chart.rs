@@ -3,8 +3,8 @@
 use plotters::coord::combinators::BindKeyPoints;
 use plotters::prelude::*;
 
-use super::experiment::{Chart, Experiment, Panel, Passes, Sweep};
-use super::point::{Outcome, Point};
+use super::experiment::{Chart, Experiment, Measure, Panel, Passes, Sweep};
+use super::point::{Measurement, Outcome, Point};
 use super::spread::{Spread, spread};
 use super::style::{Area, COLORS, FONT, MUTED, TITLE, failure, marker, ticks, titled};
 use crate::cli::output::Failure;
@@ -52,12 +52,31 @@ fn labels(sweep: &Sweep) -> Vec<&'static str> {
     labels
 }
 
+/// Returns the numbers of a point, by repeat.
+fn samples(measured: &Measurement, measure: Measure) -> Vec<f64> {
+    let mebibytes = measured.bytes as f64 / f64::from(1 << 20);
+    match measure {
+        Measure::Time(passes) => measured.samples(passes),
+        Measure::TimePerMebibyte => measured.samples(Passes::All).into_iter().map(|time| time / mebibytes).collect(),
+        Measure::Mebibytes => vec![mebibytes],
+    }
+}
+
+/// Returns the unit of a chart.
+fn unit(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Time(_) => "ms",
+        Measure::TimePerMebibyte => "ms / MiB",
+        Measure::Mebibytes => "MiB",
+    }
+}
+
 /// Returns the measured spreads of a series by value.
-fn measured(points: &[Point], panel: &str, series: &str, passes: Passes) -> Vec<(f64, Spread)> {
+fn measured(points: &[Point], panel: &str, series: &str, measure: Measure) -> Vec<(f64, Spread)> {
     let of = points.iter().filter(|point| point.panel == panel && point.series == series);
     let spread_of = |point: &Point| match &point.outcome {
         Outcome::Measured(measured) => {
-            let found = spread(&measured.samples(passes)).filter(|spread| spread.median > 0.0)?;
+            let found = spread(&samples(measured, measure)).filter(|spread| spread.median > 0.0)?;
             Some((f64::from(point.x), found))
         }
         Outcome::Unavailable(_) => None,
@@ -69,7 +88,7 @@ fn draw(area: &Area<'_>, chart: &Chart, panel: &Panel, points: &[Point], labels:
     let lines: Vec<(&str, Vec<(f64, Spread)>)> = panel
         .series
         .iter()
-        .map(|series| (series.label, measured(points, panel.name, series.label, chart.passes)))
+        .map(|series| (series.label, measured(points, panel.name, series.label, chart.measure)))
         .collect();
     let all = || lines.iter().flat_map(|(_, line)| line);
     let bounds = |values: &mut dyn Iterator<Item = f64>, margin: f64| {
@@ -100,7 +119,7 @@ fn draw(area: &Area<'_>, chart: &Chart, panel: &Panel, points: &[Point], labels:
         .light_line_style(TRANSPARENT)
         .bold_line_style(MUTED.mix(0.25))
         .x_desc(panel.axis.label)
-        .y_desc("ms")
+        .y_desc(unit(chart.measure))
         .axis_desc_style((FONT, 13))
         .label_style((FONT, 12))
         .x_label_formatter(&|x| format!("{x:.0}"))

@@ -20,6 +20,8 @@ pub(super) struct Claim {
 pub(super) enum Check {
     /// A series takes less time in some passes than another one, at each of these values; an empty list: at every value.
     Faster { panel: &'static str, series: &'static str, than: &'static str, passes: Passes, at: &'static [u32] },
+    /// The buffers of a series need less memory than those of another one, at each of these values; an empty list: at every value.
+    Smaller { panel: &'static str, series: &'static str, than: &'static str, at: &'static [u32] },
     /// The quotient of the times of two series changes between the least and the greatest value.
     Changes { panel: &'static str, series: &'static str, over: &'static str, change: Change },
     /// The time of a frame is a power of the value, with an exponent in this range: that of each repeat is fitted.
@@ -103,6 +105,7 @@ fn finding(check: Check, panels: &[Panel], points: &[Point]) -> Finding {
             }
             faster(quotients, symbol(panel))
         }
+        Check::Smaller { panel, series, than, at } => smaller(points, panel, (series, than), at, symbol(panel)),
         Check::Changes { panel, series, over, change } => {
             changes(quotients(points, panel, (series, over), Passes::All), change, symbol(panel))
         }
@@ -166,6 +169,30 @@ fn faster(quotients: Quotients, symbol: &str) -> Finding {
         Finding::Differs(text)
     } else {
         Finding::Undecided(text)
+    }
+}
+
+/// Compares the bytes of two series. They are no measurements with a spread.
+fn smaller(points: &[Point], panel: &str, (series, than): (&str, &str), at: &[u32], symbol: &str) -> Finding {
+    let found = match measured(points, panel, series) {
+        Ok(found) => found,
+        Err(reason) => return Finding::Missing(reason),
+    };
+    let quotient = |(x, one): (u32, &Measurement)| {
+        let other = measured_at(points, panel, than, x).filter(|other| other.bytes > 0)?;
+        let quotient = one.bytes as f64 / other.bytes as f64;
+        Some((x, Spread { median: quotient, quartiles: [quotient; 2] }))
+    };
+    let chosen = found.into_iter().filter(|(x, _)| at.is_empty() || at.contains(x));
+    let quotients: Vec<(u32, Spread)> = chosen.filter_map(quotient).collect();
+    if quotients.is_empty() {
+        let reason = measured(points, panel, than).err();
+        return Finding::Missing(reason.unwrap_or_else(|| "no common value".to_owned()));
+    }
+    let text = format!("quotient of bytes {}", numbers(&quotients, symbol));
+    match quotients.iter().all(|(_, quotient)| quotient.median < 1.0) {
+        true => Finding::Agrees(text),
+        false => Finding::Differs(text),
     }
 }
 

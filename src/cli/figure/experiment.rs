@@ -143,7 +143,18 @@ impl Series {
 pub(super) struct Chart {
     pub(super) panel: &'static str,
     pub(super) title: &'static str,
-    pub(super) passes: Passes,
+    pub(super) measure: Measure,
+}
+
+/// What a chart shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Measure {
+    /// The milliseconds of some passes.
+    Time(Passes),
+    /// The milliseconds of a frame over the MiB of its buffers.
+    TimePerMebibyte,
+    /// The MiB of the buffers of a frame.
+    Mebibytes,
 }
 
 /// Passes whose times are added.

@@ -162,6 +162,21 @@ fn peeled_storages_equal_the_a_buffer_bit_for_bit() {
     }
 }
 
+/// Blending stops at the same fragment as in an A-buffer.
+#[test]
+fn opacity_ends_where_it_does_in_an_a_buffer() {
+    let stage = device();
+    let quads = scene(5, 40);
+    let opaque = ("resolve.opaque", "400");
+    let a_buffer = technique("ab_sb", &[opaque, ("sort", "insertion"), ("sort.layers", "64")]);
+    let peeled = technique("k_peeling", &[opaque, ("k", "2")]);
+    let (expected, ..) = drawn(&stage, &a_buffer, &quads, None);
+    let (all, ..) = drawn(&stage, &technique("ab_sb", &[("sort.layers", "64")]), &quads, None);
+    assert!(expected != all, "the threshold has no effect");
+    let (seen, ..) = drawn(&stage, &peeled, &quads, None);
+    assert!(seen == expected);
+}
+
 /// A limit of iterations is a loss with a number: the nearest fragments are kept, and the others counted.
 #[test]
 fn fragments_beyond_the_last_iteration_are_counted() {

@@ -3,7 +3,7 @@
 //! scenes have their depth complexity.
 
 use crate::cli::figure::claim::{Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "c15-fig-1",
@@ -41,10 +41,10 @@ const SERIES: [Series; 3] = [
 ];
 
 const CHARTS: [Chart; 4] = [
-    Chart { panel: "hairball", title: "hairball: frame", passes: Passes::All },
-    Chart { panel: "hairball", title: "hairball: store pass", passes: Passes::Only(&["store"]) },
-    Chart { panel: "needles", title: "needles: frame", passes: Passes::All },
-    Chart { panel: "needles", title: "needles: store pass", passes: Passes::Only(&["store"]) },
+    Chart { panel: "hairball", title: "hairball: frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "hairball", title: "hairball: store pass", measure: Measure::Time(Passes::Only(&["store"])) },
+    Chart { panel: "needles", title: "needles: frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "needles", title: "needles: store pass", measure: Measure::Time(Passes::Only(&["store"])) },
 ];
 
 const fn faster(panel: &'static str, passes: Passes) -> Check {

@@ -3,7 +3,7 @@
 //! and at most k atomic minima in MDT; every fragment is processed once, and every pixel alone.
 
 use crate::cli::figure::claim::{Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "growth",
@@ -58,9 +58,9 @@ const BY_SIDE: Panel = Panel {
 };
 
 const CHARTS: [Chart; 3] = [
-    Chart { panel: "k", title: "growth with k", passes: Passes::All },
-    Chart { panel: "n", title: "growth with n", passes: Passes::All },
-    Chart { panel: "side", title: "growth with the side", passes: Passes::All },
+    Chart { panel: "k", title: "growth with k", measure: Measure::Time(Passes::All) },
+    Chart { panel: "n", title: "growth with n", measure: Measure::Time(Passes::All) },
+    Chart { panel: "side", title: "growth with the side", measure: Measure::Time(Passes::All) },
 ];
 
 const fn claim(statement: &'static str, panel: &'static str, series: &'static str, range: [f64; 2]) -> Claim {

@@ -3,7 +3,7 @@
 //! The paper measures 1024² pixels on a GTX 480 to 970; its scene has n random fragments in every pixel.
 
 use crate::cli::figure::claim::{Change, Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-fig-6",
@@ -39,9 +39,9 @@ const K: [(&str, &str); 1] = [("k", "{x}")];
 const HYBRID: [(&str, &str); 2] = [("k", "{x}"), ("sort", "hybrid")];
 
 const CHARTS: [Chart; 3] = [
-    Chart { panel: "n128", title: "frame", passes: Passes::All },
-    Chart { panel: "n128", title: "store pass", passes: Passes::Only(&["store"]) },
-    Chart { panel: "n128", title: "resolve pass", passes: Passes::Only(&["resolve"]) },
+    Chart { panel: "n128", title: "frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "n128", title: "store pass", measure: Measure::Time(Passes::Only(&["store"])) },
+    Chart { panel: "n128", title: "resolve pass", measure: Measure::Time(Passes::Only(&["resolve"])) },
 ];
 
 const CLAIMS: [Claim; 8] = [

@@ -2,7 +2,7 @@
 //! n = 128.
 
 use crate::cli::figure::claim::{Change, Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-fig-7",
@@ -28,8 +28,12 @@ const PANEL: Panel = Panel {
 };
 
 const CHARTS: [Chart; 2] = [
-    Chart { panel: "n128", title: "frame", passes: Passes::All },
-    Chart { panel: "n128", title: "all passes but reset and resolve", passes: Passes::Except(&["reset", "resolve"]) },
+    Chart { panel: "n128", title: "frame", measure: Measure::Time(Passes::All) },
+    Chart {
+        panel: "n128",
+        title: "all passes but reset and resolve",
+        measure: Measure::Time(Passes::Except(&["reset", "resolve"])),
+    },
 ];
 
 const fn faster(series: &'static str, than: &'static str) -> Check {

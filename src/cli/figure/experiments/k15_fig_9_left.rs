@@ -2,7 +2,7 @@
 //! on Intel Iris Pro 5200.
 
 use crate::cli::figure::claim::{Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-fig-9-left",
@@ -28,8 +28,8 @@ const PANEL: Panel = Panel {
 };
 
 const CHARTS: [Chart; 2] = [
-    Chart { panel: "k8", title: "frame", passes: Passes::All },
-    Chart { panel: "k8", title: "store pass", passes: Passes::Only(&["store"]) },
+    Chart { panel: "k8", title: "frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "k8", title: "store pass", measure: Measure::Time(Passes::Only(&["store"])) },
 ];
 
 const fn faster(series: &'static str, than: &'static str) -> Check {

@@ -3,7 +3,7 @@
 //! depth test.
 
 use crate::cli::figure::claim::{Change, Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-fig-9-right",
@@ -34,8 +34,8 @@ const K_IS_N: [(&str, &str); 2] = [("k", "{x}"), ("sort", "hybrid")];
 const ALL: [(&str, &str); 2] = [("sort", "hybrid"), ("sort.layers", "{x}")];
 
 const CHARTS: [Chart; 2] = [
-    Chart { panel: "all", title: "frame", passes: Passes::All },
-    Chart { panel: "all", title: "store pass", passes: Passes::Only(&["store"]) },
+    Chart { panel: "all", title: "frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "all", title: "store pass", measure: Measure::Time(Passes::Only(&["store"])) },
 ];
 
 const fn faster(series: &'static str, than: &'static str, at: &'static [u32]) -> Check {

@@ -2,7 +2,7 @@
 //! n = 64 and 4.64 times for n = 128 on a GTX 780. The unified framework is K⁺B-AB_SB with a k of the deepest pixel.
 
 use crate::cli::figure::claim::{Check, Claim};
-use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Panel, Passes, Series, Side, Sweep};
+use crate::cli::figure::experiment::{Axis, Chart, Experiment, Kind, Measure, Panel, Passes, Series, Side, Sweep};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "k15-sec-5-1-2",
@@ -30,8 +30,8 @@ const PANEL: Panel = Panel {
 const RESOLVE: Passes = Passes::Only(&["resolve"]);
 
 const CHARTS: [Chart; 2] = [
-    Chart { panel: "all", title: "frame", passes: Passes::All },
-    Chart { panel: "all", title: "resolve pass", passes: RESOLVE },
+    Chart { panel: "all", title: "frame", measure: Measure::Time(Passes::All) },
+    Chart { panel: "all", title: "resolve pass", measure: Measure::Time(RESOLVE) },
 ];
 
 const fn faster(series: &'static str, than: &'static str, passes: Passes) -> Check {

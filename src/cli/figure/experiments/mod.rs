@@ -9,6 +9,7 @@ mod k15_fig_3;
 mod k15_fig_4;
 mod k15_fig_6;
 mod k15_fig_7;
+mod k15_fig_8;
 mod k15_fig_9_left;
 mod k15_fig_9_right;
 mod k15_sec_5_1_2;
@@ -18,13 +19,14 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 14] = [
+pub(super) const EXPERIMENTS: [Experiment; 15] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
     k15_fig_4::ROW,
     k15_fig_6::ROW,
     k15_fig_7::ROW,
+    k15_fig_8::ROW,
     k15_fig_9_left::ROW,
     k15_fig_9_right::ROW,
     k15_fig_10::ROW,
