@@ -190,6 +190,7 @@ fn a_capability_without_its_pass_is_an_error_of_the_row() {
     let folder = empty_folder("capability");
     let row = std::fs::read_to_string("examples/user_storage/first_k.wgsl").unwrap();
     let row = row.replace("//: provides ", "//: provides counted, ");
+    let row = format!("{row}\nfn storage_fragments(pixel: u32) -> u32 {{\n    return 0u;\n}}\n");
     assert!(row.contains("counted"));
     std::fs::write(folder.join("u.wgsl"), row).unwrap();
     let file = folder.join("u.fragbuf");

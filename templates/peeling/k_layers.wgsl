@@ -56,8 +56,13 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
 
 fn peeling_resume(pixel: u32) {
     peeling_pixel = pixel;
+    // As many as all iterations could keep: no loop relies on memory for its end.
+    peeling_copies = min(peeling_copies_met(pixel), PEELING_ITERATIONS * frame.k);
+}
+
+fn peeling_copies_met(pixel: u32) -> u32 {
     // The copies that were kept have been subtracted before this iteration counted all.
-    peeling_copies = u32(max(bitcast<i32>(unpeeled_load(COPIES, pixel)), 0));
+    return u32(max(bitcast<i32>(unpeeled_load(COPIES, pixel)), 0));
 }
 
 fn peeling_layer_count(sorted: u32) -> u32 {
@@ -115,10 +120,12 @@ fn peeling_advance() {
         }
         kept += 1u;
     }
+    let met = peeling_copies_met(pixel);
+    count_losses(NOT_CONVERGED, met - peeling_copies);
     boundary_store(pixel, last);
     unpeeled_store(COPIES, pixel, 0u - copies);
     let before = unpeeled_load(LEFT, pixel);
-    let done = peeling_copies + kept;
+    let done = met + kept;
     // Where fragments have been lost, some of those counted are never found.
     if kept == 0u || done >= before {
         unpeeled_store(LEFT, pixel, 0u);

@@ -162,6 +162,19 @@ fn peeled_storages_equal_the_a_buffer_bit_for_bit() {
     }
 }
 
+/// More copies than all iterations could keep are counted.
+#[test]
+fn copies_beyond_the_last_iteration_are_counted() {
+    let stage = device();
+    let variant = technique("k_peeling", &[("k", "2"), ("peeling.iterations", "3"), ("counters", "all")]);
+    let quad = Quad { x: [0, SIZE[0]], y: [0, SIZE[1]], depth: 0.5, color: [9, 90, 200, 20], id: 0 };
+    let (seen, _, [generated, lost]) = drawn(&stage, &variant, &[quad; 12], None);
+    // Two are kept, and six are composited as copies of them.
+    assert_eq!(first_difference(&seen, &image(&[quad; 8], SIZE, None, BACKGROUND)), None);
+    let pixels = u64::from(SIZE[0] * SIZE[1]);
+    assert_eq!((generated, lost), (12 * pixels, 4 * pixels));
+}
+
 /// Blending stops at the same fragment as in an A-buffer.
 #[test]
 fn opacity_ends_where_it_does_in_an_a_buffer() {

@@ -131,12 +131,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/k_layers",
-        "last = packed_of_key(0u);",
-        "last = packed_of_key(4294967295u);",
-        "a pixel without fragments: only the count of hidden ones depends on it",
-    ),
-    (
-        "peeling/k_layers",
         "peeling_pixel = pixel;",
         "",
         "colours are none of the checker's: test `peeling` of the runtime",
@@ -165,5 +159,17 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "var copies = 0u;",
         "var copies = 1u;",
         "of a pixel with fragments, the first sets it; one without has none left",
+    ),
+    (
+        "peeling/k_layers",
+        "count_losses(NOT_CONVERGED, met - peeling_copies);",
+        "",
+        "more copies than all iterations could keep: test `peeling` of the runtime",
+    ),
+    (
+        "peeling/k_layers",
+        "count_losses(NOT_CONVERGED, met - peeling_copies); boundary_store(pixel, last);",
+        "boundary_store(pixel, last); count_losses(NOT_CONVERGED, met - peeling_copies);",
+        "one invocation per pixel, and no other reads them",
     ),
 ];
