@@ -21,10 +21,16 @@ pub fn cpu_image(
     picture.pixels.iter().map(|pixel| over_background(pixel.map(f64::from), background)).collect()
 }
 
+/// Returns how many fragments of a pixel the image of a technique shows that keeps `k`; `None`: all.
+pub fn shown(plan: &Plan, k: Option<u32>) -> Option<u32> {
+    k.filter(|_| !plan.selection.provides().contains(&Capability::KeepsLater))
+}
+
 /// Tests whether the image is that of the k nearest fragments, or of all: nothing is lost, and words decide ties.
 pub fn is_exact(plan: &Plan) -> bool {
     let storage = &plan.selection.row("storage").unwrap().row;
     let keeps_best = [Capability::KeepsAll, Capability::KeepsBest].iter().any(|kept| storage.may_provide(*kept));
     let ties = plan.selection.row("ties").and_then(|ties| ties.row.order);
-    keeps_best && plan.hazards.is_empty() && !matches!(ties, Some(TieBreak::Unordered | TieBreak::Submission))
+    let is_unharmed = !plan.hazards.iter().any(|hazard| hazard.permits.shows());
+    keeps_best && is_unharmed && !matches!(ties, Some(TieBreak::Unordered | TieBreak::Submission))
 }

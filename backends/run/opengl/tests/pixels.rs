@@ -10,7 +10,7 @@ use fragbuf_targets::{Request, generate, manifest, target};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{KeepDefault, Technique, TieBreak};
 
-use crate::cpu_image::{cpu_image, is_exact};
+use crate::cpu_image::{cpu_image, is_exact, shown};
 use crate::numbers::Numbers;
 use crate::scene::{Quad, first_difference, image, image_in_order, quads, vertices};
 
@@ -97,7 +97,7 @@ fn expected(
     size: [u32; 2],
 ) -> Vec<[f64; 3]> {
     if is_exact(plan) {
-        return image(quads, size, k, BACKGROUND);
+        return image(quads, size, shown(plan, k), BACKGROUND);
     }
     if plan.arrival() == Arrival::Submission && plan.hazards.is_empty() && is_by_order(plan) {
         return image_in_order(quads, size, k, BACKGROUND);

@@ -19,7 +19,7 @@ use fragbuf_templates::vocabulary::KeepDefault;
 use crate::oracle::reference;
 use crate::order::numbers;
 use crate::stage::{self, BACKGROUND, FORMAT, renderer, shaders, technique};
-use cpu_image::{cpu_image, is_exact};
+use cpu_image::{cpu_image, is_exact, shown};
 use numbers::Numbers;
 use scene::{Quad, first_difference, image, quads, vertices};
 
@@ -74,7 +74,7 @@ fn compare_shaders(
         for order in 0..3 {
             let seen = draw(stage, &mut renderer, &quads, size).unwrap();
             let expected = match is_exact(cpu.plan()) {
-                true => image(&quads, size, k, BACKGROUND),
+                true => image(&quads, size, shown(cpu.plan(), k), BACKGROUND),
                 false => cpu_image(&mut cpu, &quads, size, &inputs, BACKGROUND),
             };
             if let Some(difference) = first_difference(&seen, &expected) {
