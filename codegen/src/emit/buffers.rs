@@ -20,6 +20,22 @@ pub(super) fn text(plan: &Plan, pass: &Pass, linking: &Linking, called: &[String
     text
 }
 
+/// Returns the signatures of all accessors that a buffer has with this access: `slots_load(slot: u32, pixel: u32) -> Packed`.
+pub(super) fn signatures(plan: &Plan, planned: &PlannedResource, access: Access) -> Vec<String> {
+    let name = &planned.resource.name;
+    let atomics = OPERATIONS.iter().map(|(operation, _)| format!("{name}_atomic_{operation}"));
+    let others = ["atomic_compare_exchange"]
+        .into_iter()
+        .chain(if access == Access::Hinted { &["hint", "publish"][..] } else { &[] }.iter().copied());
+    let called: Vec<String> = atomics.chain(others.map(|operation| format!("{name}_{operation}"))).collect();
+    // Coherent words are atomic in some targets only: a template cannot use that.
+    let access = shader_access(access, Profile::Native);
+    let mut text = String::new();
+    Accessors { plan, planned, access, called: &called }.accessors(&mut text);
+    let signature = |line: &str| Some(line.strip_prefix("fn ")?.strip_suffix(" {")?.to_owned());
+    text.lines().filter_map(signature).collect()
+}
+
 fn is_buffer(resource: &Resource, usage: &Use) -> bool {
     let in_shader = !matches!(usage.access, Access::Attachment | Access::Sampled | Access::Indirect);
     in_shader && !matches!(resource.element, Element::Texture(_))
@@ -73,7 +89,7 @@ struct Accessors<'a> {
 }
 
 /// Atomic operations that return the old value.
-pub(super) const OPERATIONS: [(&str, &str); 7] = [
+const OPERATIONS: [(&str, &str); 7] = [
     ("add", "atomicAdd"),
     ("sub", "atomicSub"),
     ("min", "atomicMin"),
@@ -88,6 +104,10 @@ impl Accessors<'_> {
         if self.plan.is_declared(self.planned) {
             self.declare(linking, text);
         }
+        self.accessors(text);
+    }
+
+    fn accessors(&self, text: &mut String) {
         self.load(text);
         if self.access != ShaderAccess::Read {
             self.store(text);

@@ -3,10 +3,10 @@
 //! Input: a pass of a plan. Output: each buffer of the row with its declared access and the accessors that it has in this pass. Nothing
 //! here is printed into a source.
 
-use fragbuf_templates::vocabulary::{Access, Element, Pass};
+use fragbuf_templates::vocabulary::{Access, Pass};
 
-use super::buffers::OPERATIONS;
-use crate::{Plan, PlannedResource};
+use super::buffers::signatures;
+use crate::Plan;
 
 /// A buffer of a user file in one pass.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,44 +52,8 @@ pub(crate) fn user_buffers(plan: &Plan, pass: &Pass) -> Vec<UserBuffer> {
             Access::Hinted => "hinted",
             _ => "read",
         });
-        let accessors = access.map(|access| accessors(planned, access)).unwrap_or_default();
+        let accessors = access.map(|access| signatures(plan, planned, access)).unwrap_or_default();
         buffers.push(UserBuffer { name: resource.name.clone(), access: word, accessors });
     }
     buffers
-}
-
-fn accessors(planned: &PlannedResource, access: Access) -> Vec<String> {
-    let name = &planned.resource.name;
-    let scalar = match planned.resource.element {
-        Element::Word => Some("u32"),
-        Element::Word64 => Some("u64"),
-        _ => None,
-    };
-    let index = || planned.resource.extents.iter().map(|extent| format!("{}: u32", extent.name));
-    let with = |more: &[String]| index().chain(more.iter().cloned()).collect::<Vec<_>>().join(", ");
-    let key = (planned.resource.element == Element::Value).then(|| "key: u32".to_owned());
-    let result = scalar.unwrap_or("Packed");
-    let mut list = vec![format!("{name}_load({}) -> {result}", with(key.as_slice()))];
-    if access == Access::Read {
-        return list;
-    }
-    let value = scalar.map_or("entry: Packed".to_owned(), |scalar| format!("value: {scalar}"));
-    list.push(format!("{name}_store({})", with(std::slice::from_ref(&value))));
-    let Some(scalar) = scalar else { return list };
-    match access {
-        Access::Atomic => {
-            let operations = OPERATIONS.iter().map(|(operation, _)| {
-                format!("{name}_atomic_{operation}({}) -> {scalar}", with(std::slice::from_ref(&value)))
-            });
-            list.extend(operations);
-            let expected = format!("expected: {scalar}");
-            list.push(format!("{name}_atomic_compare_exchange({}) -> bool", with(&[expected, value])));
-        }
-        Access::Hinted => {
-            list.push(format!("{name}_hint({}) -> {scalar}", with(&[])));
-            list.push(format!("{name}_publish({})", with(&[value])));
-        }
-        _ => {}
-    }
-    list
 }
