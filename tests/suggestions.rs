@@ -626,6 +626,11 @@ fn a_declaration_that_does_not_fit_its_uses_is_replaced() {
         };
         assert_eq!(found(&format!("{before}resolve{rest}"), &[]), [], "{closure}: {error}");
     }
+    // A float would not fit `n += 1`.
+    let text = with_items("resolve |fragments| { let mut n = 0; for f in fragments { n += 1; } Vec4::splat(n) }");
+    let error = only(&text, &[]);
+    assert_eq!(code(&error.help), "(n as f32)");
+    assert_eq!(found(&text.replace("splat(n)", "splat((n as f32))"), &[]), [], "{error}");
     // A literal takes the integer type of its uses, as in Rust.
     let counted =
         "resolve |fragments| { let mut n = 0; for f in fragments { n += f.id; } vec4(n as f32, 0.0, 0.0, 1.0) }";

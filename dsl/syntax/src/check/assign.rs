@@ -89,6 +89,7 @@ impl Checker<'_, '_, '_> {
             self.no_assignment(operator, (&place, left), (&value, right), &span);
             return Expr::error(span);
         }
+        self.record_integer_operand(&place, right);
         let kind = Kind::Assign { place: Box::new(place), operator: Some(operator), value: Box::new(value) };
         Expr::new(kind, Type::Unit, span)
     }

@@ -14,6 +14,8 @@ pub(super) struct LiteralVariable {
     variable: VariableId,
     /// The literal with its sign, as `0` or `-1.5`.
     literal: String,
+    /// Whether an integer literal is added to it, or the like.
+    is_integer: bool,
 }
 
 /// The declaration of a variable that fits one of its uses.
@@ -28,7 +30,17 @@ impl Checker<'_, '_, '_> {
     /// Records a variable whose initial value is a literal without a suffix.
     pub(super) fn record_literal(&mut self, variable: VariableId, value: &syn::Expr) {
         if let Some(literal) = literal(value) {
-            self.literal_variables.push(LiteralVariable { variable, literal });
+            self.literal_variables.push(LiteralVariable { variable, literal, is_integer: false });
+        }
+    }
+
+    /// Records an operand whose other operand is an integer literal: a declaration with a float would not fit it.
+    pub(super) fn record_integer_operand(&mut self, operand: &Expr, other: &syn::Expr) {
+        if let Kind::Variable(id) = operand.kind
+            && matches!(other, syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(number), .. }) if number.suffix().is_empty())
+            && let Some(known) = self.literal_variables.iter_mut().find(|known| known.variable == id)
+        {
+            known.is_integer = true;
         }
     }
 
@@ -61,7 +73,7 @@ impl Checker<'_, '_, '_> {
     /// Returns the name of the variable with its `mut`, its literal, and where it is declared.
     fn literal_variable(&self, found: &Expr) -> Option<(String, &str, &SourceSpan)> {
         let Kind::Variable(id) = found.kind else { return None };
-        let literal = self.literal_variables.iter().find(|other| other.variable == id)?;
+        let literal = self.literal_variables.iter().find(|other| other.variable == id && !other.is_integer)?;
         let variable = self.variables.get(id)?;
         let is_number = matches!(self.inference.resolve(variable.ty), Type::Unknown(_) | Type::F32);
         let mutable = if variable.mutable { "mut " } else { "" };

@@ -126,7 +126,11 @@ impl Checker<'_, '_, '_> {
             return error;
         }
         match self.operation(operator, &left, &right) {
-            Some(ty) => Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, span),
+            Some(ty) => {
+                self.record_integer_operand(&left, &binary.right);
+                self.record_integer_operand(&right, &binary.left);
+                Expr::new(Kind::Binary(operator, Box::new(left), Box::new(right)), ty, span)
+            }
             None => {
                 self.no_operation(operator, (&left, &binary.left), (&right, &binary.right), &span);
                 Expr::error(span)
