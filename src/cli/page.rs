@@ -15,7 +15,9 @@ pub(crate) fn page(generation: &Generation, registry: &Registry) -> String {
     memory(first, &mut text);
     text.push_str("\n## A frame\n\n");
     steps(first, &mut text);
-    let _ = writeln!(text, "\nThe geometry is drawn {} time(s).", first.geometry_passes);
+    let is_limit = first.frame.loops.iter().any(|one| one.until != LoopUntil::Times);
+    let most = if is_limit { "at most " } else { "" };
+    let _ = writeln!(text, "\nThe geometry is drawn {most}{} time(s).", first.geometry_passes);
     targets(generation, &mut text);
     hazards(first, &mut text);
     text

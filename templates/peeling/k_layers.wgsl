@@ -16,10 +16,10 @@
 
 /// Parts of `unpeeled`: fragments of the pixel that no iteration has kept, and copies of the boundary that this
 /// iteration has met beyond those that are kept.
-const LEFT = 0u;
-const COPIES = 1u;
+const PEELING_LEFT = 0u;
+const PEELING_COPIES = 1u;
 /// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
-const TRANSPARENT = 0x3f800000u;
+const PEELING_TRANSPARENT = 0x3f800000u;
 
 /// What the effect goes on with in this pixel.
 var<private> peeling_pixel: u32;
@@ -38,10 +38,10 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
     let pixel = pixel_index(position);
     let last = boundary_load(pixel);
     if last.key == EMPTY {
-        unpeeled_atomic_add(LEFT, pixel, 1u);
+        unpeeled_atomic_add(PEELING_LEFT, pixel, 1u);
         return true;
     }
-    if unpeeled_load(LEFT, pixel) == 0u {
+    if unpeeled_load(PEELING_LEFT, pixel) == 0u {
         return false;
     }
     let entry = fragment_pack(fragment);
@@ -49,7 +49,7 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
         return true;
     }
     if !better(entry, last) {
-        unpeeled_atomic_add(COPIES, pixel, 1u);
+        unpeeled_atomic_add(PEELING_COPIES, pixel, 1u);
     }
     return false;
 }
@@ -62,7 +62,7 @@ fn peeling_resume(pixel: u32) {
 
 fn peeling_copies_met(pixel: u32) -> u32 {
     // The copies that were kept have been subtracted before this iteration counted all.
-    return u32(max(bitcast<i32>(unpeeled_load(COPIES, pixel)), 0));
+    return u32(max(bitcast<i32>(unpeeled_load(PEELING_COPIES, pixel)), 0));
 }
 
 fn peeling_layer_count(sorted: u32) -> u32 {
@@ -90,7 +90,7 @@ fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
 }
 
 fn peeling_transmittance() -> f32 {
-    return bitcast<f32>(accumulated_load(3u, peeling_pixel) ^ TRANSPARENT);
+    return bitcast<f32>(accumulated_load(3u, peeling_pixel) ^ PEELING_TRANSPARENT);
 }
 
 fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
@@ -98,7 +98,7 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
     accumulated_store(0u, peeling_pixel, words.x);
     accumulated_store(1u, peeling_pixel, words.y);
     accumulated_store(2u, peeling_pixel, words.z);
-    accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT);
+    accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);
 }
 
 fn peeling_advance() {
@@ -123,15 +123,15 @@ fn peeling_advance() {
     let met = peeling_copies_met(pixel);
     count_losses(NOT_CONVERGED, met - peeling_copies);
     boundary_store(pixel, last);
-    unpeeled_store(COPIES, pixel, 0u - copies);
-    let before = unpeeled_load(LEFT, pixel);
+    unpeeled_store(PEELING_COPIES, pixel, 0u - copies);
+    let before = unpeeled_load(PEELING_LEFT, pixel);
     let done = met + kept;
     // Where fragments have been lost, some of those counted are never found.
     if kept == 0u || done >= before {
-        unpeeled_store(LEFT, pixel, 0u);
+        unpeeled_store(PEELING_LEFT, pixel, 0u);
         return;
     }
-    unpeeled_store(LEFT, pixel, before - done);
+    unpeeled_store(PEELING_LEFT, pixel, before - done);
     remaining_store(1u);
     if frame.iteration + 1u == PEELING_ITERATIONS {
         count_losses(NOT_CONVERGED, before - done);

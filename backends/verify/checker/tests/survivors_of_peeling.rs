@@ -76,8 +76,8 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/k_layers",
-        "accumulated_store(2u, peeling_pixel, words.z); accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT);",
-        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT); accumulated_store(2u, peeling_pixel, words.z);",
+        "accumulated_store(2u, peeling_pixel, words.z); accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);",
+        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT); accumulated_store(2u, peeling_pixel, words.z);",
         "colours are none of the checker's: test `peeling` of the runtime",
     ),
     (
@@ -100,20 +100,20 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/k_layers",
-        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT);",
+        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);",
         "",
         "colours are none of the checker's: test `peeling` of the runtime",
     ),
     (
         "peeling/k_layers",
-        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT);",
-        "accumulated_store(2u, peeling_pixel, bitcast<u32>(transmittance) ^ TRANSPARENT);",
+        "accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);",
+        "accumulated_store(2u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);",
         "colours are none of the checker's: test `peeling` of the runtime",
     ),
     (
         "peeling/k_layers",
-        "boundary_store(pixel, last); unpeeled_store(COPIES, pixel, 0u - copies);",
-        "unpeeled_store(COPIES, pixel, 0u - copies); boundary_store(pixel, last);",
+        "boundary_store(pixel, last); unpeeled_store(PEELING_COPIES, pixel, 0u - copies);",
+        "unpeeled_store(PEELING_COPIES, pixel, 0u - copies); boundary_store(pixel, last);",
         "one invocation per pixel, and no other reads them",
     ),
     (
@@ -138,8 +138,8 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ("peeling/k_layers", "remaining_store(1u);", "remaining_store(2u);", "any number but zero"),
     (
         "peeling/k_layers",
-        "return bitcast<f32>(accumulated_load(3u, peeling_pixel) ^ TRANSPARENT);",
-        "return bitcast<f32>(accumulated_load(2u, peeling_pixel) ^ TRANSPARENT);",
+        "return bitcast<f32>(accumulated_load(3u, peeling_pixel) ^ PEELING_TRANSPARENT);",
+        "return bitcast<f32>(accumulated_load(2u, peeling_pixel) ^ PEELING_TRANSPARENT);",
         "colours are none of the checker's: test `peeling` of the runtime",
     ),
     (
@@ -150,8 +150,8 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/k_layers",
-        "unpeeled_store(LEFT, pixel, before - done); remaining_store(1u);",
-        "remaining_store(1u); unpeeled_store(LEFT, pixel, before - done);",
+        "unpeeled_store(PEELING_LEFT, pixel, before - done); remaining_store(1u);",
+        "remaining_store(1u); unpeeled_store(PEELING_LEFT, pixel, before - done);",
         "one invocation per pixel, and no other reads them",
     ),
     (
