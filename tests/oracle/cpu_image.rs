@@ -26,11 +26,13 @@ pub fn shown(plan: &Plan, k: Option<u32>) -> Option<u32> {
     k.filter(|_| !plan.selection.provides().contains(&Capability::KeepsLater))
 }
 
-/// Tests whether the image is that of the k nearest fragments, or of all: nothing is lost, and words decide ties.
+/// Tests whether the image is that of the k nearest fragments, or of all: nothing is lost, words decide ties, and fragments that are
+/// not kept add nothing.
 pub fn is_exact(plan: &Plan) -> bool {
     let storage = &plan.selection.row("storage").unwrap().row;
     let keeps_best = [Capability::KeepsAll, Capability::KeepsBest].iter().any(|kept| storage.may_provide(*kept));
     let ties = plan.selection.row("ties").and_then(|ties| ties.row.order);
     let is_unharmed = !plan.hazards.iter().any(|hazard| hazard.permits.shows());
-    keeps_best && is_unharmed && !matches!(ties, Some(TieBreak::Unordered | TieBreak::Submission))
+    let drops_others = plan.selection.row("overflow").is_none_or(|overflow| overflow.row.key == "drop");
+    keeps_best && is_unharmed && drops_others && !matches!(ties, Some(TieBreak::Unordered | TieBreak::Submission))
 }
