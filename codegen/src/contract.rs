@@ -137,21 +137,33 @@ pub const CONTRACTS: &[Contract] = &[
     row("counters", "count_losses", "(counter: u32, number: u32)", "counts any number of losses"),
     row(
         "peeling",
-        "peeling_has_kept",
+        "peeling_find_first",
+        "(pixel: u32, key: u32)",
+        "lowers the key of the pixel's first layer to that of a fragment",
+    ),
+    row(
+        "peeling",
+        "peeling_skips",
         "(position: vec2<f32>, fragment: Fragment) -> bool",
-        "returns whether an earlier iteration has kept the fragment; `position` is that of the fragment, in pixels",
+        "returns whether this iteration leaves the fragment to another; `position` is that of the fragment, in pixels",
     ),
     row(
         "peeling",
         "peeling_admits",
         "(position: vec2<f32>, fragment: Fragment) -> bool",
-        "returns whether no earlier iteration has kept the fragment, and counts it; called once per fragment and iteration",
+        "returns whether this iteration stores the fragment, and records it if another does; called once per fragment and iteration",
     ),
     row(
         "peeling",
         "peeling_is_first",
         "(position: vec2<f32>) -> bool",
         "returns whether this is the first iteration that draws the scene",
+    ),
+    row(
+        "peeling",
+        "peeling_reads",
+        "(pixel: u32, entry: Packed) -> bool",
+        "returns whether this pass continues the effect with the fragment",
     ),
     row("peeling", "peeling_resume", "(pixel: u32)", "begins to resolve the pixel"),
     row(

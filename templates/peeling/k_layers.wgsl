@@ -18,14 +18,12 @@
 /// iteration has met beyond those that are kept.
 const PEELING_LEFT = 0u;
 const PEELING_COPIES = 1u;
-/// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
-const PEELING_TRANSPARENT = 0x3f800000u;
 
 /// What the effect goes on with in this pixel.
 var<private> peeling_pixel: u32;
 var<private> peeling_copies: u32;
 
-fn peeling_has_kept(position: vec2<f32>, fragment: Fragment) -> bool {
+fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
     let last = boundary_load(pixel_index(position));
     return last.key != EMPTY && !better(last, fragment_pack(fragment));
 }
@@ -82,23 +80,15 @@ fn peeling_sorted_index(index: u32) -> u32 {
 }
 
 fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>(vec3<u32>(
-        accumulated_load(0u, peeling_pixel),
-        accumulated_load(1u, peeling_pixel),
-        accumulated_load(2u, peeling_pixel),
-    ));
+    return accumulated_color(peeling_pixel);
 }
 
 fn peeling_transmittance() -> f32 {
-    return bitcast<f32>(accumulated_load(3u, peeling_pixel) ^ PEELING_TRANSPARENT);
+    return accumulated_transmittance(peeling_pixel);
 }
 
 fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    let words = bitcast<vec3<u32>>(color);
-    accumulated_store(0u, peeling_pixel, words.x);
-    accumulated_store(1u, peeling_pixel, words.y);
-    accumulated_store(2u, peeling_pixel, words.z);
-    accumulated_store(3u, peeling_pixel, bitcast<u32>(transmittance) ^ PEELING_TRANSPARENT);
+    accumulated_save(peeling_pixel, color, transmittance);
 }
 
 fn peeling_advance() {
@@ -139,6 +129,5 @@ fn peeling_advance() {
 }
 
 fn peeling_result(pixel: u32) -> vec4<f32> {
-    peeling_pixel = pixel;
-    return vec4<f32>(peeling_color(vec3<f32>(0.0)), 1.0 - peeling_transmittance());
+    return accumulated_result(pixel);
 }

@@ -1,6 +1,6 @@
 // The scene's fragments are stored once.
 
-fn peeling_has_kept(position: vec2<f32>, fragment: Fragment) -> bool {
+fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
     return false;
 }
 

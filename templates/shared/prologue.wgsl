@@ -1,10 +1,14 @@
 // Conditions that every pass over the scene tests first. All passes that draw the scene must test the same conditions.
 
-/// Returns whether a fragment is inside the frame or slice, meets the constraints, and no opaque surface hides it.
-/// `position` is the fragment's, in pixels.
+/// Returns whether a fragment is inside the frame or slice, meets the constraints, no opaque surface hides it, and the
+/// iteration takes it. `position` is the fragment's, in pixels.
 fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
-    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment)
-        && !peeling_has_kept(position, fragment);
+    return fragment_is_drawn(position, fragment) && !peeling_skips(position, fragment);
+}
+
+/// Returns the same, whatever the iteration takes.
+fn fragment_is_drawn(position: vec2<f32>, fragment: Fragment) -> bool {
+    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment);
 }
 
 /// Returns the same, and counts the fragment. One pass of a frame calls this function.
@@ -21,11 +25,8 @@ fn fragment_enters_counted(position: vec2<f32>, fragment: Fragment) -> bool {
         }
         return false;
     }
-    if !peeling_admits(position, fragment) {
-        return false;
-    }
     if peeling_is_first(position) {
         count_event(GENERATED);
     }
-    return true;
+    return peeling_admits(position, fragment);
 }

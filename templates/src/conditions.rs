@@ -16,6 +16,11 @@ pub(crate) fn limited() -> Condition {
     Condition::new("limited", "a limit on the fragments kept, such as `keep 8`", "write `keep 8;`")
 }
 
+/// Requires that there is no limit.
+pub(crate) fn keeps_all() -> Condition {
+    Condition::new("limited == 0", "every fragment, without a limit: `keep all`", "write `keep all;`")
+}
+
 /// Requires a limit of one fragment.
 pub(crate) fn keeps_one() -> Condition {
     Condition::new("keep == 1", "a limit of one: `keep 1`", "write `keep 1;`")

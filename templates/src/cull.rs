@@ -24,7 +24,31 @@ pub(crate) fn rows() -> Vec<Row> {
         occupancy_early(),
         temporal(),
         z_prepass(),
+        depth_prepass(),
     ]
+}
+
+/// Culls all but the nearest fragment by the depth test, after a pass over the scene that writes nothing but depth.
+fn depth_prepass() -> Row {
+    let test =
+        |compare: Compare, write: bool| DepthState { resource: "depths".to_owned(), compare, write, early: false };
+    let mut prepass = Pass::geometry("depth_prepass", "depth_prepass").uses("depths", Access::Attachment);
+    prepass.state.depth = Some(test(Compare::Less, true));
+    Row {
+        template: Some(template!("cull/none")),
+        requires: vec![Capability::LeavesDepth],
+        needs: vec![Feature::OwnEntryPoints],
+        edits: vec![
+            Edit::Before("store".to_owned(), vec![Step::Pass(prepass)]),
+            Edit::SetDepth("store".to_owned(), test(Compare::Equal, false)),
+        ],
+        ..Row::new(
+            "cull",
+            "depth_prepass",
+            "all but the nearest fragment, by a depth test after a pass over the scene that writes only depth",
+            "D13 §3.1.1 (F2B2)",
+        )
+    }
 }
 
 /// Culls by the bounds of the last frame, which one pass over the scene confirms, and saves the bounds after the store pass.

@@ -72,10 +72,22 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/resolve_selected"),
             vec!["addressing", "storage", "overflow", "samples", "sort", "resolve"],
         ),
+        drawn(
+            "nearest_layer",
+            "draws the scene before the first iteration of peeling, to find the nearest layer of each pixel",
+            template!("pass/nearest_layer"),
+            &["addressing"],
+        ),
         row(
             "accumulate",
             "continues the effect of each pixel with the fragments that an iteration has stored",
             template!("pass/accumulate"),
+            vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
+        ),
+        row(
+            "accumulate_side",
+            "continues the effect of each pixel with the fragments of one side that an iteration has stored",
+            template!("pass/accumulate_side"),
             vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
         ),
         row(
@@ -125,6 +137,12 @@ pub(crate) fn rows() -> Vec<Row> {
             "narrows the range of each pixel's keys to those that can be kept",
             template!("pass/occupancy_bound"),
             vec!["addressing", "cull"],
+        ),
+        drawn(
+            "depth_prepass",
+            "draws the scene before the store pass, to write the depth of each pixel's nearest fragment",
+            template!("pass/depth_prepass"),
+            &[],
         ),
         row(
             "limit",

@@ -2,7 +2,7 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 13] = [
+pub(crate) const TEMPLATES: [Template; 14] = [
     template!("shared/markers"),
     template!("shared/prologue"),
     template!("shared/edges"),
@@ -12,6 +12,7 @@ pub(crate) const TEMPLATES: [Template; 13] = [
     template!("shared/encoding"),
     template!("shared/halves"),
     template!("shared/layers"),
+    template!("shared/accumulated"),
     template!("shared/gap_sort"),
     template!("shared/stream"),
     template!("shared/merging"),

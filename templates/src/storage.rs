@@ -14,7 +14,7 @@ mod stream;
 mod worst_first;
 
 use crate::conditions::keeps_one;
-use crate::vocabulary::{Access, Capability, Element, Feature, Hazard, Pass, Permits, Resource, Row, Step};
+use crate::vocabulary::{Access, Capability, Element, Feature, Hazard, Parameter, Pass, Permits, Resource, Row, Step};
 use parts::{REPLACES_WORST, SLOTS, array_resources, reset, resolve};
 
 pub(crate) use ranges::DEPTH_RANGE;
@@ -24,6 +24,7 @@ pub(crate) fn rows() -> Vec<Row> {
         list::linked_list(),
         regions::exact_regions(),
         fixed_array(),
+        claimed_array(),
         sorted_array(),
         worst_first::max_array(),
         worst_first::max_heap(),
@@ -143,6 +144,47 @@ fn fixed_array() -> Row {
             resolve(&["counts", "entries"]),
         ],
         calls: vec!["overflow"],
+        ..all_in_array(
+            "fixed_array",
+            "n slots per pixel, reserved by an atomic counter",
+            "Liu et al. 2010 (FreePipe); K15 §2",
+        )
+    }
+}
+
+fn claimed_array() -> Row {
+    let store = Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Plain);
+    Row {
+        template: Some(template!("storage/claimed_array")),
+        resources: vec![
+            Resource::new("keys", Element::Word, "the keys of the fragments, in the order of arrival; EMPTY: free")
+                .by("slot", "n")
+                .by("pixel", "pixels")
+                .cleared(u32::MAX),
+            Resource::new("entries", Element::Value, "the value words of the fragments")
+                .by("slot", "n")
+                .by("pixel", "pixels"),
+        ],
+        steps: vec![Step::Pass(store), resolve(&["keys", "entries"])],
+        calls: vec!["overflow"],
+        parameters: vec![Parameter::retry_limit(
+            "retries",
+            "CLAIM_TRIES",
+            "4096",
+            (1, 1 << 24),
+            "failed exchanges after which a fragment times out and is counted",
+        )],
+        ..all_in_array(
+            "claimed_array",
+            "n slots per pixel, each taken by an atomic exchange of its key: no counter, but a slot is searched for",
+            "after D13 §3.2.1 (Alg. 3)",
+        )
+    }
+}
+
+/// Returns the common part of rows that store every fragment in n slots per pixel without a lock.
+fn all_in_array(key: &str, summary: &'static str, paper: &'static str) -> Row {
+    Row {
         provides: vec![
             Capability::LockFree,
             Capability::KeepsAll,
@@ -152,11 +194,6 @@ fn fixed_array() -> Row {
         implies: vec![("limited".into(), Capability::AcceptsKBestOnly)],
         needs: vec![Feature::FragmentAtomics],
         defaults: vec![("sync".into(), "slot_counter".into())],
-        ..Row::new(
-            "storage",
-            "fixed_array",
-            "n slots per pixel, reserved by an atomic counter",
-            "Liu et al. 2010 (FreePipe); K15 §2",
-        )
+        ..Row::new("storage", key, summary, paper)
     }
 }

@@ -19,6 +19,7 @@ pub(super) fn apply(
         Edit::Before(name, new) => insert(steps, name, new, 0),
         Edit::After(name, new) => insert(steps, name, new, 1),
         Edit::SetState(name, state) => change(steps, name, &|pass| pass.state = state.clone()),
+        Edit::SetDepth(name, depth) => change(steps, name, &|pass| pass.state.depth = Some(depth.clone())),
         Edit::TestDepth(test) => test_depth(steps, test),
         Edit::SetSkeleton(name, skeleton) => change(steps, name, &|pass| pass.skeleton.clone_from(skeleton)),
         Edit::FormOfSkeleton(name, form) => {

@@ -59,7 +59,8 @@ pub(super) fn render(
     let uniforms = uniforms::values(request.uniforms, variant)?;
     let (width, height) = view.size;
     loop {
-        let sizing = redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
+        let sizing =
+            redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Capacity(PoolSize::Fragments(fragments)));
         let settings = Settings { sizing, order, slice: redraw.slice, memory, ..Settings::new(width, height) };
         let mut device = match Device::new(code.clone(), settings) {
             // The pool for all fragments of a slice is too large.

@@ -171,7 +171,7 @@ impl GpuRenderer {
         let uniforms = uniforms::values(request.uniforms, variant)?;
         let (stats, renderer) = loop {
             let sizing =
-                redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Reserve(PoolSize::Fragments(fragments)));
+                redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Capacity(PoolSize::Fragments(fragments)));
             let settings = Settings { sizing, slice: redraw.slice, ..settings.clone() };
             let mut renderer = match block_on(device, Renderer::with(device, queue, &pipelines, &settings))? {
                 // The pool for all fragments of a slice is too large.

@@ -39,7 +39,7 @@ pub(super) fn depth_tested() -> Row {
         hazards: vec![
             Hazard::new(
                 "equal-keys",
-                "of fragments with equal depths only the first submitted is kept",
+                "of fragments with equal depths only the first submitted is kept; the last, where a pass wrote their depth before",
                 Permits::ONE_OF_EQUAL_KEYS,
             ),
             Hazard::new("far-plane", "a fragment at a depth of exactly 1.0 is not kept", Permits::NOTHING),

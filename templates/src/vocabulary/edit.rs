@@ -13,6 +13,8 @@ pub enum Edit {
     After(String, Vec<Step>),
     /// Sets the fixed-function state of the pass of this name.
     SetState(String, State),
+    /// Sets the depth test of the pass of this name, and leaves its other state.
+    SetDepth(String, DepthState),
     /// Adds this depth test to every geometry pass. An error if a geometry pass has a depth test.
     TestDepth(DepthState),
     /// Sets the skeleton of the pass of this name.

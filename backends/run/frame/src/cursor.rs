@@ -212,7 +212,7 @@ impl Cursor {
         }
         self.around.pop();
         self.at = looped.end + 1;
-        let is_observed = self.readbacks == Readbacks::Enabled;
+        let is_observed = self.readbacks != Readbacks::Disabled;
         if let Some(until) = until(plan, looped.until).filter(|_| is_observed) {
             LoopReport { until, iterations, end }.merge_into(&mut self.loops);
         }
@@ -229,7 +229,7 @@ impl Cursor {
     ) -> Result<Option<HostWait>, Error> {
         let command = self.at;
         self.at += 1;
-        if self.readbacks == Readbacks::Disabled {
+        if self.readbacks != Readbacks::Enabled {
             return Ok(None);
         }
         let wait = HostWait::Words(word_ranges(plan, values, decision, flipped)?);

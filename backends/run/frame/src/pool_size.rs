@@ -9,13 +9,16 @@ use crate::{Error, Values};
 /// How memory is sized for fragments whose number is unknown in advance. Plans without such resources ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sizing {
-    /// [`Sizing::Exact`] if a host step of the plan counts the fragments, otherwise capacity for eight fragments per pixel.
+    /// [`Sizing::Exact`] if a host step of the plan counts the fragments, otherwise [`Sizing::Capacity`] for eight fragments per
+    /// pixel.
     Auto,
     /// Exactly the fragments of the frame. The frame is suspended where the host reads the count back and allocates, and after
     /// each iteration of a loop whose end condition is evaluated on the device.
     Exact,
-    /// The capacity that the caller gives. The frame is never suspended, fragments beyond the capacity count as lost, and loops
-    /// run to their limits.
+    /// The capacity that the caller gives. Fragments beyond it count as lost. The frame is suspended after each iteration of a loop
+    /// whose end condition is evaluated on the device, and nowhere else.
+    Capacity(PoolSize),
+    /// As [`Sizing::Capacity`], but the frame is never suspended: loops run to their limits.
     Reserve(PoolSize),
 }
 
@@ -38,8 +41,10 @@ impl Sizing {
 pub enum Readbacks {
     /// Host steps run, loops end on their conditions, and queries drop objects.
     Enabled,
-    /// The caller has reserved what host steps would set. Host steps are skipped, loops run to their limits, and no object is
-    /// dropped.
+    /// The caller has reserved what host steps would set. Host steps are skipped; loops end on their conditions, and queries drop
+    /// objects.
+    LoopsOnly,
+    /// As `LoopsOnly`, but loops run to their limits, and no object is dropped.
     Disabled,
 }
 
@@ -56,18 +61,19 @@ pub fn initial_values(plan: &Plan, size: (u32, u32), sizing: Sizing) -> Result<(
         (Sizing::Exact, Some(id)) => {
             return Err(Error::Unsupported {
                 what: format!("exact sizing of `{}`, which no step of this plan counts", plan.symbols.get(*id).name),
-                help: "reserve memory with `Sizing::Reserve(PoolSize::Bytes(…))`".to_owned(),
+                help: "give a capacity with `Sizing::Capacity(PoolSize::Bytes(…))`".to_owned(),
             });
         }
-        (Sizing::Auto, Some(_)) | (Sizing::Reserve(_), _) => Readbacks::Disabled,
+        (Sizing::Auto, Some(_)) | (Sizing::Capacity(_), _) => Readbacks::LoopsOnly,
+        (Sizing::Reserve(_), _) => Readbacks::Disabled,
     };
     for id in counted {
         match readbacks {
             Readbacks::Enabled => values.set(id, 0),
-            Readbacks::Disabled => values.set_per_pixel(id, Sizing::AUTO_PER_PIXEL),
+            Readbacks::LoopsOnly | Readbacks::Disabled => values.set_per_pixel(id, Sizing::AUTO_PER_PIXEL),
         }
     }
-    if let Sizing::Reserve(size) = sizing {
+    if let Sizing::Capacity(size) | Sizing::Reserve(size) = sizing {
         reserve(plan, &mut values, size)?;
     }
     // Memory for more is allocated once a host step has decided.

@@ -157,14 +157,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Reserves memory for fragments if the plan needs it. From then on host steps are skipped.
+    /// Gives memory for fragments this capacity if the plan needs it, as [`Sizing::Capacity`](crate::Sizing::Capacity) does: from then
+    /// on host steps are skipped. Under [`Sizing::Reserve`](crate::Sizing::Reserve) frames are still never suspended.
     pub async fn reserve(&mut self, size: PoolSize) -> Result<(), Error> {
         let mut values = self.resources.values.clone();
         reserve(self.plan(), &mut values, size)?;
         let k = host_sets_k(self.plan()).then(|| values.k());
         self.resize_to(values).await?;
         self.k = k.unwrap_or(self.k);
-        self.readbacks = Readbacks::Disabled;
+        if self.readbacks == Readbacks::Enabled {
+            self.readbacks = Readbacks::LoopsOnly;
+        }
         Ok(())
     }
 

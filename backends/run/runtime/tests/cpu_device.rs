@@ -105,7 +105,7 @@ fn leaked_pages_only_reduce_the_pool() {
     let quads: Vec<Quad> = scattered(24, 3).into_iter().map(|quad| quad.at(0, 0, SIZE, SIZE)).collect();
     let with = |order: FragmentOrder, size: u32| {
         let code = Code::of(&variant, &Registry::builtin()).unwrap();
-        let sizing = Sizing::Reserve(PoolSize::Fragments(size));
+        let sizing = Sizing::Capacity(PoolSize::Fragments(size));
         let settings = fragbuf_cpu::Settings { sizing, order, ..fragbuf_cpu::Settings::new(SIZE, SIZE) };
         let mut device = Device::new(Arc::new(code), settings).unwrap();
         let (kept, _) = draw(&mut device, &quads);

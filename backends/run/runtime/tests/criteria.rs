@@ -245,7 +245,7 @@ fn k_buffers_cull_early() {
             continue;
         }
         let language = if variant.select(target("wgsl").unwrap().provides).is_ok() { "wgsl" } else { "wgsl-native" };
-        let roomy = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(20 * SIZE * SIZE)), ..settings() };
+        let roomy = Settings { sizing: Sizing::Capacity(PoolSize::Fragments(20 * SIZE * SIZE)), ..settings() };
         let mut renderer = renderer(&stage, &shaders(&variant, language), &roomy).unwrap();
         // The nearest come first: after three of them, each other fragment is rejected.
         let quads: Vec<Quad> = (0..12).map(|layer| Quad::whole(layer as f32 / 16.0, [9, 9, 9, 9])).collect();

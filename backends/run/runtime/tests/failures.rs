@@ -50,7 +50,7 @@ fn exact_sizing_without_a_count_suggests_to_reserve() {
     let stage = device();
     let settings = Settings { sizing: Sizing::Exact, ..settings() };
     let error = message(renderer(&stage, &shaders(&technique("ab_ll", &[]), "wgsl"), &settings));
-    assert!(error.contains("`fragments`") && error.contains("Sizing::Reserve"), "{error}");
+    assert!(error.contains("`fragments`") && error.contains("Sizing::Capacity"), "{error}");
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn device(variant: &Variant) -> Option<Device> {
     languages.iter().find(|provides| variant.select(provides).is_ok())?;
     let code = Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"));
     let settings = Settings {
-        sizing: Sizing::Reserve(PoolSize::Fragments(50 * FRAME.0 * FRAME.1)),
+        sizing: Sizing::Capacity(PoolSize::Fragments(50 * FRAME.0 * FRAME.1)),
         ..Settings::new(FRAME.0, FRAME.1)
     };
     let mut device = Device::new(Arc::new(code), settings).unwrap();

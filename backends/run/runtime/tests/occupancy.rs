@@ -57,7 +57,7 @@ fn deep() -> Vec<(&'static str, Vec<Quad>)> {
 fn check(variant: &Variant, language: &str, rules: &Rules, prepare: impl Fn(&mut Renderer)) -> u32 {
     let stage = stage::device();
     // Lists allocate a node for every fragment, kept or not.
-    let sizing = Sizing::Reserve(PoolSize::Fragments(48 * SIZE * SIZE));
+    let sizing = Sizing::Capacity(PoolSize::Fragments(48 * SIZE * SIZE));
     let settings = Settings { sizing, ..settings() };
     let mut renderer = renderer(&stage, &shaders(variant, language), &settings).unwrap();
     prepare(&mut renderer);

@@ -36,7 +36,7 @@ fn piles() -> Vec<Vec<Quad>> {
 #[test]
 fn the_error_is_within_the_bound() {
     let stage = device();
-    let roomy = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() };
+    let roomy = Settings { sizing: Sizing::Capacity(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() };
     for sort in ["insertion", "lplus", "block"] {
         let exact = |opaque: &str| {
             let set = [("sort", sort), ("resolve.opaque", opaque)];
@@ -80,7 +80,7 @@ fn counting_reads() -> Registry {
 fn invisible_fragments_are_not_read() {
     let stage = device();
     let registry = counting_reads();
-    let roomy = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() };
+    let roomy = Settings { sizing: Sizing::Capacity(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() };
     let reads = |opaque: &str, quads: &[Quad]| {
         let span = SourceSpan::new("ab_ll", 1, 1);
         let mut draft = Draft::from_technique("ab_ll", &span);

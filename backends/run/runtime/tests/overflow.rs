@@ -89,7 +89,7 @@ fn the_tail_is_exact_and_independent_of_the_order() {
 #[test]
 fn fail_shows_the_error_colour_after_a_pool_overflow() {
     let stage = device();
-    let settings = Settings { sizing: Sizing::Reserve(PoolSize::Fragments(256 * 4)), ..settings() };
+    let settings = Settings { sizing: Sizing::Capacity(PoolSize::Fragments(256 * 4)), ..settings() };
     for key in ["ab_ll", "ab_array"] {
         let shaders = shaders(&technique(key, &[("overflow", "fail")]), "wgsl");
         let mut renderer = renderer(&stage, &shaders, &settings).unwrap();

@@ -115,7 +115,7 @@ fn wrong_pixels(stage: &Headless, case: &Case, scene: &mut Scene) -> Result<(u64
     let (side, mut quads) = (scene.side, scene.quads.clone());
     // Twice the fragments of the frame, because lists of pages leak some of their pages.
     let settings = Settings {
-        sizing: Sizing::Reserve(PoolSize::Fragments(2 * quads.len() as u32 * side * side)),
+        sizing: Sizing::Capacity(PoolSize::Fragments(2 * quads.len() as u32 * side * side)),
         interlock: stage.interlock,
         ..Settings::new(FORMAT, side, side)
     };

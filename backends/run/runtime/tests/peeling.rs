@@ -1,6 +1,7 @@
-//! `peeling: k_layers`: the image is that of an A-buffer, bit for bit, for every storage that can be peeled, after no more iterations than the
-//! deepest pixel has groups of k fragments. On the driver and on the CPU device.
+//! Peeling: the image is that of an A-buffer, bit for bit, for every storage that can be peeled, after no more iterations than the
+//! deepest pixel has groups of k fragments or layers. On the driver and on the CPU device.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fragbuf_cpu::{Code, Device, Mesh};
@@ -26,8 +27,7 @@ const STORAGES: [Peeled; 9] = [
     ("kplus_array_revised", &[], 8),
     ("kb_ps", &[("sync", "spin_lock")], 8),
     ("mdt32_coplanar", &[], 8),
-    // Memory is reserved for its pool, so nothing is read back, and the loop runs to its limit.
-    ("kb_ll", &[("peeling.iterations", "41")], 8),
+    ("kb_ll", &[], 8),
     ("kplus_ab_sb", &[], 8),
     ("kplus_array", &[("cull", "occupancy")], 8),
     ("kplus_array", &[("storage", "single")], 1),
@@ -65,8 +65,9 @@ fn deepest(quads: &[Quad], rows: std::ops::Range<u32>) -> u32 {
 
 /// Returns enough memory for the pool of a list, which no pass counts for.
 fn sizing(variant: &Variant) -> Sizing {
-    let is_list = variant.choices.iter().any(|chosen| chosen.alternatives[0].row.key == "ordered_list");
-    if is_list { Sizing::Reserve(PoolSize::Fragments(64 * SIZE[0] * SIZE[1])) } else { Sizing::Auto }
+    let pools = ["ordered_list", "linked_list", "paged_list", "bucket_lists", "fixed_array", "claimed_array"];
+    let has_pool = variant.choices.iter().any(|chosen| pools.contains(&&*chosen.alternatives[0].row.key));
+    if has_pool { Sizing::Capacity(PoolSize::Fragments(64 * SIZE[0] * SIZE[1])) } else { Sizing::Auto }
 }
 
 /// Draws on the driver; returns the pixels, the reports of loops, and the fragments counted as generated and lost.
@@ -143,10 +144,7 @@ fn peeled_storages_equal_the_a_buffer_bit_for_bit() {
                     let iterations: u32 = slices
                         .map(|first| deepest(&quads, first..(first + rows).min(SIZE[1])).div_ceil(k).max(1))
                         .sum();
-                    let Some(peeled) = loops.iter().find(|one| one.until.contains("remaining")) else {
-                        assert_eq!(key, "kb_ll");
-                        continue;
-                    };
+                    let peeled = loops.iter().find(|one| one.until.contains("remaining")).unwrap();
                     assert_eq!(peeled.end, LoopEnd::ConditionMet, "{what}");
                     assert!(peeled.iterations == iterations || has_copies && peeled.iterations < iterations, "{what}");
                     // Another order of submission.
@@ -159,6 +157,143 @@ fn peeled_storages_equal_the_a_buffer_bit_for_bit() {
                 );
             }
         }
+    }
+}
+
+/// Returns the depths of the fragments of a pixel, each once.
+fn layers_at(quads: &[Quad], x: u32, y: u32) -> BTreeSet<u32> {
+    let covers = |quad: &&Quad| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
+    quads.iter().filter(covers).map(|quad| quad.depth.to_bits()).collect()
+}
+
+/// Returns the most layers of a pixel in these rows.
+fn most_layers(quads: &[Quad], rows: std::ops::Range<u32>) -> u32 {
+    let pixels = rows.flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+    pixels.map(|(x, y)| layers_at(quads, x, y).len() as u32).max().unwrap_or(0)
+}
+
+/// Storages that keep all fragments, with the techniques of D13 among them.
+const LAYERED: [&str; 6] = ["ab_ll", "ab_array", "f2b_kb", "ab_sb", "ab_ll_paged", "ab_ll_bun"];
+
+/// Draws in slices and whole, and checks image, counters and iterations: `per_iteration` layers in each.
+fn assert_layers_are_peeled(variant: &Variant, per_iteration: u32, is_bit_exact: bool) {
+    let stage = device();
+    let a_buffer = technique("ab_sb", &[("counters", "all"), ("sort", "insertion"), ("sort.layers", "64")]);
+    for (seed, count) in [(3, 1), (5, 17), (7, 40), (8, 0)] {
+        let quads = scene(seed, count);
+        for slice in SLICES {
+            let what = format!("{}, {count} quads, slices of {slice:?} rows", variant.name.value);
+            let (expected, _, [generated, _]) = drawn(&stage, &a_buffer, &quads, None);
+            let (seen, loops, counted) = drawn(&stage, variant, &quads, slice);
+            assert!(!is_bit_exact || seen == expected, "{what}");
+            assert_eq!(first_difference(&seen, &image(&quads, SIZE, None, BACKGROUND)), None, "{what}");
+            assert_eq!(counted, [generated, 0], "{what}");
+            let rows = slice.unwrap_or(SIZE[1]);
+            let slices = (0..SIZE[1]).step_by(rows as usize);
+            let needed = |first| most_layers(&quads, first..(first + rows).min(SIZE[1])).div_ceil(per_iteration).max(1);
+            let peeled = loops.iter().find(|one| one.until.contains("remaining")).unwrap();
+            assert_eq!((peeled.iterations, peeled.end), (slices.map(needed).sum(), LoopEnd::ConditionMet), "{what}");
+        }
+        assert!(!is_bit_exact || drawn_on_cpu(variant, &quads) == drawn_on_cpu(&a_buffer, &quads), "on the CPU device");
+    }
+}
+
+/// D13 §3.1.3: fragments of equal depth are one layer.
+#[test]
+fn layers_of_equal_depth_equal_the_a_buffer_bit_for_bit() {
+    for key in LAYERED {
+        let set = [("peeling", "depth_layers"), ("counters", "all"), ("sort", "insertion"), ("sort.layers", "64")];
+        assert_layers_are_peeled(&technique(key, &set), 1, true);
+    }
+}
+
+/// Layers from the back are composited apart, so sums are rounded otherwise.
+#[test]
+fn layers_from_both_sides_equal_the_reference() {
+    for key in LAYERED {
+        let set = [("peeling", "both_sides"), ("counters", "all"), ("sort", "insertion"), ("sort.layers", "64")];
+        assert_layers_are_peeled(&technique(key, &set), 2, false);
+    }
+}
+
+/// Which of several fragments with equal depths is kept.
+#[derive(Clone, Copy, PartialEq)]
+enum OfEqual {
+    First,
+    Last,
+    LeastPayload,
+}
+
+/// Without equal depths nothing is lost; of equal depths, a depth test keeps the first submitted, or the last if a pre-pass wrote their
+/// depth, and a lock the least payload.
+#[test]
+fn front_to_back_peeling_keeps_one_of_equal_depths() {
+    let stage = device();
+    let single = technique("kplus_array", &[("storage", "single"), ("k", "1"), ("peeling", "front_to_back")]);
+    let prepass = [("storage", "single"), ("k", "1"), ("peeling", "front_to_back"), ("cull", "z_prepass")];
+    let variants = [
+        (technique("f2b", &[]), OfEqual::First),
+        (technique("f2b2", &[]), OfEqual::Last),
+        (single, OfEqual::LeastPayload),
+        (technique("kplus_array", &prepass), OfEqual::LeastPayload),
+    ];
+    for (variant, kept) in variants {
+        for (seed, count) in [(1, 1), (2, 9), (3, 30)] {
+            let mut quads = scene(seed, count);
+            // A fragment on the far plane does not pass the depth test.
+            quads.iter_mut().for_each(|quad| quad.depth *= 0.9);
+            let (seen, loops, _) = drawn(&stage, &variant, &quads, None);
+            let expected: Vec<[f64; 3]> = (0..SIZE[0] * SIZE[1])
+                .map(|pixel| {
+                    let (x, y) = (pixel % SIZE[0], pixel / SIZE[0]);
+                    let covers =
+                        |quad: &&Quad| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
+                    let mut layers: Vec<Quad> = quads.iter().filter(covers).copied().collect();
+                    match kept {
+                        OfEqual::First => {}
+                        OfEqual::Last => layers.reverse(),
+                        OfEqual::LeastPayload => layers.sort_by_key(|quad| u32::from_le_bytes(quad.color)),
+                    }
+                    layers.sort_by(|one, other| one.depth.total_cmp(&other.depth));
+                    layers.dedup_by_key(|quad| quad.depth.to_bits());
+                    let whole = layers.iter().map(|quad| Quad { x: [0, 1], y: [0, 1], ..*quad }).collect::<Vec<_>>();
+                    image(&whole, [1, 1], None, BACKGROUND)[0]
+                })
+                .collect();
+            assert_eq!(first_difference(&seen, &expected), None, "{}, {count} quads", variant.name.value);
+            let most = most_layers(&quads, 0..SIZE[1]);
+            assert_eq!((loops[0].iterations, loops[0].end), (most + 1, LoopEnd::ConditionMet));
+        }
+    }
+}
+
+/// What a limit of iterations leaves is counted, for every kind of peeling.
+#[test]
+fn layers_beyond_the_last_iteration_are_counted() {
+    let stage = device();
+    let quads = scene(3, 21);
+    let limited = |more: &[(&'static str, &'static str)], key: &str| {
+        technique(key, &[more, &[("peeling.iterations", "2"), ("counters", "all")]].concat())
+    };
+    let layers = |pixel: u32| layers_at(&quads, pixel % SIZE[0], pixel / SIZE[0]);
+    let fragments = |pixel: u32, layer: &dyn Fn(usize, usize) -> bool| {
+        let known: Vec<u32> = layers(pixel).into_iter().collect();
+        let (x, y) = (pixel % SIZE[0], pixel / SIZE[0]);
+        let covers = |quad: &&Quad| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
+        let at = |quad: &Quad| known.iter().position(|depth| *depth == quad.depth.to_bits()).unwrap();
+        quads.iter().filter(covers).filter(|quad| layer(at(quad), known.len())).count() as u64
+    };
+    let sum = |layer: &dyn Fn(usize, usize) -> bool| (0..SIZE[0] * SIZE[1]).map(|pixel| fragments(pixel, layer)).sum();
+    let single = [("storage", "single"), ("k", "1"), ("peeling", "front_to_back")];
+    let cases: [(Variant, u64); 3] = [
+        (limited(&[], "f2b_ll"), sum(&|layer, _| layer >= 2)),
+        (limited(&[], "dual_ll"), sum(&|layer, count| layer >= 2 && layer + 2 < count)),
+        // The second iteration only counts, and the first keeps one fragment of a layer.
+        (limited(&single, "kplus_array"), sum(&|layer, _| layer >= 1)),
+    ];
+    for (variant, expected) in cases {
+        let (_, _, [_, lost]) = drawn(&stage, &variant, &quads, None);
+        assert_eq!(lost, expected, "{}", variant.name.value);
     }
 }
 

@@ -91,7 +91,7 @@ fn layers(count: u32, seed: u64) -> Vec<Quad> {
 }
 
 fn roomy() -> Settings {
-    Settings { sizing: Sizing::Reserve(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() }
+    Settings { sizing: Sizing::Capacity(PoolSize::Fragments(64 * SIZE * SIZE)), ..settings() }
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn unlimited_sorts_omit_no_layer() {
     let free: Vec<String> = sorts().into_iter().filter(|sort| !is_bounded(sort)).collect();
     assert!(!free.is_empty());
     for sort in free {
-        let sizing = Sizing::Reserve(PoolSize::Fragments(200 * SIZE * SIZE));
+        let sizing = Sizing::Capacity(PoolSize::Fragments(200 * SIZE * SIZE));
         let settings = Settings { sizing, ..settings() };
         let mut renderer = renderer(&stage, &shaders(&with_layers(&sort, 0), "wgsl"), &settings).unwrap();
         // Many equal depths and colours, then 90 equal fragments.
@@ -210,7 +210,7 @@ fn a_batch_of_32_sorts_1024_fragments() {
     let inputs = inputs.vertex_inputs();
     let code = Arc::new(Code::of(&variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}")));
     for count in [33, 128, 1024] {
-        let sizing = Sizing::Reserve(PoolSize::Fragments(count));
+        let sizing = Sizing::Capacity(PoolSize::Fragments(count));
         let mut cpu =
             Device::new(code.clone(), fragbuf_cpu::Settings { sizing, ..fragbuf_cpu::Settings::new(1, 1) }).unwrap();
         let mut numbers = Numbers::seeded(count.into());

@@ -281,9 +281,12 @@ impl<'s> Frame<'s> {
 
     /// Runs a pass that adds what each pixel holds to what earlier iterations have kept.
     fn accumulate(&mut self, pass: &FullscreenProgram) -> Result<(), String> {
+        let is_first = self.subject.is_first_accumulating(pass.id);
         for pixel in 0..WIDTH {
-            let kept = self.stored(pixel)?;
-            self.gathered[pixel as usize].extend(kept);
+            if is_first {
+                let kept = self.stored(pixel)?;
+                self.gathered[pixel as usize].extend(kept);
+            }
             let position = [pixel as f32 + 0.5, 0.5, 0.5, 1.0].map(f32::to_bits).to_vec();
             let mut machine = machine_with(&pass.program, &[position]);
             match run_alone(&mut machine, &mut self.memory) {

@@ -112,7 +112,9 @@ fn counted(subject: &Subject, demand: &AllocationDemand<'_>, is_recounted: bool)
     let mut pools = vec![exact.clone()];
     // Where the host decides k too, the number of kept fragments is not known here, so no pool is known to be too small.
     let sets_k = subject.plan.frame.decisions().any(|decision| decision.sets.contains(&SymbolId::K));
-    if !is_recounted || sets_k {
+    // Nor is it where every iteration stores one layer of them.
+    let is_by_layer = subject.keeps_later() && !subject.keeps_best();
+    if !is_recounted || sets_k || is_by_layer {
         return Ok(pools);
     }
     let (total, k) = (demand.total(), demand.k.unwrap_or(u32::MAX));

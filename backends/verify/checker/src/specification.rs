@@ -100,10 +100,10 @@ impl Specification {
             return Some(format!("{} fragments timed out, expected none", counts.timed_out));
         }
         // A fragment that timed out has not allocated.
-        let (least, mut most) = (self.overflows.start().saturating_sub(counts.timed_out), *self.overflows.end());
+        let (mut least, mut most) = (self.overflows.start().saturating_sub(counts.timed_out), *self.overflows.end());
         if self.keeps_later {
-            // Every iteration may count a fragment, and a later one may keep it.
-            most = u32::MAX;
+            // Every iteration may count a fragment that a later one keeps, and need not store as many as there are.
+            (least, most) = (0, u32::MAX);
         }
         if !(least..=most).contains(&counts.overflowed) {
             let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };

@@ -119,6 +119,15 @@ impl Subject {
         self.fullscreen.iter().find(|one| one.id == id && self.keeps_later()).filter(writes)
     }
 
+    /// Returns whether no accumulating pass of an iteration precedes this one.
+    pub(crate) fn is_first_accumulating(&self, id: PassId) -> bool {
+        self.fullscreen
+            .iter()
+            .map(|one| one.id)
+            .filter(|one| self.accumulating(*one).is_some())
+            .all(|one| one.0 >= id.0)
+    }
+
     /// Returns whether fragments can be culled without being counted as a loss.
     pub(crate) fn culls(&self) -> bool {
         self.bound.is_some() || self.accepts_k_best_only()

@@ -113,7 +113,31 @@ const PEELED: &[Check] = &[
     ("mdt32_coplanar", &[("peeling", "k_layers"), ("peeling.iterations", "2")], "wgsl", Model::Sequential),
 ];
 
-const MUTATED: [(&str, &str, &[Check]); 21] = [
+const LAYERS: &[Check] = &[
+    ("f2b_fab", &[], "wgsl", Model::Sequential),
+    ("f2b_kb", &[("counters", "all")], "wgsl", Model::Relaxed),
+    ("ab_sb", &[("peeling", "depth_layers"), ("counters", "all")], "wgsl", Model::Sequential),
+    ("f2b_fab", &[("peeling.iterations", "2")], "wgsl", Model::Sequential),
+];
+const SIDES: &[Check] = &[
+    ("dual_fab", &[], "wgsl", Model::Sequential),
+    ("dual_kb", &[("counters", "all")], "wgsl", Model::Relaxed),
+    ("ab_sb", &[("peeling", "both_sides"), ("counters", "all")], "wgsl", Model::Sequential),
+    ("dual_fab", &[("peeling.iterations", "1")], "wgsl", Model::Sequential),
+];
+const FRONT_TO_BACK: &[Check] = &[
+    ("kplus_array", SINGLE_PEELED, "wgsl", Model::Sequential),
+    ("kplus_array", SINGLE_CUT, "wgsl", Model::Sequential),
+    ("kplus_array", SINGLE_AFTER_PREPASS, "spirv", Model::Relaxed),
+];
+const SINGLE_PEELED: &[(&str, &str)] =
+    &[("storage", "single"), ("k", "1"), ("peeling", "front_to_back"), ("counters", "all")];
+const SINGLE_CUT: &[(&str, &str)] =
+    &[("storage", "single"), ("k", "1"), ("peeling", "front_to_back"), ("peeling.iterations", "2")];
+const SINGLE_AFTER_PREPASS: &[(&str, &str)] =
+    &[("storage", "single"), ("k", "1"), ("peeling", "front_to_back"), ("cull", "z_prepass")];
+
+const MUTATED: [(&str, &str, &[Check]); 24] = [
     ("storage", "stream_array", STREAM),
     ("storage", "checksummed_array", CHECKED),
     ("storage", "multipass_array", REPEATED),
@@ -135,6 +159,9 @@ const MUTATED: [(&str, &str, &[Check]); 21] = [
     ("sync", "spin_lock", KPLUS),
     ("sync", "slot_counter", LIST),
     ("peeling", "k_layers", PEELED),
+    ("peeling", "depth_layers", LAYERS),
+    ("peeling", "both_sides", SIDES),
+    ("peeling", "front_to_back", FRONT_TO_BACK),
 ];
 
 /// The checks of a storage that the table does not list, with a technique of the storage and default choices.

@@ -32,6 +32,9 @@ pub(crate) fn outcome(report: &Report) -> Outcome {
 
 const PREDICTED: &[(&str, &str)] = &[("allocation", "predicted")];
 const PEELED: &[(&str, &str)] = &[("peeling", "k_layers")];
+const LAYERS: &[(&str, &str)] = &[("peeling", "depth_layers")];
+const SIDES: &[(&str, &str)] = &[("peeling", "both_sides")];
+const FRONT_TO_BACK: &[(&str, &str)] = &[("peeling", "front_to_back"), ("storage", "single"), ("k", "1")];
 const TEMPORAL: &[(&str, &str)] = &[("cull", "temporal")];
 const LOCKED: &[(&str, &str)] = &[("sync", "spin_lock"), ("cull", "early")];
 const LOCK: &[(&str, &str)] = &[("sync", "spin_lock")];
@@ -50,7 +53,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 96] = [
+pub(crate) const VERDICTS: [Verdict; 112] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -88,6 +91,22 @@ pub(crate) const VERDICTS: [Verdict; 96] = [
     ("mdt32_coplanar", PEELED, "wgsl", Model::Relaxed, Holds),
     ("kb_ll", PEELED, "spirv", Model::Relaxed, Holds),
     ("kplus_ab_sb", PEELED, "wgsl", Model::Sequential, Holds),
+    ("f2b_ll", &[], "wgsl", Model::Sequential, Holds),
+    ("f2b_ll", &[], "wgsl", Model::Relaxed, Holds),
+    ("f2b_fab", &[], "wgsl", Model::Sequential, Holds),
+    ("f2b_fab", &[], "wgsl", Model::Relaxed, Holds),
+    ("f2b_kb", &[], "wgsl", Model::Sequential, Holds),
+    ("f2b_kb", &[], "wgsl", Model::Relaxed, Holds),
+    ("dual_ll", &[], "wgsl", Model::Sequential, Holds),
+    ("dual_ll", &[], "wgsl", Model::Relaxed, Holds),
+    ("dual_fab", &[], "wgsl", Model::Sequential, Holds),
+    ("dual_fab", &[], "wgsl", Model::Relaxed, Holds),
+    ("dual_kb", &[], "wgsl", Model::Sequential, Holds),
+    ("dual_kb", &[], "wgsl", Model::Relaxed, Holds),
+    ("ab_sb", LAYERS, "wgsl", Model::Relaxed, Holds),
+    ("ab_ll_bun", SIDES, "wgsl", Model::Sequential, Holds),
+    ("kplus_array", FRONT_TO_BACK, "wgsl", Model::Sequential, Hazard),
+    ("kplus_array", FRONT_TO_BACK, "spirv", Model::Relaxed, Hazard),
     ("kplus_array", PREDICTED, "wgsl", Model::Sequential, Holds),
     ("mdt32_coplanar", PREDICTED, "wgsl", Model::Relaxed, Holds),
     ("kplus_array", TEMPORAL, "wgsl", Model::Sequential, Holds),

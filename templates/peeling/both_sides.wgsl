@@ -1,0 +1,139 @@
+// Peeling from both sides (Bavoil & Myers 2008; Vasilakis & Fudos 2013, D13 sec. 3.1.3 and 3.2.1: DUAL-LL, DUAL-B). As
+// depth_layers, but an iteration stores the nearest and the farthest layer that are left in each pixel: D layers take
+// ceil(D / 2) iterations. Layers from the front are composited under those before them, layers from the back over those
+// behind them; `over` is associative, so the result joins the two.
+//
+// Invariant: the keys of the two layers are the least and the greatest of the pixel that no earlier iteration has
+// stored. If they are equal, the layer is one of the front. Keys of the back are inverted: minima find both.
+//
+// Memory: 12 words per pixel, and one word.
+
+const PEELING_FRONT = 0u;
+const PEELING_BACK = 1u;
+
+/// The pixel that is resolved.
+var<private> peeling_pixel: u32;
+
+fn peeling_find_first(pixel: u32, key: u32) {
+    // Most fragments are between others: reading is cheaper than a minimum that changes nothing.
+    if key < layer_keys_load(PEELING_FRONT, pixel) {
+        layer_keys_atomic_min(PEELING_FRONT, pixel, key);
+    }
+    if ~key < layer_keys_load(PEELING_BACK, pixel) {
+        layer_keys_atomic_min(PEELING_BACK, pixel, ~key);
+    }
+}
+
+fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
+    return !peeling_takes(pixel_index(position), fragment_pack(fragment).key);
+}
+
+/// Returns whether this iteration stores a fragment of this key. A key of 0 inverted is EMPTY, which is also the key of a
+/// pixel without fragments: nothing is behind its front.
+fn peeling_takes(pixel: u32, key: u32) -> bool {
+    let front = layer_keys_load(PEELING_FRONT, pixel);
+    return key == front || (key > front && ~key == layer_keys_load(PEELING_BACK, pixel));
+}
+
+fn peeling_is_first(position: vec2<f32>) -> bool {
+    return frame.iteration == 0u;
+}
+
+fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
+    let pixel = pixel_index(position);
+    let key = fragment_pack(fragment).key;
+    if key > layer_keys_load(PEELING_FRONT, pixel) && ~key > layer_keys_load(PEELING_BACK, pixel) {
+        peeling_find_next(pixel, key);
+    }
+    return peeling_takes(pixel, key);
+}
+
+fn peeling_find_next(pixel: u32, key: u32) {
+    if frame.iteration + 1u == PEELING_ITERATIONS {
+        // No iteration follows.
+        count_loss(NOT_CONVERGED);
+        return;
+    }
+    if key < next_keys_load(PEELING_FRONT, pixel) && next_keys_atomic_min(PEELING_FRONT, pixel, key) == EMPTY {
+        remaining_store(1u);
+    }
+    if ~key < next_keys_load(PEELING_BACK, pixel) {
+        next_keys_atomic_min(PEELING_BACK, pixel, ~key);
+    }
+}
+
+fn peeling_resume(pixel: u32) {
+    peeling_pixel = pixel;
+}
+
+/// One pass reads the layer of the front, another that of the back.
+fn peeling_reads(pixel: u32, entry: Packed) -> bool {
+    return (entry.key == layer_keys_load(PEELING_FRONT, pixel)) == (PEELING_SIDE == PEELING_FRONT);
+}
+
+fn peeling_layer_count(sorted: u32) -> u32 {
+    return sorted;
+}
+
+fn peeling_is_copy(index: u32) -> bool {
+    return false;
+}
+
+fn peeling_copy() -> Packed {
+    return packed_of_key(EMPTY);
+}
+
+fn peeling_sorted_index(index: u32) -> u32 {
+    return index;
+}
+
+fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
+    if PEELING_SIDE == PEELING_FRONT {
+        return accumulated_color(peeling_pixel);
+    }
+    // The layer of the back is composited alone, and then over those behind it.
+    return transparent;
+}
+
+fn peeling_transmittance() -> f32 {
+    if PEELING_SIDE == PEELING_FRONT {
+        return accumulated_transmittance(peeling_pixel);
+    }
+    return 1.0;
+}
+
+fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
+    if PEELING_SIDE == PEELING_FRONT {
+        accumulated_save(peeling_pixel, color, transmittance);
+        return;
+    }
+    let behind = peeling_behind(peeling_pixel);
+    peeling_save_behind(peeling_pixel, vec4<f32>(color + transmittance * behind.rgb, transmittance * behind.a));
+}
+
+/// Returns the colour and the transmittance of the layers composited from the back.
+fn peeling_behind(pixel: u32) -> vec4<f32> {
+    return bitcast<vec4<f32>>(vec4<u32>(
+        accumulated_back_load(0u, pixel),
+        accumulated_back_load(1u, pixel),
+        accumulated_back_load(2u, pixel),
+        accumulated_back_load(3u, pixel) ^ ACCUMULATED_TRANSPARENT,
+    ));
+}
+
+fn peeling_save_behind(pixel: u32, behind: vec4<f32>) {
+    let words = bitcast<vec4<u32>>(behind);
+    accumulated_back_store(0u, pixel, words.x);
+    accumulated_back_store(1u, pixel, words.y);
+    accumulated_back_store(2u, pixel, words.z);
+    accumulated_back_store(3u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);
+}
+
+/// The pass that stores layers finds the next ones.
+fn peeling_advance() {}
+
+fn peeling_result(pixel: u32) -> vec4<f32> {
+    let transmittance = accumulated_transmittance(pixel);
+    let behind = peeling_behind(pixel);
+    return vec4<f32>(accumulated_color(pixel) + transmittance * behind.rgb, 1.0 - transmittance * behind.a);
+}

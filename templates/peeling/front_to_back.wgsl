@@ -1,0 +1,76 @@
+// Front-to-back depth peeling (Everitt 2001; Vasilakis & Fudos 2013, D13 sec. 3.1.1: F2B). An iteration keeps the nearest of
+// the fragments behind the one that the last iteration kept, in any storage of one fragment: by the depth test, or by a
+// lock. The effect goes on where it stopped. Of fragments with equal depths one is kept.
+//
+// Invariant: the last key is the greatest that an iteration has kept, and no fragment of a lesser or equal key enters.
+// The loop ends with an iteration that keeps nothing, so D layers take D + 1 iterations. The last iteration that is
+// allowed keeps nothing: it counts the fragments that remain.
+//
+// Memory: 5 words per pixel, and one word.
+
+/// The pixel that is resolved.
+var<private> peeling_pixel: u32;
+
+fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
+    let last = last_keys_load(pixel_index(position));
+    return last != EMPTY && fragment_pack(fragment).key <= last;
+}
+
+fn peeling_is_first(position: vec2<f32>) -> bool {
+    return frame.iteration == 0u;
+}
+
+fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
+    if peeling_skips(position, fragment) {
+        return false;
+    }
+    if frame.iteration + 1u == PEELING_ITERATIONS {
+        count_loss(NOT_CONVERGED);
+        return false;
+    }
+    return true;
+}
+
+fn peeling_resume(pixel: u32) {
+    peeling_pixel = pixel;
+}
+
+fn peeling_layer_count(sorted: u32) -> u32 {
+    return sorted;
+}
+
+fn peeling_is_copy(index: u32) -> bool {
+    return false;
+}
+
+fn peeling_copy() -> Packed {
+    return packed_of_key(EMPTY);
+}
+
+fn peeling_sorted_index(index: u32) -> u32 {
+    return index;
+}
+
+fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
+    return accumulated_color(peeling_pixel);
+}
+
+fn peeling_transmittance() -> f32 {
+    return accumulated_transmittance(peeling_pixel);
+}
+
+fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
+    accumulated_save(peeling_pixel, color, transmittance);
+}
+
+fn peeling_advance() {
+    let cursor = resolve_first();
+    if cursor != END {
+        last_keys_store(peeling_pixel, resolve_read(cursor).key);
+        remaining_store(1u);
+    }
+}
+
+fn peeling_result(pixel: u32) -> vec4<f32> {
+    return accumulated_result(pixel);
+}

@@ -1,0 +1,28 @@
+// The premultiplied colour of a pixel's fragments that iterations have composited so far, and the light that passes them.
+
+/// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
+const ACCUMULATED_TRANSPARENT = 0x3f800000u;
+
+fn accumulated_color(pixel: u32) -> vec3<f32> {
+    return bitcast<vec3<f32>>(vec3<u32>(
+        accumulated_load(0u, pixel),
+        accumulated_load(1u, pixel),
+        accumulated_load(2u, pixel),
+    ));
+}
+
+fn accumulated_transmittance(pixel: u32) -> f32 {
+    return bitcast<f32>(accumulated_load(3u, pixel) ^ ACCUMULATED_TRANSPARENT);
+}
+
+fn accumulated_save(pixel: u32, color: vec3<f32>, transmittance: f32) {
+    let words = bitcast<vec3<u32>>(color);
+    accumulated_store(0u, pixel, words.x);
+    accumulated_store(1u, pixel, words.y);
+    accumulated_store(2u, pixel, words.z);
+    accumulated_store(3u, pixel, bitcast<u32>(transmittance) ^ ACCUMULATED_TRANSPARENT);
+}
+
+fn accumulated_result(pixel: u32) -> vec4<f32> {
+    return vec4<f32>(accumulated_color(pixel), 1.0 - accumulated_transmittance(pixel));
+}
