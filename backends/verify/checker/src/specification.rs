@@ -313,8 +313,10 @@ impl Specification {
     fn has_permitted_counts(&self, kept: u32, counts: Counts, permits: &Permits) -> bool {
         let total = self.fragments.len() as u32;
         let counted = counts.lost + counts.culled + counts.emitted;
+        // A fragment that an iteration has dropped may be kept or counted again by a later one.
+        let most = if self.keeps_later { total + counts.dropped() as u32 } else { total };
         if permits.uncounted {
-            return permits.duplicate || kept + counts.lost <= total;
+            return permits.duplicate || kept + counts.lost <= most;
         }
         if permits.counted_twice {
             return permits.lost || !self.counts_events || self.culls || kept + counted >= total;
@@ -322,8 +324,8 @@ impl Specification {
         match (permits.lost, permits.duplicate) {
             (false, false) => self.counter_mismatch(kept, counts).is_none(),
             (is_lossy, has_duplicates) => {
-                counted <= total
-                    && (has_duplicates || kept + counted <= total)
+                counted <= most
+                    && (has_duplicates || kept + counted <= most)
                     && (is_lossy || !self.counts_events || self.culls || kept + counted >= total)
             }
         }

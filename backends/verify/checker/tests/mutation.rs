@@ -328,6 +328,11 @@ fn registries(registry: &Registry, row: Row) -> Vec<LimitedRegistry> {
         let three = |model| Limits { fragments: vec![3], entries: vec![2], ..limits(3, model) };
         all.extend([(registry.clone().with(with_iterations(row.clone(), 8)), three as fn(Model) -> Limits)]);
     }
+    // Two racing fragments lose none between them where both ends of a pixel are found.
+    if row.axis == "peeling" && row.requires.contains(&Capability::KeepsAll) {
+        let three = |model| Limits { fragments: vec![3], ..limits(3, model) };
+        all.push((registry.clone().with(row.clone()), three));
+    }
     // The operator *over* does not use the fragment behind.
     if row.provides.contains(&Capability::Streams) {
         let old = registry.row("resolve", "stream").unwrap().clone();
