@@ -5,7 +5,7 @@
 //! 3. [`generate`]: files for engines, build scripts, tiers.
 //! 4. [`manifest`]: how an engine in any language runs a frame.
 //! 5. [`run`]: images and statistics from the command line.
-//! 6. [`memory`]: k from a memory budget and a hit ratio.
+//! 6. [`memory`]: k from a memory budget and a hit ratio, and [`peeling`]: every fragment in little memory.
 //! 7. [`figures`]: experiments of the papers, with the comparison of their trends.
 //! 8. [`embed`]: frames in your own engine, and [`material`]: a shader of your own that stores fragments.
 //! 9. [`extend`]: your own storage, snapshots.
@@ -27,6 +27,8 @@ pub mod manifest {}
 pub mod run {}
 #[doc = include_str!("guide/memory.md")]
 pub mod memory {}
+#[doc = include_str!("guide/peeling.md")]
+pub mod peeling {}
 #[doc = include_str!("guide/figures.md")]
 pub mod figures {}
 #[cfg(feature = "gpu")]

@@ -28,8 +28,8 @@ fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
     return !peeling_takes(pixel_index(position), fragment_pack(fragment).key);
 }
 
-/// Returns whether this iteration stores a fragment of this key. A key of 0 inverted is EMPTY, which is also the key of a
-/// pixel without fragments: nothing is behind its front.
+/// Returns whether this iteration stores a fragment of this key. A key of 0 inverted is EMPTY, which is also the key of
+/// a pixel without fragments: nothing is behind its front.
 fn peeling_takes(pixel: u32, key: u32) -> bool {
     let front = layer_keys_load(PEELING_FRONT, pixel);
     return key == front || (key > front && ~key == layer_keys_load(PEELING_BACK, pixel));

@@ -1,6 +1,6 @@
-// Front-to-back depth peeling (Everitt 2001; Vasilakis & Fudos 2013, D13 sec. 3.1.1: F2B). An iteration keeps the nearest of
-// the fragments behind the one that the last iteration kept, in any storage of one fragment: by the depth test, or by a
-// lock. The effect goes on where it stopped. Of fragments with equal depths one is kept.
+// Front-to-back depth peeling (Everitt 2001; Vasilakis & Fudos 2013, D13 sec. 3.1.1: F2B). An iteration keeps the
+// nearest of the fragments behind the one that the last iteration kept, in any storage of one fragment: by the depth
+// test, or by a lock. The effect goes on where it stopped. Of fragments with equal depths one is kept.
 //
 // Invariant: the last key is the greatest that an iteration has kept, and no fragment of a lesser or equal key enters.
 // The loop ends with an iteration that keeps nothing, so D layers take D + 1 iterations. The last iteration that is

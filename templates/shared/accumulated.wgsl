@@ -1,4 +1,5 @@
-// The premultiplied colour of a pixel's fragments that iterations have composited so far, and the light that passes them.
+// The premultiplied colour of a pixel's fragments that iterations have composited so far, and the light that passes
+// them.
 
 /// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
 const ACCUMULATED_TRANSPARENT = 0x3f800000u;

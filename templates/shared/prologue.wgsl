@@ -3,10 +3,11 @@
 /// Returns whether a fragment is inside the frame or slice, meets the constraints, no opaque surface hides it, and the
 /// iteration takes it. `position` is the fragment's, in pixels.
 fn fragment_enters(position: vec2<f32>, fragment: Fragment) -> bool {
-    return fragment_is_drawn(position, fragment) && !peeling_skips(position, fragment);
+    return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment)
+        && !peeling_skips(position, fragment);
 }
 
-/// Returns the same, whatever the iteration takes.
+/// Returns the same for a pass that no iteration draws.
 fn fragment_is_drawn(position: vec2<f32>, fragment: Fragment) -> bool {
     return is_in_frame(position) && admit(fragment) && !opaque_hides(position, fragment);
 }

@@ -1,7 +1,7 @@
-// The A-buffer of fixed arrays without a counter (D13 sec. 3.2.1, Alg. 3, F2B-KB, corrected): a fragment takes the first
-// slot whose key is EMPTY, by one compare-exchange of its key. Alg. 3 tests the slot and then writes it, so two fragments
-// can take one slot, and it takes a colour of 0 for an empty slot. A word less per pixel than fixed_array, but the n-th
-// fragment of a pixel reads n keys.
+// The A-buffer of fixed arrays without a counter (D13 sec. 3.2.1, Alg. 3, F2B-KB, corrected): a fragment takes the
+// first slot whose key is EMPTY, by one compare-exchange of its key. Alg. 3 tests the slot and then writes it, so two
+// fragments can take one slot, and it takes a colour of 0 for an empty slot. A word less per pixel than fixed_array,
+// but the n-th fragment of a pixel reads n keys.
 //
 // Invariant: no slot before a taken one is free, and a taken slot belongs to the fragment that took it. Slots are read
 // only after the pass, so the order of fragments has no effect.

@@ -215,7 +215,9 @@ fn most_visible() {
 /// without a bound, with the reason.
 #[test]
 fn k_buffers_cull_early() {
-    const WITHOUT: [(&str, &str); 10] = [
+    const WITHOUT: [(&str, &str); 12] = [
+        ("f2b", "the depth test is the cull"),
+        ("f2b2", "the depth test is the cull"),
         ("kb_stream", "every fragment is composited, none is worse than another"),
         ("kb_mha", "a race may overwrite a key, which is stored again later"),
         ("z_buffer", "the depth test is the cull"),

@@ -2,6 +2,10 @@
 
 mod b06_fig_3;
 mod c15_fig_1;
+mod d13_fig_11;
+mod d13_fig_7;
+mod d13_fig_8;
+mod d13_fig_9;
 mod growth;
 mod k15_fig_1;
 mod k15_fig_10;
@@ -19,7 +23,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 15] = [
+pub(super) const EXPERIMENTS: [Experiment; 19] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -32,6 +36,10 @@ pub(super) const EXPERIMENTS: [Experiment; 15] = [
     k15_fig_10::ROW,
     k15_sec_5_1_2::ROW,
     c15_fig_1::ROW,
+    d13_fig_7::ROW,
+    d13_fig_8::ROW,
+    d13_fig_9::ROW,
+    d13_fig_11::ROW,
     b06_fig_3::ROW,
     growth::ROW,
     peers::ROW,

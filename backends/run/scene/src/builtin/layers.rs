@@ -4,6 +4,8 @@
 //!
 //! With `pixels` or `fragments` below 100 a layer is divided into cells. Only so many per cent of the cells are covered at all (the paper's p_d), and
 //! a layer has each of these with a probability of so many per cent (f_p).
+//!
+//! With `coplanar` above 1 every plane has so many quads, whose fragments have equal depths (Vasilakis & Fudos 2013, section 4.1.2).
 
 use super::random::Rng;
 use super::row::{Objects, Parameter, Row, SEED, hue, value};
@@ -11,12 +13,13 @@ use crate::Object;
 
 pub(super) const ROW: Row = Row {
     name: "layers",
-    summary: "n tilted quads over the whole frame, in random order of depth (with --camera clip); in per cent: covered pixels, and fragments of these",
+    summary: "n tilted quads over the whole frame, in random order of depth (with --camera clip); in per cent: covered pixels, and fragments of these; quads of each plane, which have equal depths",
     parameters: &[
         Parameter { name: "n", default: 16, range: (1, 65_536) },
         SEED,
         Parameter { name: "pixels", default: 100, range: (1, 100) },
         Parameter { name: "fragments", default: 100, range: (1, 100) },
+        Parameter { name: "coplanar", default: 1, range: (1, 256) },
     ],
     generate,
 };
@@ -31,8 +34,11 @@ fn generate(values: &[u32]) -> Objects {
     let mut rng = Rng::seeded(value(values, 1));
     let [pixels, fragments] = [2, 3].map(|index| value(values, index));
     let covered = (pixels.min(fragments) < 100).then(|| covered(pixels, &mut rng));
-    Box::new((0..value(values, 0)).map(move |index| {
-        let mut layer = Layer::new(index, &mut rng);
+    let coplanar = value(values, 4);
+    let mut plane = None;
+    Box::new((0..value(values, 0).saturating_mul(coplanar)).map(move |index| {
+        let mut layer = Layer::new(index, &mut rng, plane.filter(|_| index % coplanar != 0));
+        plane = Some(layer.plane);
         match &covered {
             None => layer.quad([-1.0, -1.0], [1.0, 1.0]),
             Some(cells) => {
@@ -66,25 +72,34 @@ fn edge(cell: usize) -> f32 {
 /// A plane, and the quads that lie in it.
 struct Layer {
     object: Object,
-    depth: f32,
-    slopes: [f32; 2],
+    plane: Plane,
     color: [f32; 4],
 }
 
+/// The depth at the centre, and how it changes along x and y.
+#[derive(Clone, Copy)]
+struct Plane {
+    depth: f32,
+    slopes: [f32; 2],
+}
+
 impl Layer {
-    fn new(index: u32, rng: &mut Rng) -> Self {
+    /// Makes a layer in a plane; in one of its own if there is none.
+    fn new(index: u32, rng: &mut Rng, plane: Option<Plane>) -> Self {
         let object = Object { name: format!("layer {index}"), ..Object::default() };
-        let depth = rng.between(TILT, 1.0 - TILT);
-        let slopes = [(); 2].map(|()| rng.between(-0.5 * TILT, 0.5 * TILT));
+        let plane = plane.unwrap_or_else(|| Plane {
+            depth: rng.between(TILT, 1.0 - TILT),
+            slopes: [(); 2].map(|()| rng.between(-0.5 * TILT, 0.5 * TILT)),
+        });
         let color = hue(rng.unit(), rng.between(0.05, 0.2));
-        Layer { object, depth, slopes, color }
+        Layer { object, plane, color }
     }
 
     /// Adds the part of the plane between two corners.
     fn quad(&mut self, from: [f32; 2], to: [f32; 2]) {
         let corners = [[from[0], from[1]], [to[0], from[1]], to, [from[0], to[1]]];
         let corners = corners.map(|[x, y]| {
-            let depth = self.depth + x * self.slopes[0] + y * self.slopes[1];
+            let depth = self.plane.depth + x * self.plane.slopes[0] + y * self.plane.slopes[1];
             self.object.vertex([x, y, depth], [0.0, 0.0, -1.0], self.color)
         });
         self.object.polygon(&corners);
