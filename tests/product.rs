@@ -28,7 +28,7 @@ fn descriptions() -> Vec<Draft> {
 }
 
 /// Capabilities that inform callers. No row requires them.
-const INFORMATIVE: [Capability; 2] = [Capability::CountsEvents, Capability::LeavesDepth];
+const INFORMATIVE: [Capability; 1] = [Capability::CountsEvents];
 
 /// Returns the rows of an axis in equivalence classes of equal capabilities and conditions: the rules depend on nothing else.
 fn classes<'r>(registry: &'r Registry, axis: &'r str) -> Vec<Vec<&'r Row>> {

@@ -114,19 +114,19 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
 /// Returns the colour and the transmittance of the layers composited from the back.
 fn peeling_behind(pixel: u32) -> vec4<f32> {
     return bitcast<vec4<f32>>(vec4<u32>(
-        accumulated_back_load(0u, pixel),
-        accumulated_back_load(1u, pixel),
-        accumulated_back_load(2u, pixel),
-        accumulated_back_load(3u, pixel) ^ ACCUMULATED_TRANSPARENT,
+        accumulated_load(4u, pixel),
+        accumulated_load(5u, pixel),
+        accumulated_load(6u, pixel),
+        accumulated_load(7u, pixel) ^ ACCUMULATED_TRANSPARENT,
     ));
 }
 
 fn peeling_save_behind(pixel: u32, behind: vec4<f32>) {
     let words = bitcast<vec4<u32>>(behind);
-    accumulated_back_store(0u, pixel, words.x);
-    accumulated_back_store(1u, pixel, words.y);
-    accumulated_back_store(2u, pixel, words.z);
-    accumulated_back_store(3u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);
+    accumulated_store(4u, pixel, words.x);
+    accumulated_store(5u, pixel, words.y);
+    accumulated_store(6u, pixel, words.z);
+    accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);
 }
 
 /// The pass that stores layers finds the next ones.

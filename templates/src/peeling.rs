@@ -64,7 +64,7 @@ fn depth_layers() -> Row {
                 keys("layer_keys", "the key of the layer that this iteration stores; EMPTY: none"),
                 keys("next_keys", "the least key behind it; EMPTY: none"),
             ],
-            accumulated(),
+            accumulated("4", FROM_THE_FRONT),
         ]
         .concat(),
         edits: layer_edits(),
@@ -82,7 +82,8 @@ fn both_sides() -> Row {
         let keys = Resource::new(name, Element::Word, summary).by("side", "2").by("pixel", "pixels");
         keys.cleared(u32::MAX).over_iterations()
     };
-    let back = "the same of the layers composited from the back";
+    let colors = "the colour of the layers composited from the front, premultiplied, and the transmittance behind them; then the \
+                  same of the layers from the back";
     let by_side = Split {
         name: "resolve".to_owned(),
         copies: "2".into(),
@@ -98,19 +99,13 @@ fn both_sides() -> Row {
                     "the keys of the layers that this iteration stores, the farther inverted; EMPTY: none",
                 ),
                 keys("next_keys", "the least and the greatest between them, alike"),
-                accumulated_colors("accumulated_back", back),
             ],
-            accumulated(),
+            accumulated("8", colors),
         ]
         .concat(),
         edits: [
             layer_edits(),
-            vec![
-                Edit::SetSkeleton("resolve".to_owned(), "accumulate_side".to_owned()),
-                Edit::AddUse("resolve".to_owned(), Use::new("accumulated_back", Access::Plain)),
-                Edit::AddUse("composite".to_owned(), Use::new("accumulated_back", Access::Read)),
-                Edit::Split(by_side),
-            ],
+            vec![Edit::SetSkeleton("resolve".to_owned(), "accumulate_side".to_owned()), Edit::Split(by_side)],
         ]
         .concat(),
         ..layers(
@@ -158,7 +153,7 @@ fn front_to_back() -> Row {
         .over_iterations();
     Row {
         template: Some(template!("peeling/front_to_back")),
-        resources: [vec![last], accumulated()].concat(),
+        resources: [vec![last], accumulated("4", FROM_THE_FRONT)].concat(),
         uses: vec![Use::new("last_keys", Access::Read)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
@@ -197,21 +192,19 @@ fn resources() -> Vec<Resource> {
             .cleared(0)
             .over_iterations(),
     ];
-    [own, accumulated()].concat()
+    [own, accumulated("4", FROM_THE_FRONT)].concat()
 }
+
+const FROM_THE_FRONT: &str =
+    "the colour of the fragments kept so far, premultiplied, and the transmittance behind them";
 
 /// Returns what the effect continues with, and the word that ends the loop.
-fn accumulated() -> Vec<Resource> {
-    let accumulated = "the colour of the fragments kept so far, premultiplied, and the transmittance behind them";
+fn accumulated(channels: &'static str, summary: &'static str) -> Vec<Resource> {
+    let colors = Resource::new("accumulated", Element::Word, summary).by("channel", channels).by("pixel", "pixels");
     vec![
-        accumulated_colors("accumulated", accumulated),
+        colors.cleared(0).over_iterations(),
         Resource::new("remaining", Element::Word, "not 0: another iteration is needed").cleared(0),
     ]
-}
-
-fn accumulated_colors(name: &str, summary: &'static str) -> Resource {
-    let colors = Resource::new(name, Element::Word, summary).by("channel", "4").by("pixel", "pixels");
-    colors.cleared(0).over_iterations()
 }
 
 /// Returns the edits that repeat all passes until no pixel needs another iteration. The resolve pass continues the effect, and also

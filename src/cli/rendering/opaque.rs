@@ -39,11 +39,12 @@ pub(super) fn occlusion_choice(registry: &Registry) -> Option<(&str, &str)> {
     Some((AXIS, &row.key))
 }
 
-/// Returns the key of the technique that leaves the depth of the nearest fragment.
+/// Returns the key of the technique that leaves the depth of the nearest fragment. Peeling leaves that of the last.
 fn depth_technique(registry: &Registry) -> Option<&str> {
     let leaves_depth = |technique: &&Technique| {
-        let mut rows = technique.choices.iter().filter_map(|(axis, key)| registry.row(axis, key));
-        rows.any(|row| row.provides.contains(&Capability::LeavesDepth))
+        let rows = || technique.choices.iter().filter_map(|(axis, key)| registry.row(axis, key));
+        let provides = |capability| rows().any(|row| row.provides.contains(&capability));
+        provides(Capability::LeavesDepth) && !provides(Capability::KeepsLater)
     };
     registry.techniques().iter().find(leaves_depth).map(|technique| technique.key.as_str())
 }
