@@ -7,7 +7,7 @@ use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
-use super::given::given;
+use super::given::{given, source_of_generics};
 use super::mismatch::quoted;
 use super::swizzles;
 use super::written_types::segments;
@@ -206,7 +206,8 @@ impl Checker<'_, '_, '_> {
         }
         if let Some(generics) = &call.turbofish {
             let span = self.at(generics.span());
-            return self.unsupported(span, "generics are not supported", "remove `::<…>`");
+            let help = format!("remove `{}`", source_of_generics(generics));
+            return self.unsupported(span, "generics are not supported", help);
         }
         let receiver = self.expr(&call.receiver, None);
         let name = call.method.to_string();

@@ -22,7 +22,7 @@ const ADAPTERS: [&str; 12] = [
 ];
 
 /// Methods that return what an `Option` contains.
-const OF_OPTION: [&str; 6] = ["unwrap", "expect", "unwrap_or", "unwrap_or_default", "copied", "cloned"];
+const OF_OPTION: [&str; 4] = ["unwrap", "expect", "unwrap_or", "unwrap_or_default"];
 
 /// A loop that computes the same as the chain so far.
 struct Loop {
@@ -112,7 +112,10 @@ impl Checker<'_, '_, '_> {
 
     /// Returns the expression that computes the same as a chain.
     fn as_loop(&mut self, base: &syn::Expr, links: &[&syn::ExprMethodCall]) -> Option<String> {
-        let (last, adapters) = links.split_last()?;
+        // What an `Option` contains is what the loop computes.
+        let is_of_option = |link: &&&syn::ExprMethodCall| OF_OPTION.contains(&link.method.to_string().as_str());
+        let after = links.iter().rev().take_while(is_of_option).count();
+        let (last, adapters) = links.get(..links.len() - after)?.split_last()?;
         let is_range = matches!(base, syn::Expr::Range(_));
         let ty = match base {
             syn::Expr::Range(range) => self.type_of_bounds(range)?,

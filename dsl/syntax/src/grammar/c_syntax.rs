@@ -155,7 +155,7 @@ fn step(before: &[TokenTree], tokens: &[TokenTree]) -> Option<Pattern> {
         Some(_) => c_loop::place_after(tokens.get(2..)?)?,
     };
     // Components and attributes are floats.
-    let one = if place.contains('.') { "1.0" } else { "1" };
+    let one = if place.contains(['.', '[']) { "1.0" } else { "1" };
     let message = format!("Rust has no operator `{sign}{sign}`");
     Some((0, message.into(), format!("write `{place} {sign}= {one}`").into()))
 }
