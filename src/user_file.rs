@@ -57,7 +57,10 @@ pub(crate) fn with_relative_paths(set: &[(String, String)]) -> Vec<(String, Stri
     let folder = std::env::current_dir().unwrap_or_default();
     let relative = |value: &str| {
         let alternatives = value.split(" else ").map(|alternative| {
-            let start = ["wgsl(\"", "wgsl("].iter().find(|start| alternative.starts_with(**start)).map_or(0, |start| start.len());
+            let start = ["wgsl(\"", "wgsl("]
+                .iter()
+                .find(|start| alternative.starts_with(**start))
+                .map_or(0, |start| start.len());
             let (before, rest) = alternative.split_at(start);
             let end = rest.find(".wgsl").map_or(0, |at| at + ".wgsl".len());
             let (path, after) = rest.split_at(end);
@@ -87,9 +90,11 @@ pub(crate) struct NearNames(Vec<(SourceSpan, String)>);
 pub(crate) fn near_names(draft: &Draft, description: &str, registry: &Registry) -> NearNames {
     let mut found = Vec::new();
     for choice in &draft.choices {
-        let unknown = choice.alternatives.iter().map(|alternative| &alternative.value).filter(|value| {
-            !value.value.is_empty() && registry.row(&choice.axis.value, &value.value).is_none()
-        });
+        let unknown = choice
+            .alternatives
+            .iter()
+            .map(|alternative| &alternative.value)
+            .filter(|value| !value.value.is_empty() && registry.row(&choice.axis.value, &value.value).is_none());
         for value in unknown {
             let is_set = &*value.span.file == SET;
             let folder = if is_set { Path::new("") } else { Path::new(description).parent().unwrap_or(Path::new("")) };

@@ -22,8 +22,14 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn diagnostics(description: &Description, set: &[(&str, &str)]) -> Vec<Diagnostic> {
-    let set: Vec<(String, String)> = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-    load(description, &set, &[], &Registry::builtin()).variant.err().iter().flat_map(|errors| errors.iter().cloned()).collect()
+    let set: Vec<(String, String)> =
+        set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    load(description, &set, &[], &Registry::builtin())
+        .variant
+        .err()
+        .iter()
+        .flat_map(|errors| errors.iter().cloned())
+        .collect()
 }
 
 fn technique(key: &str) -> Description {
@@ -92,7 +98,8 @@ fn the_key_of_a_technique_is_no_value_of_an_axis() {
 /// One error for one cause, and each of its fixes is sufficient.
 #[test]
 fn a_storage_that_does_not_fit_is_one_error() {
-    for (key, storage) in [("k_peeling", "linked_list"), ("k_peeling", "exact_regions"), ("kplus_array", "linked_list")] {
+    for (key, storage) in [("k_peeling", "linked_list"), ("k_peeling", "exact_regions"), ("kplus_array", "linked_list")]
+    {
         let given = ("storage", storage);
         let errors = diagnostics(&technique(key), &[given]);
         let [error] = errors.as_slice() else { panic!("{key} {storage}: {errors:#?}") };
@@ -118,13 +125,16 @@ fn a_storage_that_does_not_fit_is_one_error() {
 #[test]
 fn errors_about_an_effect_stay_at_its_closure() {
     let of = |closure: &str| {
-        let file = text(&format!("buffer B from k_peeling {{\n    keep 4;\n    resolve |fragments| {{ {closure} }}\n}}"));
+        let file =
+            text(&format!("buffer B from k_peeling {{\n    keep 4;\n    resolve |fragments| {{ {closure} }}\n}}"));
         diagnostics(&file, &[]).into_iter().filter(|error| error.code.name == "missing-capability").collect::<Vec<_>>()
     };
     let right = of("vec4(fragments[0].depth, 0.0, 0.0, 1.0)");
     assert!(!right.is_empty() && right.iter().all(|error| error.span.line == 3), "{right:#?}");
     for wrong in ["vec4(fragments[0].depth, 0, 0.0, 1.0)", "vec4(fragments[0].depth, 0.0 0.0, 1.0)", "nothing"] {
-        let lines = |errors: &[Diagnostic]| errors.iter().map(|error| (error.span.line, error.message.clone())).collect::<Vec<_>>();
+        let lines = |errors: &[Diagnostic]| {
+            errors.iter().map(|error| (error.span.line, error.message.clone())).collect::<Vec<_>>()
+        };
         assert_eq!(lines(&of(wrong)), lines(&right), "{wrong}");
     }
 }
@@ -160,9 +170,17 @@ fn a_user_file_is_found_by_its_path_and_its_name() {
     let error = stderr(&show(&inner, "../b.fragbuf", "first_k"));
     assert!(!error.contains("for the file"), "{error}");
     // In a file, paths are relative to it.
-    std::fs::write(folder.join("d.fragbuf"), format!("buffer D {{\n    storage: wgsl(\"{absolute}\");\n    keep 8;\n}}\n")).unwrap();
+    std::fs::write(
+        folder.join("d.fragbuf"),
+        format!("buffer D {{\n    storage: wgsl(\"{absolute}\");\n    keep 8;\n}}\n"),
+    )
+    .unwrap();
     let error = stderr(&fragbuf(&["show", "d.fragbuf"], &folder));
-    assert!(error.contains("expected a path relative to the description") && error.contains("`storage: wgsl(\"first_k.wgsl\");`"), "{error}");
+    assert!(
+        error.contains("expected a path relative to the description")
+            && error.contains("`storage: wgsl(\"first_k.wgsl\");`"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -187,7 +205,8 @@ fn the_depth_of_opaque_surfaces_needs_a_scene() {
 fn one_is_singular() {
     let folder = folder("one");
     let render = |more: &[&str]| {
-        let view = ["--scene", "builtin:layers,n=6", "--camera", "clip", "--size", "1x1", "--device", "cpu", "--out", "o.png"];
+        let view =
+            ["--scene", "builtin:layers,n=6", "--camera", "clip", "--size", "1x1", "--device", "cpu", "--out", "o.png"];
         stderr(&fragbuf(&[&["render"], more, &view[..]].concat(), &folder))
     };
     let error = render(&["k_peeling", "--set", "k=1", "--set", "peeling.iterations=1"]);

@@ -236,7 +236,8 @@ fn the_payload_is_that_of_the_papers_if_it_is_exact_or_requested() {
 fn a_user_file_keeps_the_payload_it_reads() {
     let folder = folder("payload-of-a-file");
     let model = write(&folder, &quads(3, 1, Colors::Thin));
-    let source = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/user_storage/first_k.wgsl"));
+    let source =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/user_storage/first_k.wgsl"));
     let read = "    return slots_load(cursor, pixel);";
     let red = "    var entry = slots_load(cursor, pixel);\n    entry.color = 0xff0000ffu;\n    return entry;";
     let source = source.unwrap();
@@ -244,7 +245,10 @@ fn a_user_file_keeps_the_payload_it_reads() {
     std::fs::write(folder.join("red.wgsl"), source.replace(read, red)).unwrap();
     let description = folder.join("red.fragbuf");
     std::fs::write(&description, "buffer Red {\n    storage: wgsl(\"red.wgsl\");\n    keep 8;\n}\n").unwrap();
-    let pixels = render(&folder, &[description.to_str().unwrap(), "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"]);
+    let pixels = render(
+        &folder,
+        &[description.to_str().unwrap(), "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"],
+    );
     let covered = pixels.iter().filter(|pixel| **pixel != [0, 0, 0, 255]);
     assert!(covered.clone().count() > 0 && covered.clone().all(|pixel| *pixel == [255, 0, 0, 255]));
 }

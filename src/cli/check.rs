@@ -292,7 +292,9 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
             (Verdict::Undecided, _) => {
                 format!("NOT DECIDED: no failure found, but {}", undecided((limits, report), &notes))
             }
-            (_, Some(count)) => format!("no failure in {} per case; others may fail", counted(count, "random schedule")),
+            (_, Some(count)) => {
+                format!("no failure in {} per case; others may fail", counted(count, "random schedule"))
+            }
             (_, None) => "no failure in any interleaving".to_owned(),
         };
         return format!("{subject}: {sentence} ({cases})\n{notes}");

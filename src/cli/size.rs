@@ -106,7 +106,9 @@ impl<'a> Sizes<'a> {
         }
         let slices = match self.rows {
             Some(rows) if rows == height => "the whole frame fits".to_owned(),
-            Some(rows) => format!("{} of at most {} fit", counted(height.div_ceil(rows), "slice"), counted(rows, "row")),
+            Some(rows) => {
+                format!("{} of at most {} fit", counted(height.div_ceil(rows), "slice"), counted(rows, "row"))
+            }
             None => "not even one row fits".to_owned(),
         };
         let _ = writeln!(text, "  with bindings of {} bytes, WebGPU's default, {slices}", self.binding);

@@ -20,8 +20,10 @@ use crate::types::Type;
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let RawDescription { name, preset, items } = description;
     let environment = environment(&items, report);
-    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, effect, mut incomplete, .. } = items;
-    let of_effect = functions.iter().find(|function| function.role == Role::Resolve).map(|function| function.span.clone());
+    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, effect, mut incomplete, .. } =
+        items;
+    let of_effect =
+        functions.iter().find(|function| function.role == Role::Resolve).map(|function| function.span.clone());
     // An attribute of unknown format provides unknown capabilities.
     incomplete.attributes |= !invalid_attributes.is_empty();
     let checked: Vec<(Role, Option<Function>)> =

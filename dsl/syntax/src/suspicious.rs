@@ -107,14 +107,19 @@ impl Search<'_> {
         let of_function = of_function.map(|(_, low, high)| (*low, *high)).filter(|_| names.len() == 3);
         let Some((low_at, high_at)) = of_names.or(of_function) else { return };
         // Uniforms are no arguments of the tree: the places may differ.
-        let (Some(low), Some(high), true) = (arguments.get(low_at), arguments.get(high_at), arguments.len() == names.len()) else {
+        let (Some(low), Some(high), true) =
+            (arguments.get(low_at), arguments.get(high_at), arguments.len() == names.len())
+        else {
             return;
         };
         let (Some(low), Some(high)) = (self.constant(low), self.constant(high)) else { return };
         if let (true, Some(low), Some(high)) = (fold::is_above(&low, &high), fold::shown(&low), fold::shown(&high)) {
             let name = |at: usize| names.get(at).copied().unwrap_or_default();
-            let message =
-                format!("the lower bound `{}` is {low}, and the upper bound `{}` is {high}", name(low_at), name(high_at));
+            let message = format!(
+                "the lower bound `{}` is {low}, and the upper bound `{}` is {high}",
+                name(low_at),
+                name(high_at)
+            );
             self.add(expr, message, format!("swap them: {high} first, then {low}"));
         }
     }

@@ -76,7 +76,8 @@ fn increments_are_reported_where_they_are() {
         ("let m = n++;", "++", "n += 1"),
         ("if n > 1 { n++ }", "++", "n += 1"),
     ] {
-        let items = format!("where |f| {{ let mut n = 1; let mut v = vec2(f.depth, 1.0); {statement} n > 2 && v.x < 1.0 }};");
+        let items =
+            format!("where |f| {{ let mut n = 1; let mut v = vec2(f.depth, 1.0); {statement} n > 2 && v.x < 1.0 }};");
         let error = only(&with(&items));
         is_at(&error, &items, at);
         assert_eq!(error.help, format!("write `{expected}`"), "{error}");
@@ -110,7 +111,9 @@ fn loops_of_c_are_ranges() {
         assert_eq!(found(&with(&fixed)), [], "{fixed}");
     }
     // A loop of Rust over pairs is no loop of C, whatever else is wrong.
-    let error = only(&with("resolve |fragments| { let mut s = 0.0; for (i, f) in fragments.iter().enumerate() { s += f.depth * i as f32 } let let; vec4(s, s, s, 1.0) }"));
+    let error = only(&with(
+        "resolve |fragments| { let mut s = 0.0; for (i, f) in fragments.iter().enumerate() { s += f.depth * i as f32 } let let; vec4(s, s, s, 1.0) }",
+    ));
     assert!(!error.help.contains("0..4"), "{error}");
 }
 
@@ -181,12 +184,15 @@ fn chains_of_iterators_are_loops() {
         let start = text.lines().nth(error.span.line as usize - 1).unwrap();
         let column = error.span.column as usize - 1;
         let chain: String = start.chars().skip(column).take(error.span.length as usize).collect();
-        let chain = if error.code.name == "unknown-method" { wrong.trim_end_matches(".depth").to_owned() } else { chain };
+        let chain =
+            if error.code.name == "unknown-method" { wrong.trim_end_matches(".depth").to_owned() } else { chain };
         let fixed = with(&items.replacen(&chain, code(&error.help), 1));
         assert_eq!(found(&fixed), [], "{error}\n{fixed}");
     }
     // What no loop is known for has an example.
-    let error = only(&with("resolve |fragments| { let a = fragments.iter().zip(fragments.iter()).count(); vec4(a as f32, 0.0, 0.0, 1.0) }"));
+    let error = only(&with(
+        "resolve |fragments| { let a = fragments.iter().zip(fragments.iter()).count(); vec4(a as f32, 0.0, 0.0, 1.0) }",
+    ));
     assert!(error.help.contains("for f in fragments"), "{error}");
 }
 
@@ -210,7 +216,15 @@ fn elements_of_the_list_are_indexed() {
 
 #[test]
 fn swizzles_have_the_letters_xyzw() {
-    for wrong in ["f.color.rgb()", "f.color.bgr()", "f.color.a()", "f.color.stp()", "f.normal.rg()", "f.color.x()", "f.color.rgba()"] {
+    for wrong in [
+        "f.color.rgb()",
+        "f.color.bgr()",
+        "f.color.a()",
+        "f.color.stp()",
+        "f.normal.rg()",
+        "f.color.x()",
+        "f.color.rgba()",
+    ] {
         let items = format!("where |f| {{ let v = {wrong}; v == v || f.depth < 0.5 }};");
         let error = found(&with(&items)).remove(0);
         assert_eq!(error.code.name, "unknown-method", "{error}");
@@ -236,14 +250,32 @@ fn bounds_in_the_wrong_order_are_suspicious() {
     let smooth = "fn smoothstep(a: f32, b: f32, x: f32) -> f32 { let t = ((x - a) / (b - a)).clamp(0.0, 1.0); t * t * (3.0 - 2.0 * t) }";
     let remap = "fn remap(x: f32, low: f32, high: f32) -> f32 { (x - low) / (high - low) }";
     for (items, message) in [
-        ("where |f| f.depth.max(1.0).min(0.0) < 0.5;", "this is always 0.0: the lower bound 1.0 is above the upper bound 0.0"),
-        ("where |f| f.depth.min(0.0).max(1.0) < 0.5;", "this is always 1.0: the lower bound 1.0 is above the upper bound 0.0"),
+        (
+            "where |f| f.depth.max(1.0).min(0.0) < 0.5;",
+            "this is always 0.0: the lower bound 1.0 is above the upper bound 0.0",
+        ),
+        (
+            "where |f| f.depth.min(0.0).max(1.0) < 0.5;",
+            "this is always 1.0: the lower bound 1.0 is above the upper bound 0.0",
+        ),
         ("where |f| f.id.max(8).min(2) < 5;", "this is always 2: the lower bound 8 is above the upper bound 2"),
         ("where |f| f.normal.max(Vec3::ONE).min(Vec3::ZERO).x < f.depth;", "a lower bound is above its upper bound"),
-        (&*format!("{smooth} where |f| smoothstep(0.9, 0.1, f.depth) < 0.5;"), "the lower bound `a` is 0.9, and the upper bound `b` is 0.1"),
-        (&*format!("{remap} where |f| remap(f.depth, 2.0 * 0.5, 0.0) < 0.5;"), "the lower bound `low` is 1.0, and the upper bound `high` is 0.0"),
-        ("where |f| { let mut s = 0.0; for i in 8..0 { s += i as f32; } s < f.depth };", "this loop never runs: its range begins at 8, above its end 0"),
-        ("where |f| { let mut s = 0.0; for i in (4..=1).rev() { s += i as f32; } s < f.depth };", "this loop never runs: its range begins at 4, above its end 1"),
+        (
+            &*format!("{smooth} where |f| smoothstep(0.9, 0.1, f.depth) < 0.5;"),
+            "the lower bound `a` is 0.9, and the upper bound `b` is 0.1",
+        ),
+        (
+            &*format!("{remap} where |f| remap(f.depth, 2.0 * 0.5, 0.0) < 0.5;"),
+            "the lower bound `low` is 1.0, and the upper bound `high` is 0.0",
+        ),
+        (
+            "where |f| { let mut s = 0.0; for i in 8..0 { s += i as f32; } s < f.depth };",
+            "this loop never runs: its range begins at 8, above its end 0",
+        ),
+        (
+            "where |f| { let mut s = 0.0; for i in (4..=1).rev() { s += i as f32; } s < f.depth };",
+            "this loop never runs: its range begins at 4, above its end 1",
+        ),
     ] {
         let found = suspicious(items);
         assert_eq!(found.iter().map(|(message, _)| message.as_str()).collect::<Vec<_>>(), [message], "{items}");

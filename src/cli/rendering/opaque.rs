@@ -72,7 +72,9 @@ fn missing_scene(plan: &Plan, texture: &str) -> String {
     let what = row.map_or("the description".to_owned(), |row| format!("`{}: {}`", row.axis, row.key));
     let default = row.and_then(|row| Registry::builtin().axis(&row.axis)?.default.map(|key| (row.axis.clone(), key)));
     let other = default.map_or(String::new(), |(axis, key)| format!(", or choose `--set {axis}={key}`"));
-    format!("{what} reads the external texture `{texture}`, which an opaque scene gives: add `--opaque SCENE`, as `--opaque builtin:cubes`{other}")
+    format!(
+        "{what} reads the external texture `{texture}`, which an opaque scene gives: add `--opaque SCENE`, as `--opaque builtin:cubes`{other}"
+    )
 }
 
 /// Blends premultiplied colours over a background.

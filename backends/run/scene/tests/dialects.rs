@@ -95,7 +95,10 @@ fn materials_of_other_programs_are_read() {
         read(&files.each_ref().map(|(name, text)| (name.as_str(), text.as_bytes())))
     };
     for (library, color) in [
-        ("\n\tnewmtl m  \n\tNs 96.07\n\tNi 1.5\n\tKa 0 0 0\n\t Kd\t1 0 0\n\tKs 0.5 0.5 0.5\n\tKe 0 0 0\n\tTf 1 1 1\n\tillum 2\n", RED),
+        (
+            "\n\tnewmtl m  \n\tNs 96.07\n\tNi 1.5\n\tKa 0 0 0\n\t Kd\t1 0 0\n\tKs 0.5 0.5 0.5\n\tKe 0 0 0\n\tTf 1 1 1\n\tillum 2\n",
+            RED,
+        ),
         ("# Exported\r\nnewmtl m\r\nKd 1.000 0.000 0.000\r\nd 0.5\r\nillum 1\r\n", HALF_RED),
         ("newmtl m\nd 0.5\nKd 1 0 0\nnewmtl other\nKd 0 1 0\nd 1\n", HALF_RED),
         ("newmtl m\nKd 1.0000001 -0 0\nTr 0.5\nPr 0.3\nPm 0\n", HALF_RED),
@@ -105,7 +108,11 @@ fn materials_of_other_programs_are_read() {
         assert_quad(&scene, color, library);
     }
     for (library, color, warning) in [
-        ("newmtl m\nKd 1 0 0\nTr 0.5 0.5 0.5\n", HALF_RED, "l.mtl:3: `Tr` has 3 values, and takes 1: the first is used"),
+        (
+            "newmtl m\nKd 1 0 0\nTr 0.5 0.5 0.5\n",
+            HALF_RED,
+            "l.mtl:3: `Tr` has 3 values, and takes 1: the first is used",
+        ),
         ("newmtl m\nKd 1 0 0\nd 1.5\n", RED, "l.mtl:3: 1.5 is not from 0 to 1: 1 is used"),
     ] {
         let scene = of(library).unwrap();
@@ -244,7 +251,8 @@ fn positions_of_a_gltf_may_be_integers() {
         let text = gltf(|model| {
             let corners = CORNERS.map(|corner| corner.map(|axis| (2.0 * axis + 2.0) as u16));
             let shorts = corners.iter().flat_map(|[x, y, z]| [*x, *y, *z, 0]).flat_map(u16::to_le_bytes);
-            let bytes: Vec<u8> = shorts.chain([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes())).collect();
+            let bytes: Vec<u8> =
+                shorts.chain([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes())).collect();
             set_buffer(model, &bytes);
             model["bufferViews"][0] = json!({"buffer": 0, "byteLength": 32, "byteStride": 8});
             model["bufferViews"][1] = json!({"buffer": 0, "byteOffset": 32, "byteLength": 12});
@@ -274,9 +282,7 @@ fn attributes_of_a_gltf_may_be_interleaved() {
         model["bufferViews"] = json!([
             {"buffer": 0, "byteLength": 112, "byteStride": 28}, {"buffer": 0, "byteOffset": 112, "byteLength": 12}]);
         let accessors = model["accessors"].as_array_mut().unwrap();
-        let with = |component: u32, shape: &str, offset: u32, normalized: bool| {
-            json!({"bufferView": 0, "byteOffset": offset, "componentType": component, "count": 4, "type": shape, "normalized": normalized})
-        };
+        let with = |component: u32, shape: &str, offset: u32, normalized: bool| json!({"bufferView": 0, "byteOffset": offset, "componentType": component, "count": 4, "type": shape, "normalized": normalized});
         accessors.extend([with(5126, "VEC3", 12, false), with(5121, "VEC4", 24, true)]);
         model["meshes"][0]["primitives"][0]["attributes"] = json!({"POSITION": 0, "NORMAL": 2, "COLOR_0": 3});
         model["materials"][0]["pbrMetallicRoughness"] = json!({});
@@ -289,8 +295,10 @@ fn attributes_of_a_gltf_may_be_interleaved() {
 fn vertex_colours_with_alpha_need_no_material() {
     let colored = |has_material: bool| {
         gltf(|model| {
-            let floats = CORNERS.iter().flat_map(|corner| corner.iter().chain(&HALF_RED)).flat_map(|axis| axis.to_le_bytes());
-            let bytes: Vec<u8> = floats.chain([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes())).collect();
+            let floats =
+                CORNERS.iter().flat_map(|corner| corner.iter().chain(&HALF_RED)).flat_map(|axis| axis.to_le_bytes());
+            let bytes: Vec<u8> =
+                floats.chain([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes())).collect();
             set_buffer(model, &bytes);
             model["bufferViews"] = json!([
                 {"buffer": 0, "byteLength": 112, "byteStride": 28}, {"buffer": 0, "byteOffset": 112, "byteLength": 12}]);
@@ -322,11 +330,13 @@ fn unused_attributes_of_a_gltf_may_have_no_view() {
 
 #[test]
 fn a_mirrored_node_keeps_its_triangles() {
-    let scene = read(&[("m.gltf", gltf(|model| model["nodes"][0]["scale"] = json!([-0.5, 0.5, 1])).as_bytes())]).unwrap();
+    let scene =
+        read(&[("m.gltf", gltf(|model| model["nodes"][0]["scale"] = json!([-0.5, 0.5, 1])).as_bytes())]).unwrap();
     let object = &scene.objects[0];
     let mirrored = CORNERS.map(|[x, y, z]| [-0.5 * x, 0.5 * y, z]);
     assert_eq!((object.positions.as_slice(), object.triangles.len()), (&mirrored[..], 2));
-    let by_matrix = gltf(|model| model["nodes"][0]["matrix"] = json!([-0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]));
+    let by_matrix =
+        gltf(|model| model["nodes"][0]["matrix"] = json!([-0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]));
     assert_eq!(read(&[("m.gltf", by_matrix.as_bytes())]).unwrap().objects[0].positions, mirrored);
 }
 

@@ -81,7 +81,8 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         if let (Some(requested), Some(stored)) = (frame.requested, setup.stored_in(&frame))
             && requested != stored
         {
-            let text = format!("the host step allocates {}, and {stored} would be needed", counted(requested, "fragment"));
+            let text =
+                format!("the host step allocates {}, and {stored} would be needed", counted(requested, "fragment"));
             return Ok(StateVerdict::Wrong(text));
         }
         let kept = frame.read_out(setup.case.pixel)?;

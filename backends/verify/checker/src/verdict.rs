@@ -183,8 +183,8 @@ fn check_all(
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
     let mut frame = Frame::new(subject, ample_values(subject)?)?;
-    let candidates =
-        Candidates::new(subject, &mut frame.memory)?.map_err(|found| format!("no more than {} can be admitted", counted(found, "fragment")))?;
+    let candidates = Candidates::new(subject, &mut frame.memory)?
+        .map_err(|found| format!("no more than {} can be admitted", counted(found, "fragment")))?;
     let options = SearchOptions {
         model: limits.model,
         random_schedules: limits.random_schedules,

@@ -281,7 +281,10 @@ fn value_of_technique(axis: &str, value: &str, registry: &Registry) -> Option<St
             let first = value.split(" else ").next().unwrap_or(value);
             format!("`{}` is a technique: its value on this axis is `{axis}: {first}`", technique.key)
         }
-        None => format!("`{0}` is a technique, and no value of an axis: start from it, as `buffer B from {0}`", technique.key),
+        None => format!(
+            "`{0}` is a technique, and no value of an axis: start from it, as `buffer B from {0}`",
+            technique.key
+        ),
     })
 }
 

@@ -28,7 +28,10 @@ pub(super) fn fixes(draft: &Draft, registry: &Registry, diagnostics: Diagnostics
             is_choice.then(|| given(axis, value))?
         }
     };
-    diagnostics.iter().map(|diagnostic| Diagnostic { help: replaced(&diagnostic.help, &option), ..diagnostic.clone() }).collect()
+    diagnostics
+        .iter()
+        .map(|diagnostic| Diagnostic { help: replaced(&diagnostic.help, &option), ..diagnostic.clone() })
+        .collect()
 }
 
 /// Returns the option that chooses a value. `None`: a shell would need quotes.

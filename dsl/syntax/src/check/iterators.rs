@@ -17,9 +17,8 @@ use crate::types::Type;
 const OF_LOOPS: [&str; 4] = ["iter", "into_iter", "rev", "enumerate"];
 
 /// Methods that return an iterator.
-const ADAPTERS: [&str; 12] = [
-    "iter", "into_iter", "rev", "enumerate", "map", "filter", "take_while", "copied", "cloned", "skip", "take", "zip",
-];
+const ADAPTERS: [&str; 12] =
+    ["iter", "into_iter", "rev", "enumerate", "map", "filter", "take_while", "copied", "cloned", "skip", "take", "zip"];
 
 /// Methods that return what an `Option` contains.
 const OF_OPTION: [&str; 4] = ["unwrap", "expect", "unwrap_or", "unwrap_or_default"];
@@ -71,7 +70,9 @@ impl Checker<'_, '_, '_> {
                     Some(expression) => format!("write `{expression}`"),
                     // The closures have errors of their own.
                     None if self.report.count() > errors => return Some(Expr::error(span)),
-                    None => format!("write a loop: `for {} {{ … }}`", if is_list { "f in fragments" } else { "i in a..b" }),
+                    None => {
+                        format!("write a loop: `for {} {{ … }}`", if is_list { "f in fragments" } else { "i in a..b" })
+                    }
                 }
             }
         };
@@ -134,7 +135,11 @@ impl Checker<'_, '_, '_> {
         for link in adapters {
             self.adapter(&mut each, link)?;
         }
-        self.last_link(&mut each, last, adapters.iter().all(|link| OF_LOOPS.contains(&link.method.to_string().as_str())))
+        self.last_link(
+            &mut each,
+            last,
+            adapters.iter().all(|link| OF_LOOPS.contains(&link.method.to_string().as_str())),
+        )
     }
 
     fn type_of_bounds(&mut self, range: &syn::ExprRange) -> Option<Type> {

@@ -42,7 +42,9 @@ pub(super) fn is_swizzle(name: &str) -> bool {
 pub(super) fn instead(ty: Type, name: &str, receiver: &str) -> Option<String> {
     let Type::Vector(size) = ty else { return None };
     let xyzw = match name {
-        _ if !name.is_empty() && name.len() <= 4 && name.chars().all(|letter| "xyzw".contains(letter)) => name.to_owned(),
+        _ if !name.is_empty() && name.len() <= 4 && name.chars().all(|letter| "xyzw".contains(letter)) => {
+            name.to_owned()
+        }
         _ => foreign_names::swizzle(name).filter(|_| (1..=4).contains(&name.len()))?,
     };
     let is_inside = xyzw.chars().all(|letter| "xyzw".find(letter).is_some_and(|at| at < usize::from(size)));
