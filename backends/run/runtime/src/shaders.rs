@@ -72,9 +72,7 @@ impl Shaders {
                 Some((_, missing)) if !has_target_with(missing.feature) => {
                     Error::Unsupported { what, help: missing.to_string() }
                 }
-                Some((_, missing)) => {
-                    Error::Unsupported { what, help: format!("{missing}; {}", runnable(generation)) }
-                }
+                Some((_, missing)) => Error::Unsupported { what, help: format!("{missing}; {}", runnable(generation)) },
                 None => Error::Unsupported { what, help: format!("it was not requested; {}", runnable(generation)) },
             }
         };
