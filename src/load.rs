@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+pub use fragbuf_model::SET;
 use fragbuf_model::{Choice, Diagnostics, Draft, MissingFeature, SourceSpan, Spanned, Variant};
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_targets::{Request, Target, select};
@@ -70,6 +71,7 @@ pub fn load(
         Description::Technique(key) => key,
         Description::Text { text, .. } => text,
     };
+    let set = &user_file::with_relative_paths(set);
     let mut sources = vec![(description.name().to_owned(), text.clone())];
     let variant = draft(description).and_then(|(mut draft, mut diagnostics)| {
         change(&mut draft, set, defaults, registry, &mut diagnostics);
@@ -81,7 +83,8 @@ pub fn load(
             diagnostics.extend(user.diagnostics);
             return Err(diagnostics);
         }
-        Parsed { draft: Some(draft), diagnostics }.check(&user.registry)
+        let files = user_file::near_names(&draft, description.name(), &user.registry);
+        Parsed { draft: Some(draft), diagnostics }.check(&user.registry).map_err(|errors| files.named_in(errors))
     });
     let lines = |changes: &mut dyn Iterator<Item = (&str, &str)>| -> String {
         changes.map(|(name, value)| format!("{name}={value}\n")).collect()
@@ -146,9 +149,6 @@ fn draft(description: &Description) -> Result<(Draft, Diagnostics), Diagnostics>
         }
     }
 }
-
-/// The source name of changes from outside in messages.
-pub const SET: &str = "--set";
 
 /// The source name of `defaults` in messages.
 const DEFAULTS: &str = "chosen by the command";

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use fragbuf_codegen::{user_row_warnings, validate_user_row};
-use fragbuf_model::{Alternative, Diagnostic, Diagnostics, Draft, codes, nearest_name};
+use fragbuf_model::{Alternative, Diagnostic, Diagnostics, Draft, SourceSpan, codes, nearest_name};
 use fragbuf_syntax::row;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Row;
@@ -49,6 +49,83 @@ pub fn read(draft: &Draft, registry: &Registry) -> UserFiles {
         }
     }
     user
+}
+
+/// Returns changes from outside in which the absolute paths of user files are relative to the current folder. Generated source has the
+/// paths of user files, and messages about the change name them.
+pub(crate) fn with_relative_paths(set: &[(String, String)]) -> Vec<(String, String)> {
+    let folder = std::env::current_dir().unwrap_or_default();
+    let relative = |value: &str| {
+        let alternatives = value.split(" else ").map(|alternative| {
+            let start = ["wgsl(\"", "wgsl("]
+                .iter()
+                .find(|start| alternative.starts_with(**start))
+                .map_or(0, |start| start.len());
+            let (before, rest) = alternative.split_at(start);
+            let end = rest.find(".wgsl").map_or(0, |at| at + ".wgsl".len());
+            let (path, after) = rest.split_at(end);
+            match Path::new(path).is_absolute() {
+                true => format!("{before}{}{after}", relative_path(Path::new(path), &folder)),
+                false => alternative.to_owned(),
+            }
+        });
+        alternatives.collect::<Vec<_>>().join(" else ")
+    };
+    set.iter().map(|(name, value)| (name.clone(), relative(value))).collect()
+}
+
+/// Returns an absolute path as seen from a folder, with `/` between its parts.
+fn relative_path(path: &Path, folder: &Path) -> String {
+    let (path, folder): (Vec<_>, Vec<_>) = (path.components().collect(), folder.components().collect());
+    let common = path.iter().zip(&folder).take_while(|(a, b)| a == b).count();
+    let up = folder.iter().skip(common).map(|_| "..".to_owned());
+    let down = path.iter().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    up.chain(down).collect::<Vec<_>>().join("/")
+}
+
+/// Values that no row has, and the user files of the same name.
+pub(crate) struct NearNames(Vec<(SourceSpan, String)>);
+
+/// Returns the user files that are beside a description, or in the current folder, and whose names a draft gives as values without `.wgsl`.
+pub(crate) fn near_names(draft: &Draft, description: &str, registry: &Registry) -> NearNames {
+    let mut found = Vec::new();
+    for choice in &draft.choices {
+        let unknown = choice
+            .alternatives
+            .iter()
+            .map(|alternative| &alternative.value)
+            .filter(|value| !value.value.is_empty() && registry.row(&choice.axis.value, &value.value).is_none());
+        for value in unknown {
+            let is_set = &*value.span.file == SET;
+            let folder = if is_set { Path::new("") } else { Path::new(description).parent().unwrap_or(Path::new("")) };
+            let name = format!("{}.wgsl", value.value);
+            if is_file_name(&value.value) && folder.join(&name).is_file() {
+                let written = match is_set {
+                    true => format!("{SET} {}={name}", choice.axis.value),
+                    false => format!("{}: wgsl(\"{name}\")", choice.axis.value),
+                };
+                found.push((value.span.clone(), format!("for the file `{name}`, write `{written}`")));
+            }
+        }
+    }
+    NearNames(found)
+}
+
+/// Whether a value could be the name of a file in the same folder.
+fn is_file_name(value: &str) -> bool {
+    value.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-')
+}
+
+impl NearNames {
+    /// Adds the files to the errors about the values.
+    pub(crate) fn named_in(&self, errors: Diagnostics) -> Diagnostics {
+        let with_file = |error: &Diagnostic| {
+            let file = self.0.iter().find(|(span, _)| error.code == codes::UNKNOWN_VALUE && *span == error.span);
+            let help = file.map_or_else(|| error.help.clone(), |(_, file)| format!("{file}; {}", error.help));
+            Diagnostic { help, ..error.clone() }
+        };
+        errors.iter().map(with_file).collect()
+    }
 }
 
 /// Reads the row of one file and validates it; returns the warnings, too.

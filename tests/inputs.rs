@@ -86,7 +86,7 @@ fn a_missing_file_is_the_same_error_for_every_extension() {
         ("kplus_array.fragbuf", 3, "give the key of the technique alone, `kplus_array`"),
         (".", 3, "is a folder"),
         ("kplus_aray", 1, "did you mean `kplus_array`?"),
-        ("list.wgsl", 2, "`fragbuf check --wgsl list.wgsl --entry NAME`"),
+        ("list.wgsl", 2, "`fragbuf check --wgsl list.wgsl --entry main`"),
         ("model.obj", 2, "give a model to `--scene model.obj`"),
     ] {
         let output = fragbuf(&["check", description], &folder);

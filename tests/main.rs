@@ -23,6 +23,7 @@ mod diagnostics;
 mod examples;
 #[cfg(feature = "figures")]
 mod figures;
+mod fixes;
 mod fuzz;
 mod inputs;
 mod instances;

@@ -231,6 +231,28 @@ fn the_payload_is_that_of_the_papers_if_it_is_exact_or_requested() {
     assert_eq!(format(Colors::Thin, &["--shading", "lit"]), "rgba8");
 }
 
+/// A user file that reads the word of the colour determines the format of the colour, whatever the colours of the scene are.
+#[test]
+fn a_user_file_keeps_the_payload_it_reads() {
+    let folder = folder("payload-of-a-file");
+    let model = write(&folder, &quads(3, 1, Colors::Thin));
+    let source =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/user_storage/first_k.wgsl"));
+    let read = "    return slots_load(cursor, pixel);";
+    let red = "    var entry = slots_load(cursor, pixel);\n    entry.color = 0xff0000ffu;\n    return entry;";
+    let source = source.unwrap();
+    assert!(source.contains(read), "{source}");
+    std::fs::write(folder.join("red.wgsl"), source.replace(read, red)).unwrap();
+    let description = folder.join("red.fragbuf");
+    std::fs::write(&description, "buffer Red {\n    storage: wgsl(\"red.wgsl\");\n    keep 8;\n}\n").unwrap();
+    let pixels = render(
+        &folder,
+        &[description.to_str().unwrap(), "--scene", model.to_str().unwrap(), "--background", "0,0,0,1"],
+    );
+    let covered = pixels.iter().filter(|pixel| **pixel != [0, 0, 0, 255]);
+    assert!(covered.clone().count() > 0 && covered.clone().all(|pixel| *pixel == [255, 0, 0, 255]));
+}
+
 #[test]
 fn a_pool_overflow_loses_no_layers() {
     // More than eight per pixel, the initial pool size, and more than 64, the layers that a resolve pass holds.

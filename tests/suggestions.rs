@@ -222,11 +222,11 @@ fn changes_from_outside_have_suggestions_that_work() {
         ("keep", "4", "unknown-axis", "write `k=4`"),
         ("K", "4", "unknown-axis", "write `k=4`"),
         ("limit", "100", "unknown-axis", "write `sync.limit=100`"),
-        ("samples.count", "8", "unknown-option", "choose `samples: coverage`"),
+        ("samples.count", "8", "unknown-option", "choose `--set samples=coverage`"),
         ("fragment.colour", "vec4", "unknown-field", "did you mean `color`?"),
         ("fragment.color", "rgb8", "invalid-option", "rgba8"),
         ("sync.limt", "9", "unknown-option", "did you mean `limit`?"),
-        ("cull.words", "2", "unknown-option", "choose `cull: occupancy`"),
+        ("cull.words", "2", "unknown-option", "choose `--set cull=occupancy`"),
         ("k", "many", "invalid-option", "a whole number, or `all`"),
         ("sort", "", "invalid-option", "a value after the `=`"),
     ] {

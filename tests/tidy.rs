@@ -209,7 +209,7 @@ fn no_file_has_a_meaningless_name() {
 /// The README's table of techniques is computed from `list --json`. `INSTA_UPDATE=always` updates it.
 #[test]
 fn the_readme_has_the_computed_table() {
-    const HEAD: &str = "| technique | what a pixel keeps | words per pixel | draws | exact | tiers |\n";
+    const HEAD: &str = "| technique | what a pixel keeps | words per pixel | draws | order-independent | tiers |\n";
     let path = root().join("README.md");
     let _lock = README.lock().unwrap_or_else(PoisonError::into_inner);
     let readme = read(&path);

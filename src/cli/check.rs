@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use fragbuf::{Form, Registry, Request, TARGETS, Target, select, source_file};
 use fragbuf_checker::{Error, Limits, Model, Report, Schedule, ScheduleStep, Shader, check_shader, check_variant};
+use fragbuf_model::counted;
 use serde_json::{Value, json};
 
 use super::assignment::assignment;
@@ -282,9 +283,8 @@ fn listed(numbers: &[u32]) -> String {
 }
 
 fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> String {
-    let plural = if report.cases == 1 { "" } else { "s" };
     let k = if report.entries.is_empty() { String::new() } else { format!("k = {}; ", listed(&report.entries)) };
-    let cases = format!("{k}{} case{plural}, {} states", report.cases, report.states);
+    let cases = format!("{k}{}, {}", counted(report.cases, "case"), counted(report.states, "state"));
     let subject = format!("{name} on {on}, {}", model_name(limits.model));
     let notes: String = notes(report).iter().map(|note| format!("  note: {note}\n")).collect();
     let Some(schedule) = &report.failure else {
@@ -292,7 +292,9 @@ fn report_text((name, on): (&str, &str), limits: &Limits, report: &Report) -> St
             (Verdict::Undecided, _) => {
                 format!("NOT DECIDED: no failure found, but {}", undecided((limits, report), &notes))
             }
-            (_, Some(count)) => format!("no failure in {count} random schedules per case; others may fail"),
+            (_, Some(count)) => {
+                format!("no failure in {} per case; others may fail", counted(count, "random schedule"))
+            }
             (_, None) => "no failure in any interleaving".to_owned(),
         };
         return format!("{subject}: {sentence} ({cases})\n{notes}");

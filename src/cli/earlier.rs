@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use fragbuf::{Generation, TARGETS, Target};
+use fragbuf_model::counted;
 use serde_json::Value;
 
 use super::output::{self, Failure};
@@ -71,7 +72,7 @@ impl EarlierFiles {
     /// Warns of the files, and says how to keep those for other targets than those of this run.
     pub(crate) fn warn(&self, targets: &[&Target]) {
         let Some(first) = self.files.first() else { return };
-        let files = if self.files.len() == 1 { "1 file".to_owned() } else { format!("{} files", self.files.len()) };
+        let files = counted(self.files.len(), "file");
         let (folder, first) = (self.folder.display(), self.folder.join(first));
         let others = self.other_targets(targets);
         let keep = match others.as_slice() {

@@ -74,7 +74,10 @@ impl Generate {
     /// Writes everything once, and adds the files that it reads to `files`.
     fn generate(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
         if self.out.as_os_str() == "-" {
-            let help = "`fragbuf show KEY --dump wgsl` prints the sources";
+            let registry = Registry::builtin();
+            let first = registry.techniques().first().map(|technique| technique.key.as_str());
+            let description = self.description.as_deref().or(first).unwrap_or_default();
+            let help = format!("`fragbuf show {description} --dump wgsl` prints the sources");
             return Err(Failure::Usage(format!("`generate` writes a folder, and `-` is none: {help}")));
         }
         let registry = Registry::builtin();

@@ -149,6 +149,16 @@ fn is_user_row(path: &Path) -> bool {
     source_file::read(path).is_ok_and(|source| source.lines().any(|line| line.trim_start().starts_with("//:")))
 }
 
+/// Returns the name of the first entry point of a WGSL file.
+fn entry_point(path: &Path) -> Option<String> {
+    let source = source_file::read(path).ok()?;
+    let starts = ["@compute", "@fragment", "@vertex"].iter().filter_map(|stage| source.find(stage));
+    let (_, declaration) = source.get(starts.min()?..)?.split_once("fn ")?;
+    let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let name: String = declaration.trim_start().chars().take_while(|letter| is_name(*letter)).collect();
+    (!name.is_empty()).then_some(name)
+}
+
 /// Returns the failure for an argument that names a file of another kind, or none although it looks like the name of a file.
 fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Failure> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
@@ -158,7 +168,10 @@ fn other_file(argument: &str, path: &Path, registry: &Registry) -> Result<(), Fa
             let name = path.file_name().map_or(argument.into(), |name| name.to_string_lossy());
             format!("it is a row of its own: choose it in a description, as in `storage: wgsl(\"{name}\");`")
         }
-        "wgsl" => format!("`fragbuf check --wgsl {argument} --entry NAME` checks a shader"),
+        "wgsl" => {
+            let entry = entry_point(path).unwrap_or_else(|| "main".to_owned());
+            format!("`fragbuf check --wgsl {argument} --entry {entry}` checks a shader")
+        }
         "obj" | "ply" | "gltf" | "glb" | "gz" => format!("give a model to `--scene {argument}`"),
         "glsl" | "vert" | "frag" | "comp" | "hlsl" | "metal" | "spv" => "fragbuf reads shaders in WGSL only".to_owned(),
         _ => String::new(),

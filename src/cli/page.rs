@@ -110,15 +110,20 @@ fn steps(plan: &Plan, text: &mut String) {
     }
 }
 
+/// Returns `once`, or `n times`.
+fn times(count: &str) -> String {
+    if count == "1" { "once".to_owned() } else { format!("{count} times") }
+}
+
 fn loop_line(plan: &Plan, looped: &Loop) -> String {
-    let max_iterations = &looped.max_iterations;
+    let max_iterations = looped.max_iterations.to_string();
     match looped.until {
-        LoopUntil::Times => format!("repeat {max_iterations} times"),
+        LoopUntil::Times => format!("repeat {}", times(&max_iterations)),
         LoopUntil::WordIsZero(word) => {
-            format!("repeat, at most {max_iterations} times, until `{}` is 0", plan.resources[word.0].resource.name)
+            format!("repeat, at most {}, until `{}` is 0", times(&max_iterations), plan.resources[word.0].resource.name)
         }
         LoopUntil::NoSamples(pass) => {
-            format!("repeat, at most {max_iterations} times, until `{}` draws no sample", plan.passes[pass.0].name)
+            format!("repeat, at most {}, until `{}` draws no sample", times(&max_iterations), plan.passes[pass.0].name)
         }
     }
 }

@@ -9,6 +9,7 @@ use fragbuf::{Generation, Limit, Needed, Plan, limits};
 use fragbuf_frame::{
     BufferLimit, Error, MemoryLimits, PoolSize, Sizing, Values, initial_values, most_rows, resource_bytes,
 };
+use fragbuf_model::counted;
 use fragbuf_targets::PlanForTargets;
 use serde_json::{Value, json};
 
@@ -84,7 +85,7 @@ impl<'a> Sizes<'a> {
     }
 
     fn text(&self, targets: &[&str], FrameSize { size: (width, height), per_pixel }: FrameSize) -> String {
-        let mut text = format!("{width} x {height} pixels, {per_pixel} fragments per pixel");
+        let mut text = format!("{width} x {height} pixels, {} per pixel", counted(per_pixel, "fragment"));
         if let Some(k) = self.k {
             let _ = write!(text, ", k = {k}");
         }
@@ -96,14 +97,18 @@ impl<'a> Sizes<'a> {
         text.push_str("limits\n");
         for (limit, needed) in &self.limits {
             let names = [limit.webgpu.map(|webgpu| webgpu.name), limit.vulkan, limit.opengl];
-            let names: Vec<&str> = names.into_iter().flatten().collect();
+            let mut names: Vec<&str> = names.into_iter().flatten().collect();
+            // WebGPU and Vulkan share some names.
+            names.dedup();
             let beyond = limit.webgpu.filter(|webgpu| *needed > webgpu.default);
             let beyond = beyond.map(|webgpu| format!(", WebGPU's default is {}", webgpu.default)).unwrap_or_default();
             let _ = writeln!(text, "  {needed:>14}  {}{beyond}", names.join(", "));
         }
         let slices = match self.rows {
             Some(rows) if rows == height => "the whole frame fits".to_owned(),
-            Some(rows) => format!("{} slices of at most {rows} rows fit", height.div_ceil(rows)),
+            Some(rows) => {
+                format!("{} of at most {} fit", counted(height.div_ceil(rows), "slice"), counted(rows, "row"))
+            }
             None => "not even one row fits".to_owned(),
         };
         let _ = writeln!(text, "  with bindings of {} bytes, WebGPU's default, {slices}", self.binding);

@@ -7,6 +7,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use fragbuf_model::counted;
+
 use super::output::{self, Failure};
 
 /// The time between two looks at the files.
@@ -32,7 +34,7 @@ pub(crate) fn watch(
                 files.push(file);
             }
         }
-        let count = if files.len() == 1 { "1 file".to_owned() } else { format!("{} files", files.len()) };
+        let count = counted(files.len(), "file");
         match outcome {
             Ok(()) => output::note(&format!("done; watching {count}")),
             Err(failure) => {

@@ -1,5 +1,6 @@
 //! Blocks in TOML and JSON: the manifest of a package, and a part of a manifest of passes.
 
+use std::path::Path;
 use std::process::Command;
 
 use fragbuf::plan_json;
@@ -14,6 +15,9 @@ pub(super) fn is_a_cargo_manifest(block: &Block) {
     let package = "[package]\nname = \"block\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n";
     std::fs::write(folder.join("Cargo.toml"), format!("{package}{}", block.text)).unwrap();
     std::fs::create_dir(folder.join("src")).unwrap();
+    let checkout = folder.parent().unwrap().join("fragbuf");
+    let _ = std::fs::remove_file(&checkout);
+    std::os::unix::fs::symlink(root(), &checkout).unwrap();
     std::fs::write(folder.join("src/lib.rs"), "").unwrap();
     let (found, workspace) = (metadata(&folder), metadata(root()));
     let dependencies = found["packages"][0]["dependencies"].as_array().unwrap();
@@ -22,6 +26,13 @@ pub(super) fn is_a_cargo_manifest(block: &Block) {
         let packages = workspace["packages"].as_array().unwrap();
         let package = packages.iter().find(|package| package["name"] == dependency["name"]);
         let package = package.unwrap_or_else(|| block.fail(&format!("no package {}", dependency["name"])));
+        if let Some(path) = dependency["path"].as_str() {
+            // A checkout of the repository beside the crate.
+            let inner = Path::new(path).strip_prefix(&checkout).unwrap();
+            let manifest = root().join(inner).join("Cargo.toml");
+            assert_eq!(Path::new(package["manifest_path"].as_str().unwrap()), manifest, "{dependency}");
+            continue;
+        }
         let requirement = dependency["req"].as_str().unwrap().trim_start_matches('^');
         assert!(package["version"].as_str().unwrap().starts_with(&format!("{requirement}.")), "{dependency}");
         for feature in dependency["features"].as_array().unwrap() {
@@ -30,7 +41,7 @@ pub(super) fn is_a_cargo_manifest(block: &Block) {
     }
 }
 
-fn metadata(folder: &std::path::Path) -> Value {
+fn metadata(folder: &Path) -> Value {
     let arguments = ["metadata", "--no-deps", "--offline", "--format-version", "1"];
     let output = Command::new(env!("CARGO")).args(arguments).current_dir(folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

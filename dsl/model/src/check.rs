@@ -4,11 +4,14 @@
 mod capabilities;
 mod causes;
 mod choices;
+mod command_line;
 mod extra_words;
+mod merged;
 mod option_minimums;
 mod payload;
 mod suggestion;
 mod unused;
+mod warnings;
 
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::KeepDefault;
@@ -37,8 +40,8 @@ pub fn check(draft: &Draft, registry: &Registry) -> Result<Variant, Diagnostics>
         let given = description_values(&attributes, criterion, keep);
         capabilities::check(draft, &choices, given, registry, &mut diagnostics);
     }
-    let mut warnings = unused::warnings(draft, &choices);
-    warnings.extend(draft.file_warnings.clone());
+    let diagnostics = command_line::fixes(draft, registry, diagnostics);
+    let warnings = warnings::warnings(draft, &choices);
     let variant = Variant::new(Description {
         name: draft.name.clone(),
         technique: technique.map(|technique| technique.key.clone()),

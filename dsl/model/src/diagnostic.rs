@@ -90,6 +90,13 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+/// Returns a number with its noun in the singular or the plural: `1 word`, `2 words`. The plural of `noun` ends in `s`.
+pub fn counted(number: impl fmt::Display, noun: &str) -> String {
+    let number = number.to_string();
+    let ending = if number == "1" { "" } else { "s" };
+    format!("{number} {noun}{ending}")
+}
+
 /// The errors that a stage found. [`Diagnostics::into_result`] sorts them by their position.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics(Vec<Diagnostic>);
@@ -228,6 +235,7 @@ codes! {
         UNUSED_UNIFORM "unused-uniform" "No closure reads the uniform.";
         UNUSED_FUNCTION "unused-function" "No closure calls the function.";
         UNUSED_VARIABLE "unused-variable" "No expression reads the variable.";
+        SWAPPED_ARGUMENTS "swapped-arguments" "The bounds of a call or of a range are in the wrong order, so its result does not depend on its input.";
         UNUSED_EFFECT "unused-effect" "No pass of the user file computes the effect, so nothing is drawn.";
         MISSING_CLEAR "missing-clear" "A pass reads words of a buffer that no earlier pass writes and no `clear` sets.";
     }

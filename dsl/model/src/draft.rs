@@ -28,6 +28,10 @@ pub struct Draft {
     pub helpers: Vec<UserFunction>,
     /// Names that no closure uses, in the order of the source.
     pub unused: Vec<Spanned<Unused>>,
+    /// The span of the closure of the effect, which `resolve` lacks if it has errors.
+    pub effect: Option<Spanned<()>>,
+    /// Calls in closures that are valid and do not compute what their names say.
+    pub suspicious: Vec<Spanned<Suspicious>>,
     /// Warnings about the user files that the draft names.
     pub file_warnings: Diagnostics,
     /// The parts that the source has and the draft lacks, because they have errors.
@@ -95,6 +99,15 @@ pub enum Unused {
     Variable(String),
 }
 
+/// A call that is valid and does not compute what its names say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suspicious {
+    /// What it computes.
+    pub message: String,
+    /// A fix.
+    pub help: String,
+}
+
 impl Draft {
     /// Creates a draft that has only a name.
     pub fn empty(name: Spanned<String>) -> Self {
@@ -109,6 +122,8 @@ impl Draft {
             resolve: None,
             helpers: Vec::new(),
             unused: Vec::new(),
+            effect: None,
+            suspicious: Vec::new(),
             file_warnings: Diagnostics::new(),
             incomplete: Incomplete::default(),
         }

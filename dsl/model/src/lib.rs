@@ -15,13 +15,14 @@ mod user_row;
 mod variant;
 
 pub use check::{MAX_K, check};
-pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes};
+pub use diagnostic::{Code, Diagnostic, Diagnostics, Label, Severity, codes, counted};
 pub use draft::{
-    Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Uniform,
-    UniformType, Unused, UserFunction,
+    Alternative, Attribute, Choice, Draft, Format, Incomplete, Keep, KeepCount, OptionValue, Reads, Suspicious,
+    Uniform, UniformType, Unused, UserFunction,
 };
 pub use names::mangled;
 pub use nearest_name::nearest_name;
+pub use set::SET;
 pub use span::{SourceSpan, Spanned};
 pub use uniform_block::UniformBlock;
 pub use user_row::{RowSpans, UserRow};

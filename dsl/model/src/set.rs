@@ -5,6 +5,9 @@ use crate::{
     codes, nearest_name,
 };
 
+/// The source name of changes from outside in messages: the option of the command line.
+pub const SET: &str = "--set";
+
 /// Names that users give to k.
 const NAMES_OF_K: [&str; 5] = ["keep", "K", "kept", "entries", "count"];
 

@@ -12,6 +12,7 @@ use crate::lower;
 use crate::raw_function::{RawFunction, Role};
 use crate::reads;
 use crate::report::Report;
+use crate::suspicious;
 use crate::tree::Function;
 use crate::types::Type;
 
@@ -19,7 +20,10 @@ use crate::types::Type;
 pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let RawDescription { name, preset, items } = description;
     let environment = environment(&items, report);
-    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, mut incomplete, .. } = items;
+    let Items { attributes, uniforms, keep, choices, functions, invalid_attributes, effect, mut incomplete, .. } =
+        items;
+    let of_effect =
+        functions.iter().find(|function| function.role == Role::Resolve).map(|function| function.span.clone());
     // An attribute of unknown format provides unknown capabilities.
     incomplete.attributes |= !invalid_attributes.is_empty();
     let checked: Vec<(Role, Option<Function>)> =
@@ -30,9 +34,11 @@ pub(crate) fn build(description: RawDescription, report: &mut Report) -> Draft {
     let mut draft = Draft { preset, attributes, uniforms, keep, choices, ..Draft::empty(name) };
     incomplete.resolve |= checked.iter().any(|(role, function)| *role == Role::Resolve && function.is_none());
     draft.incomplete = incomplete;
+    draft.effect = of_effect.or(effect).map(|span| Spanned::new((), span));
     draft.unused = unused(&checked, &environment, &helpers);
     for (role, function) in &checked {
         let Some(function) = function else { continue };
+        draft.suspicious.extend(suspicious::of(function, &helpers));
         let lowered = lower::function(function, &environment.helpers);
         let user = UserFunction {
             name: function.name.clone(),

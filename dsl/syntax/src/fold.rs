@@ -266,15 +266,36 @@ impl<'a> Folding<'a> {
 
     fn clamp(&mut self, spelling: Spelling, values: &[Option<Value>], expr: &Expr) {
         let [_, Some(low), Some(high)] = values else { return };
-        let crossed = match (low, high) {
-            (Value::Float(low), Value::Float(high)) => low.iter().zip(high).any(|(low, high)| low > high),
-            (Value::U32(low), Value::U32(high)) => low > high,
-            (Value::I32(low), Value::I32(high)) => low > high,
-            _ => false,
-        };
-        if spelling == Spelling::Call("clamp") && crossed {
-            self.reject(expr, "the lower bound is above the upper one", "write `clamp(lower, upper)`");
+        if spelling == Spelling::Call("clamp") && is_above(low, high) {
+            let help = match (shown(low), shown(high)) {
+                (Some(low), Some(high)) => format!("swap them: `clamp({high}, {low})`"),
+                _ => "write `clamp(lower, upper)`".to_owned(),
+            };
+            self.reject(expr, "the lower bound is above the upper one", &help);
         }
+    }
+}
+
+/// Returns a number as a literal; `None`: it is a vector or a `bool`.
+pub(crate) fn shown(value: &Value) -> Option<String> {
+    match value {
+        Value::Float(parts) => match parts.as_slice() {
+            [number] => Some(format!("{number:?}")),
+            _ => None,
+        },
+        Value::U32(number) => Some(number.to_string()),
+        Value::I32(number) => Some(number.to_string()),
+        Value::Bool(_) => None,
+    }
+}
+
+/// Tests whether a number, or a component of a vector, is above that of another.
+pub(crate) fn is_above(low: &Value, high: &Value) -> bool {
+    match (low, high) {
+        (Value::Float(low), Value::Float(high)) => low.iter().zip(high).any(|(low, high)| low > high),
+        (Value::U32(low), Value::U32(high)) => low > high,
+        (Value::I32(low), Value::I32(high)) => low > high,
+        _ => false,
     }
 }
 

@@ -140,6 +140,13 @@ pub(crate) fn help(name: &str, given: &[Given]) -> Option<String> {
             return Some(format!("write `{}.log2()`", receiver_source(x)));
         }
         ("log", [x, base]) => return Some(format!("write `({}.ln() / {}.ln())`", receiver_source(x), floating(base))),
+        // `lerp` of vectors takes a number.
+        ("mix" | "lerp", [a, b, t]) if a.size().is_some() && a.size() == b.size() && t.size().is_none() => {
+            return Some(method("lerp", given));
+        }
+        ("extend", [first, second]) if first.size().is_none() && second.size().is_none() => {
+            return Some(format!("write `vec2({}, {})`", first.as_float().source, second.as_float().source));
+        }
         ("max" | "min", [only]) if only.size().is_some() => {
             return Some(format!("it is a method: write `{}.{name}_element()`", only.source));
         }

@@ -34,6 +34,8 @@ pub(crate) struct Items {
     pub function_tokens: Vec<FunctionTokens>,
     /// The names of constants, which are errors: their uses are not reported.
     pub constants: Vec<String>,
+    /// The span of the closure of the effect, which `functions` lacks if it has errors.
+    pub effect: Option<SourceSpan>,
     /// The parts with errors that are not in this list.
     pub incomplete: Incomplete,
     fragment_block: Option<SourceSpan>,

@@ -36,6 +36,7 @@ mod reads;
 mod reference;
 mod report;
 mod row;
+mod suspicious;
 mod token_limits;
 mod tree;
 mod types;

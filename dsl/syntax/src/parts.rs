@@ -126,6 +126,7 @@ impl Assembly {
                 self.items.functions.push(closure(tokens, role, report)?);
             }
             Part::Resolve(_, span) => {
+                self.items.effect.get_or_insert(span.clone());
                 let function = closure(tokens, Role::Resolve, report)?;
                 self.items.add_resolve(function, span, report);
             }

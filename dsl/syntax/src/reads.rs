@@ -95,7 +95,7 @@ fn recursion(cycle: &[usize], span: &SourceSpan, helpers: &[Option<&Function>]) 
         2..=NAMED => format!("{first} calls itself: {}", names.join(" calls ")),
         count => format!("{first} calls itself through {} others", count - 1),
     };
-    let help = "shaders have no recursion: write a loop, `for _ in 0..N { … }`";
+    let help = "shaders have no recursion: write a loop, `for _ in 0..64 { … }`";
     let mut diagnostic = Diagnostic::new(codes::RECURSION, span, message, help);
     for function in functions.into_iter().skip(1).take(NAMED) {
         diagnostic = diagnostic.label(&function.span, format!("`{}` is part of the cycle", name(function)));

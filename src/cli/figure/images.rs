@@ -193,7 +193,7 @@ fn sheet(
 /// Returns the number of different pixels in words.
 fn differing(image: &Rendered) -> String {
     let (count, all) = (image.difference.count, image.pixels.len());
-    format!("{count} of {all} pixels differ")
+    format!("{count} of {all} pixels {}", if count == 1 { "differs" } else { "differ" })
 }
 
 fn finding(claim: &ImageClaim, rendered: &[(Variant, Result<Rendered, String>)]) -> Finding {

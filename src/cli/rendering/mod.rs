@@ -27,7 +27,7 @@ pub(crate) use selection::select_for_figure;
 pub(crate) use selection::{DeviceSelection, select};
 
 use fragbuf::vocabulary::Capability;
-use fragbuf::{Registry, Variant};
+use fragbuf::{Form, Registry, Request, TARGETS, Target, Variant, generate};
 
 use self::opaque::{OpaqueScene, blend_over, occlusion_choice};
 use self::precision::{UNROUNDED, needs_unrounded_colors};
@@ -174,11 +174,24 @@ fn defaults<'a>(
     defaults.extend(count_all_choice(registry).filter(|_| request.count_all));
     defaults.extend(unrounded.then_some(UNROUNDED));
     defaults.extend(request.opaque.and_then(|_| occlusion_choice(registry)));
-    // Some storages have slots that hold no more than the papers' payload. They round as the papers do.
-    if unrounded && input.variant_with_defaults(request.set, &defaults, registry).is_err() {
+    // Some storages have slots that hold no more than the papers' payload, and some user files read the word of the colour. They round
+    // as the papers do.
+    let is_valid = |variant: Variant| fits_user_files(&variant, registry);
+    if unrounded && !input.variant_with_defaults(request.set, &defaults, registry).is_ok_and(is_valid) {
         defaults.retain(|set| *set != UNROUNDED);
     }
     defaults
+}
+
+/// Tests whether the WGSL of user files is valid with the payload of a variant.
+fn fits_user_files(variant: &Variant, registry: &Registry) -> bool {
+    let rows = variant.choices.iter().flat_map(|chosen| &chosen.alternatives).map(|selected| &selected.row);
+    if !rows.flat_map(|row| &row.template).any(|template| template.user_file.is_some()) {
+        return true;
+    }
+    let targets: Vec<&'static Target> = TARGETS.iter().collect();
+    let request = Request { targets: &targets, form: Form::Program, prefix: "", group: 0 };
+    generate(variant, &request, registry).is_ok()
 }
 
 /// Returns the choice that counts every event.

@@ -3,7 +3,7 @@
 //! Input: a scene view. Output: its description, and the texture names that connect it to the description rendered after it.
 //! Its depth buffer hides transparent fragments behind it; its image is their background.
 
-use fragbuf::vocabulary::{Capability, Init, Technique};
+use fragbuf::vocabulary::{Capability, Init, Row, Technique};
 use fragbuf::{Plan, Registry, Variant};
 
 use super::precision::{UNROUNDED, needs_unrounded_colors};
@@ -61,11 +61,21 @@ pub(super) fn external_textures(plan: &Plan, opaque: Option<&OpaqueScene<'_>>) -
     let external = plan.resources.iter().filter(|planned| planned.is_external());
     let names: Vec<String> = external.map(|planned| planned.resource.name.clone()).collect();
     match names.first().filter(|_| opaque.is_none()) {
-        Some(name) => Err(Failure::Usage(format!(
-            "the description reads the external texture `{name}`, which `--opaque SCENE` renders"
-        ))),
+        Some(name) => Err(Failure::Usage(missing_scene(plan, name))),
         None => Ok(names),
     }
+}
+
+/// Returns the message about a texture that only an opaque scene gives: the choice that reads it, and the value that reads none.
+fn missing_scene(plan: &Plan, texture: &str) -> String {
+    let reads = |row: &&Row| row.resources.iter().any(|resource| resource.name == texture);
+    let row = plan.selection.rows.iter().map(|selected| &*selected.row).find(reads);
+    let what = row.map_or("the description".to_owned(), |row| format!("`{}: {}`", row.axis, row.key));
+    let default = row.and_then(|row| Registry::builtin().axis(&row.axis)?.default.map(|key| (row.axis.clone(), key)));
+    let other = default.map_or(String::new(), |(axis, key)| format!(", or choose `--set {axis}={key}`"));
+    format!(
+        "{what} reads the external texture `{texture}`, which an opaque scene gives: add `--opaque SCENE`, as `--opaque builtin:cubes`{other}"
+    )
 }
 
 /// Blends premultiplied colours over a background.

@@ -3,6 +3,7 @@
 use fragbuf::Plan;
 use fragbuf::vocabulary::Capability;
 use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime, Value};
+use fragbuf_model::counted;
 use fragbuf_scene::Scene;
 
 use crate::cli::output::warn;
@@ -46,7 +47,8 @@ impl FrameStats {
     fn unfinished_loops(&self) -> impl Iterator<Item = String> {
         let unfinished = self.loops.iter().filter(|report| report.end == LoopEnd::LimitReached);
         unfinished.map(|LoopReport { until, iterations, .. }| {
-            format!("the loop until {until} stopped at its limit of {iterations} iterations: the image is incomplete")
+            let limit = counted(*iterations, "iteration");
+            format!("the loop until {until} stopped at its limit of {limit}: the image is incomplete")
         })
     }
 }
@@ -85,18 +87,18 @@ impl RenderResult {
         self.stats.unfinished_loops().for_each(|text| warn(&text));
         for counter in self.stats.counters.iter().flat_map(|counters| &counters.0).filter(|counter| counter.count > 0) {
             if counter.is_loss() {
-                warn(&format!("{} fragments lost: {}", counter.count, counter.name));
+                warn(&format!("{} lost: {}", counted(counter.count, "fragment"), counter.name));
             }
             if counter.name == OUT_OF_ORDER {
                 warn(&format!(
-                    "{} fragments arrived after farther ones had been composited; draw from front to back, or keep more",
-                    counter.count
+                    "{} arrived after farther ones had been composited; draw from front to back, or keep more",
+                    counted(counter.count, "fragment")
                 ));
             }
             if counter.name == PARTIAL_COVERAGE {
                 warn(&format!(
-                    "{} fragments cover their pixel in part: at edges of triangles, pixels may show other fragments than the first",
-                    counter.count
+                    "{} cover only a part of the pixel: at edges of triangles, pixels may show other fragments than the first",
+                    counted(counter.count, "fragment")
                 ));
             }
         }

@@ -22,7 +22,9 @@ enum Tolerance {
 /// The length of a runtime-sized buffer in words.
 const LENGTH: usize = 4096;
 
-const CORPUS: [(&str, &str, Tolerance, [u32; 3]); 7] = [
+const CONTROL_FLOW: &str = include_str!("corpus/control_flow.wgsl");
+
+const CORPUS: [(&str, &str, Tolerance, [u32; 3]); 8] = [
     ("whole_numbers", include_str!("corpus/whole_numbers.wgsl"), Tolerance::Exact, [1, 1, 1]),
     ("floats", include_str!("corpus/floats.wgsl"), Tolerance::Exact, [1, 1, 1]),
     (
@@ -32,6 +34,7 @@ const CORPUS: [(&str, &str, Tolerance, [u32; 3]); 7] = [
         [1, 1, 1],
     ),
     ("memory", include_str!("corpus/memory.wgsl"), Tolerance::Exact, [1, 1, 1]),
+    ("control_flow", CONTROL_FLOW, Tolerance::Exact, [1, 1, 1]),
     ("atomics", include_str!("corpus/atomics.wgsl"), Tolerance::Exact, [1, 1, 1]),
     ("workgroups", include_str!("corpus/workgroups.wgsl"), Tolerance::Exact, [2, 3, 1]),
     ("wide_numbers", include_str!("corpus/wide_numbers.wgsl"), Tolerance::Exact, [1, 1, 1]),
@@ -114,6 +117,33 @@ fn lanes_leave_the_same_words() {
             assert_eq!(different, None, "{name}: the first different word of {}", buffer.name);
         }
     }
+}
+
+/// GLSL on OpenGL leaves the words of the interpreter, too. The first values are computed by hand.
+#[test]
+fn printed_control_flow_leaves_the_same_words() {
+    let (program, ours) = interpreted(CONTROL_FLOW, [1, 1, 1]);
+    let of = |name: &str| program.buffers.iter().position(|buffer| buffer.name == name).unwrap();
+    let expected = &ours[of("results")][..20];
+    let (module, info) = device::parsed(CONTROL_FLOW);
+    let options = fragbuf_glsl::Options {
+        dialect: fragbuf_glsl::Dialect::OpenGl450,
+        header: "",
+        markers: &[],
+        bindings: &|_, binding| fragbuf_glsl::Slot { set: 0, binding },
+        plain_loads: &[],
+        plain_functions: &[],
+        written_first: &[],
+        zero_workgroup_memory: false,
+    };
+    let unit = fragbuf_glsl::Unit::EntryPoint("main");
+    let glsl = fragbuf_glsl::print(&module, &info, CONTROL_FLOW, unit, &options).unwrap();
+    let context = fragbuf_opengl_host::Context::surfaceless()
+        .unwrap_or_else(|error| panic!("{error}; install Debian's packages libegl1 and libgl1-mesa-dri"));
+    let found = context.compute(&glsl, &initial(&program)[of("words")], expected.len(), 1).unwrap();
+    assert_eq!(found, expected, "{glsl}");
+    let by_hand = [415_099, 13, 14_966, 9016, 9, 3263, 5678, 810, 696, 2242, 41, 4, 5207];
+    assert_eq!(expected[..by_hand.len()], by_hand);
 }
 
 fn agree(ours: u32, theirs: u32, tolerance: Tolerance) -> bool {

@@ -4,7 +4,7 @@
 //! module compiles nothing.
 
 use fragbuf_codegen::{EntryPoint, Linking, Plan, Profile, Program, Stage};
-use fragbuf_targets::{Generation, target};
+use fragbuf_targets::{Generation, TARGETS, target};
 use fragbuf_templates::vocabulary::{Access, Feature};
 
 use crate::samples::sample_count;
@@ -66,10 +66,14 @@ impl Shaders {
     pub fn from_generation(generation: &Generation, target_name: &str, group: u32) -> Result<Self, Error> {
         let not_generated = || {
             let missing = generation.unsupported.iter().find(|(target, _)| target.name == target_name);
-            let reason = missing.map_or("it was not requested".to_owned(), |(_, missing)| missing.to_string());
-            Error::Unsupported {
-                what: format!("target `{target_name}` of this generation"),
-                help: format!("{reason}; {}", runnable(generation)),
+            let what = format!("target `{target_name}` of this generation");
+            match missing {
+                // The form of the generation lacks it: no other target has it.
+                Some((_, missing)) if !has_target_with(missing.feature) => {
+                    Error::Unsupported { what, help: missing.to_string() }
+                }
+                Some((_, missing)) => Error::Unsupported { what, help: format!("{missing}; {}", runnable(generation)) },
+                None => Error::Unsupported { what, help: format!("it was not requested; {}", runnable(generation)) },
             }
         };
         let planned = generation.plans.iter().find(|planned| planned.targets.iter().any(|t| t.name == target_name));
@@ -161,6 +165,11 @@ fn stage_of(name: &str) -> Option<Stage> {
         "compute" => Some(Stage::Compute),
         _ => None,
     }
+}
+
+/// Whether a target has a feature by itself.
+fn has_target_with(feature: Feature) -> bool {
+    TARGETS.iter().any(|target| target.provides.contains(&feature))
 }
 
 /// Returns which targets of a generation the runtime can run.

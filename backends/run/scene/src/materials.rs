@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::error::FileError;
 use crate::limits::Budget;
-use crate::text::{lines, number, quoted, without_comment};
+use crate::text::{counted, lines, number, quoted, without_comment};
 use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// A material.
@@ -180,11 +180,12 @@ impl Values<'_> {
     fn numbers<const N: usize>(self) -> Result<[f32; N], FileError> {
         let found = self.words.split_whitespace().count();
         if found < N {
-            return Err(FileError::line(self.line, format!("expected {N} numbers, found {found}")));
+            return Err(FileError::line(self.line, format!("expected {}, found {found}", counted(N, "number"))));
         }
         if found > N {
             let text = || format!("{} has {found} values, and takes {N}", quoted(self.keyword));
-            let message = || Message::new(text(), format!("the first {N} are used"));
+            let used = if N == 1 { "the first is used".to_owned() } else { format!("the first {N} are used") };
+            let message = || Message::new(text(), used);
             self.warnings.line(WarningKind::OutOfRange, self.keyword, self.line, message);
         }
         let mut values = [0.0; N];

@@ -225,7 +225,8 @@ impl<'a> Reader<'a> {
     fn face(&mut self, words: &str, line: usize) -> Result<(), FileError> {
         let count = words.split_whitespace().count();
         if count < 3 {
-            let text = || format!("a face with {count} vertices, which needs 3 or more");
+            let noun = if count == 1 { "vertex" } else { "vertices" };
+            let text = || format!("a face with {count} {noun}, which needs 3 or more");
             let message = || Message::new(text(), "it is skipped");
             self.warnings.line(WarningKind::DegenerateFace, "", line, message);
             return Ok(());

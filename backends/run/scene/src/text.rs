@@ -141,6 +141,13 @@ pub(crate) fn number(word: &str, line: usize) -> Result<f64, FileError> {
     }
 }
 
+/// Returns a number with its noun in the singular or the plural: `1 line`, `2 lines`. The plural of `noun` ends in `s`.
+pub(crate) fn counted(number: impl std::fmt::Display, noun: &str) -> String {
+    let number = number.to_string();
+    let ending = if number == "1" { "" } else { "s" };
+    format!("{number} {noun}{ending}")
+}
+
 /// Parses all words as finite numbers, at most `N`; `counts` are the allowed numbers of words. Returns the numbers, padded with
 /// 0, and their count.
 pub(crate) fn numbers<const N: usize>(
@@ -151,7 +158,8 @@ pub(crate) fn numbers<const N: usize>(
     let found = words.split_whitespace().count();
     if !counts.contains(&found) {
         let expected: Vec<String> = counts.iter().map(usize::to_string).collect();
-        return Err(FileError::line(line, format!("expected {} numbers, found {found}", expected.join(" or "))));
+        let noun = if counts == [1] { "number" } else { "numbers" };
+        return Err(FileError::line(line, format!("expected {} {noun}, found {found}", expected.join(" or "))));
     }
     let mut values = [0.0; N];
     for (value, word) in values.iter_mut().zip(words.split_whitespace()) {

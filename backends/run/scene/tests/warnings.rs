@@ -458,11 +458,33 @@ fn a_line_of_a_ply_file_without_all_values_of_a_vertex_is_reported() {
     clean(&[("a.ply", &model("0 0 0\n1 0 0\n\n0 1 0\n"))]);
     // The second vertex has four values, and the third two.
     let (scene, warnings) = loaded(&[("a.ply", &model("0 0 0\n1 0 0 0\n1 0\n"))]);
-    let expected = "a.ply:11: a line does not have the 3 values of a vertex: values are read across lines";
+    let expected = "a.ply:11: a line has 4 values, and a vertex has 3: `x`, `y`, `z`: values are read across lines";
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains(expected), "{warnings:?}");
     assert_eq!(scene.objects[0].positions.len(), 3);
     // All on one line.
     let (_, warnings) = loaded(&[("a.ply", &model("0 0 0 1 0 0 0 1 0\n"))]);
-    assert!(warnings.len() == 1 && warnings[0].contains("a.ply:10: "), "{warnings:?}");
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("a.ply:10: a line has 9 values, and a vertex has 3"),
+        "{warnings:?}"
+    );
+    // More properties are declared than the lines have values: the error is about the line, not about what follows from it.
+    let declared =
+        |vertices: &str| model(vertices).replace("property float z\n", "property float z\nproperty float heat\n");
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.ply");
+    for (vertices, found) in [
+        (
+            "0 0 0\n1 0 0\n0 1 0\n",
+            "11: a line has 3 values, and a vertex has 4: `x`, `y`, `z`, `heat`: values are read across lines, and line 14: ",
+        ),
+        (
+            "0 0 0 1\n1 0 0\n0 1 0 1\n",
+            "12: the model has no triangles: a line has 3 values, and a vertex has 4: `x`, `y`, `z`, `heat`",
+        ),
+    ] {
+        std::fs::write(&path, declared(vertices)).unwrap();
+        let error = load(&path, COLOR, &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains(&format!("a.ply:{found}")), "{error}");
+    }
 }

@@ -9,6 +9,7 @@ use std::ops::Range;
 use fragbuf_codegen::FIRST_BINDING;
 use fragbuf_frame::COUNTERS_RESOURCE;
 use fragbuf_interpreter::Exit;
+use fragbuf_model::counted;
 use fragbuf_templates::COUNTERS;
 
 use crate::case_setup::CaseSetup;
@@ -80,7 +81,8 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         if let (Some(requested), Some(stored)) = (frame.requested, setup.stored_in(&frame))
             && requested != stored
         {
-            let text = format!("the host step allocates {requested} fragments, but {stored} are stored");
+            let text =
+                format!("the host step allocates {}, and {stored} would be needed", counted(requested, "fragment"));
             return Ok(StateVerdict::Wrong(text));
         }
         let kept = frame.read_out(setup.case.pixel)?;
@@ -136,7 +138,8 @@ impl<'c, 's> FinalStateProperty<'c, 's> {
         let is_possible =
             self.emitted.as_ref().and_then(|all| all.get(dropped)).is_some_and(|known| known.iter().any(matches));
         Ok((!is_possible).then(|| {
-            format!("no arrival order gives {out_of_order} fragments out of order and the emitted colour {color:08x?}")
+            let fragments = counted(out_of_order, "fragment");
+            format!("no arrival order gives {fragments} out of order and the emitted colour {color:08x?}")
         }))
     }
 }

@@ -6,6 +6,7 @@
 
 use std::ops::RangeInclusive;
 
+use fragbuf_model::counted;
 use fragbuf_templates::vocabulary::{Equivalence, Permits, Tearing};
 use fragbuf_templates::{COUNTERS, CounterKind};
 
@@ -91,13 +92,13 @@ impl Specification {
     fn forbidden_drop(&self, counts: Counts, permits: &Permits) -> Option<String> {
         let generated = self.fragments.len() as u32 + self.neighbours;
         if self.counts_events && counts.generated != generated {
-            return Some(format!("{} fragments are counted as generated, expected {generated}", counts.generated));
+            return Some(format!("{} counted as generated, expected {generated}", fragments_are(counts.generated)));
         }
         if self.counts_events && counts.occluded != self.occluded || counts.occluded > self.occluded {
-            return Some(format!("{} fragments are counted as occluded, expected {}", counts.occluded, self.occluded));
+            return Some(format!("{} counted as occluded, expected {}", fragments_are(counts.occluded), self.occluded));
         }
         if counts.timed_out > 0 && !self.may_time_out && !permits.times_out {
-            return Some(format!("{} fragments timed out, expected none", counts.timed_out));
+            return Some(format!("{} timed out, expected none", counted(counts.timed_out, "fragment")));
         }
         // A fragment that timed out has not allocated.
         let (mut least, mut most) = (self.overflows.start().saturating_sub(counts.timed_out), *self.overflows.end());
@@ -107,7 +108,7 @@ impl Specification {
         }
         if !(least..=most).contains(&counts.overflowed) {
             let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
-            return Some(format!("{} fragments did not fit, expected {expected}", counts.overflowed));
+            return Some(format!("{} did not fit, expected {expected}", counted(counts.overflowed, "fragment")));
         }
         let is_too_many = counts.dropped() > self.fragments.len() && !self.keeps_later;
         is_too_many.then(|| "more fragments are counted as lost than there are".to_owned())
@@ -209,7 +210,7 @@ impl Specification {
             kept.iter().filter(|entry| times(&kept, entry) > times(&self.fragments, entry).max(1)).collect();
         let mut text = match dropped {
             0 => String::from("wrong final state:"),
-            _ => format!("wrong final state ({dropped} fragments timed out or did not fit):"),
+            _ => format!("wrong final state ({} timed out or did not fit):", counted(dropped, "fragment")),
         };
         let mut append = |what: &str, entries: &[&Vec<u32>]| {
             if !entries.is_empty() {
@@ -380,4 +381,9 @@ fn listed(entries: &[&Vec<u32>]) -> String {
         format!("({})", words.join(" "))
     };
     if entries.is_empty() { "nothing".to_owned() } else { entries.iter().map(entry).collect::<Vec<_>>().join(" ") }
+}
+
+/// Returns a number of fragments with its verb.
+fn fragments_are(count: u32) -> String {
+    format!("{} {}", counted(count, "fragment"), if count == 1 { "is" } else { "are" })
 }

@@ -3,7 +3,7 @@
 //! Input: a variant, a target, the limits of the check. Output: a [`Report`]. The first failure that the declared hazards do
 //! not permit ends the check.
 
-use fragbuf_model::{Diagnostics, Selection, Variant};
+use fragbuf_model::{Diagnostics, Selection, Variant, counted};
 use fragbuf_targets::Target;
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::{Capability, Kind};
@@ -183,8 +183,8 @@ fn check_all(
     progress: &mut dyn FnMut(&str),
 ) -> Result<(), String> {
     let mut frame = Frame::new(subject, ample_values(subject)?)?;
-    let candidates =
-        Candidates::new(subject, &mut frame.memory)?.map_err(|found| format!("only {found} fragments are admitted"))?;
+    let candidates = Candidates::new(subject, &mut frame.memory)?
+        .map_err(|found| format!("no more than {} can be admitted", counted(found, "fragment")))?;
     let options = SearchOptions {
         model: limits.model,
         random_schedules: limits.random_schedules,

@@ -19,23 +19,38 @@ pub(super) fn check(
 ) {
     let context = Context { draft, choices, given, registry };
     for combination in combinations(choices) {
-        let rules = Rules::new(&combination, given);
-        for (index, row) in combination.iter().enumerate() {
-            if !rules.matches_keep(row) {
-                diagnostics.push(context.keep_mismatch(index, &combination));
+        let violations = Rules::new(&combination, given).violations();
+        let found = violations.iter().map(|violation| context.diagnostic(violation, &combination));
+        match violations.as_slice() {
+            // One other choice resolves all of them: they have one cause.
+            [first, _, ..] if context.fixes(first.index(), &combination).is_some() => {
+                diagnostics.push(context.merged(found.collect(), &violations, &combination));
             }
-            for capability in rules.missing(row) {
-                diagnostics.push(context.missing(index, capability, &combination));
-            }
-            for condition in rules.unmet(row) {
-                diagnostics.push(context.unmet(index, condition, &combination));
-            }
+            _ => found.for_each(|diagnostic| diagnostics.push(diagnostic)),
+        }
+    }
+}
+
+/// A rule that a row of a combination breaks; the number is the index of the row.
+pub(super) enum Violation<'r> {
+    /// The row does not keep what the description keeps.
+    Keep(usize),
+    /// No row provides a capability.
+    Missing(usize, Capability),
+    /// The description does not meet a condition.
+    Unmet(usize, &'r Condition),
+}
+
+impl Violation<'_> {
+    pub(super) fn index(&self) -> usize {
+        match self {
+            Violation::Keep(index) | Violation::Missing(index, _) | Violation::Unmet(index, _) => *index,
         }
     }
 }
 
 /// One row per axis, in the order of the choices.
-type Combination<'a> = Vec<&'a Row>;
+pub(super) type Combination<'a> = Vec<&'a Row>;
 
 /// Returns every combination of one alternative per axis.
 fn combinations(choices: &[AxisChoice]) -> Vec<Combination<'_>> {
@@ -52,13 +67,13 @@ fn combinations(choices: &[AxisChoice]) -> Vec<Combination<'_>> {
 }
 
 /// The rules, applied to one combination.
-struct Rules<'p> {
+pub(super) struct Rules<'p> {
     combination: &'p [&'p Row],
     given: DescriptionValues,
 }
 
 impl<'p> Rules<'p> {
-    fn new(combination: &'p [&'p Row], given: DescriptionValues) -> Self {
+    pub(super) fn new(combination: &'p [&'p Row], given: DescriptionValues) -> Self {
         Rules { combination, given: with_extra_words(given, combination.iter().copied()) }
     }
 
@@ -89,6 +104,17 @@ impl<'p> Rules<'p> {
         }
     }
 
+    /// Returns every rule that is broken, in the order of the rows.
+    pub(super) fn violations(&self) -> Vec<Violation<'p>> {
+        let mut violations = Vec::new();
+        for (index, row) in self.combination.iter().enumerate() {
+            violations.extend((!self.matches_keep(row)).then_some(Violation::Keep(index)));
+            violations.extend(self.missing(row).map(|capability| Violation::Missing(index, capability)));
+            violations.extend(self.unmet(row).map(|condition| Violation::Unmet(index, condition)));
+        }
+        violations
+    }
+
     fn is_satisfied(&self, row: &Row) -> bool {
         self.missing(row).next().is_none() && self.unmet(row).next().is_none()
     }
@@ -106,14 +132,22 @@ fn has_size_in_k(row: &Row) -> bool {
 const CLOSURE: &str = "resolve |fragments| { vec4(fragments[0].depth, 0.0, 0.0, 1.0) }";
 
 /// The context of the diagnostics.
-struct Context<'a> {
-    draft: &'a Draft,
-    choices: &'a [AxisChoice],
-    given: DescriptionValues,
-    registry: &'a Registry,
+pub(super) struct Context<'a> {
+    pub(super) draft: &'a Draft,
+    pub(super) choices: &'a [AxisChoice],
+    pub(super) given: DescriptionValues,
+    pub(super) registry: &'a Registry,
 }
 
 impl Context<'_> {
+    pub(super) fn diagnostic(&self, violation: &Violation<'_>, combination: &Combination<'_>) -> Diagnostic {
+        match violation {
+            Violation::Keep(index) => self.keep_mismatch(*index, combination),
+            Violation::Missing(index, capability) => self.missing(*index, *capability, combination),
+            Violation::Unmet(index, condition) => self.unmet(*index, condition, combination),
+        }
+    }
+
     fn keep_mismatch(&self, index: usize, combination: &Combination<'_>) -> Diagnostic {
         let chosen = &self.choices[index];
         let keep = self.keep_line().unwrap_or(&chosen.span);
@@ -126,10 +160,15 @@ impl Context<'_> {
                 ("every fragment", format!("keep {k}"), Some(k))
             }
         };
-        // If the other `keep` line causes the next error, the help includes the change that avoids it.
+        // If the other `keep` line causes further errors, the help includes the changes that avoid them.
         let rules = with(other);
         let unsatisfied = combination.iter().find(|row| !rules.is_satisfied(row));
-        let also = unsatisfied.map_or(String::new(), |row| format!(" and another choice than {}", name(row)));
+        let also = unsatisfied.map_or(String::new(), |row| {
+            match self.changes(combination, DescriptionValues { keep: other, ..self.given }) {
+                Some(changes) => changes.iter().map(|change| format!(" and {change}")).collect(),
+                None => format!(" and another choice than {}", name(row)),
+            }
+        });
         let storage = name(combination[index]);
         let others = self.fixes(index, combination).map_or(String::new(), |fixes| format!(", or choose {fixes}"));
         Diagnostic::new(
@@ -191,7 +230,7 @@ impl Context<'_> {
     }
 
     /// Returns whether a span is of an item that the description gives, not of its preset or name.
-    fn is_given(&self, span: &SourceSpan) -> bool {
+    pub(super) fn is_given(&self, span: &SourceSpan) -> bool {
         *span != self.draft.name.span && self.draft.preset.as_ref().is_none_or(|preset| preset.span != *span)
     }
 
@@ -228,7 +267,7 @@ impl Context<'_> {
 
     /// Returns how much of a description another value on an axis changes: 0 a detail of the implementation, 1 the technique, because the
     /// axis has no default, 2 the effect, and thus the image.
-    fn extent_of_change(&self, axis: &str) -> u32 {
+    pub(super) fn extent_of_change(&self, axis: &str) -> u32 {
         let has_default = self.registry.axis(axis).is_some_and(|axis| axis.default.is_some());
         match axis == Registry::CLOSURE_AXIS {
             true => 2,
@@ -266,7 +305,7 @@ impl Context<'_> {
 
     /// Returns the rows that make the combination legal if one of them replaces the row of its axis, those that change the least first.
     /// The error is about the row `at_fault`.
-    fn fixes(&self, at_fault: usize, combination: &Combination<'_>) -> Option<String> {
+    pub(super) fn fixes(&self, at_fault: usize, combination: &Combination<'_>) -> Option<String> {
         let mut fixes = Vec::new();
         let mut indices: Vec<usize> = (0..self.choices.len()).collect();
         indices.sort_by_key(|index| (self.extent_of_change(&self.choices[*index].axis), *index != at_fault));
@@ -291,7 +330,7 @@ impl Context<'_> {
     }
 }
 
-fn name(row: &Row) -> String {
+pub(super) fn name(row: &Row) -> String {
     format!("`{}: {}`", row.axis, value_source(&row.key))
 }
 

@@ -190,8 +190,9 @@ fn default_choice(
         .map(|(_, value)| value.as_ref());
     let value = closure.or(preset).or(suggested).or(axis.default);
     let preset_span = draft.preset.as_ref().map_or(&draft.name.span, |preset| &preset.span);
-    let span = match &draft.resolve {
-        Some(function) if closure.is_some() => &function.span,
+    let span = match (&draft.resolve, &draft.effect) {
+        (Some(function), _) if closure.is_some() => &function.span,
+        (None, Some(effect)) if closure.is_some() => &effect.span,
         _ => preset_span,
     };
     let rows: Option<Vec<&Row>> =
@@ -250,6 +251,7 @@ fn selected_row(
             &value.span,
             format!("the axis `{}` has no value `{}`", axis.value, value.value),
             several_values(&value.value, &known)
+                .or_else(|| value_of_technique(&axis.value, &value.value, registry))
                 .unwrap_or_else(|| suggestion(&value.value, &known, &format!("the values of `{}` are", axis.value))),
         ));
         return None;
@@ -268,6 +270,22 @@ fn several_values(value: &str, known: &[&str]) -> Option<String> {
     let values: Vec<&str> = text.split([',', '|', '/', ' ']).map(str::trim).filter(|part| !part.is_empty()).collect();
     let is_known = values.len() > 1 && values.iter().all(|value| known.contains(value));
     is_known.then(|| format!("alternatives are separated by `else`: `{}`", values.join(" else ")))
+}
+
+/// Returns the help for the key of a technique in place of a value of an axis.
+fn value_of_technique(axis: &str, value: &str, registry: &Registry) -> Option<String> {
+    let technique = registry.technique(value)?;
+    let chosen = technique.choices.iter().find(|(name, _)| *name == axis);
+    Some(match chosen {
+        Some((_, value)) => {
+            let first = value.split(" else ").next().unwrap_or(value);
+            format!("`{}` is a technique: its value on this axis is `{axis}: {first}`", technique.key)
+        }
+        None => format!(
+            "`{0}` is a technique, and no value of an axis: start from it, as `buffer B from {0}`",
+            technique.key
+        ),
+    })
 }
 
 /// Returns the number of an option that the row has; for an attribute, its index.

@@ -3,7 +3,7 @@
 use fragbuf_templates::vocabulary::Formula;
 
 use crate::variant::{AxisChoice, SelectedRow};
-use crate::{Diagnostic, Diagnostics, Draft, SourceSpan, codes};
+use crate::{Diagnostic, Diagnostics, Draft, SourceSpan, codes, counted};
 
 /// Checks every option that the description sets; `k` is the number of fragments that it keeps.
 pub(super) fn check(draft: &Draft, choices: &[AxisChoice], k: u32, diagnostics: &mut Diagnostics) {
@@ -12,11 +12,11 @@ pub(super) fn check(draft: &Draft, choices: &[AxisChoice], k: u32, diagnostics: 
             for (option, least) in &selected.row.least {
                 if let Some(needed) = violated_minimum(selected, option, least, k) {
                     let span = option_span(draft, &chosen.axis, option).unwrap_or(&chosen.span);
-                    let row = &selected.row;
+                    let (row, kept) = (&selected.row, counted(k, "fragment"));
                     diagnostics.push(Diagnostic::new(
                         codes::INVALID_OPTION,
                         span,
-                        format!("`{}: {}` requires `{option}` to be at least {needed} to keep {k} fragments", row.axis, row.key),
+                        format!("`{}: {}` requires `{option}` to be at least {needed} to keep {kept}", row.axis, row.key),
                         format!("write `{option}: {needed}` or more, remove the option to use its default, or keep fewer fragments"),
                     ));
                 }

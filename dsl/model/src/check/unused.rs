@@ -6,7 +6,7 @@
 use fragbuf_templates::vocabulary::ParameterType;
 
 use crate::variant::{AxisChoice, SelectedRow};
-use crate::{Attribute, Diagnostic, Diagnostics, Draft, Spanned, Unused, UserFunction, codes, mangled};
+use crate::{Attribute, Diagnostic, Diagnostics, Draft, Spanned, Unused, UserFunction, codes, counted, mangled};
 
 /// Returns the warnings.
 pub(super) fn warnings(draft: &Draft, choices: &[AxisChoice]) -> Diagnostics {
@@ -64,9 +64,8 @@ fn has_member(source: &str, name: &str) -> bool {
 }
 
 fn unused_attribute(attribute: &Attribute) -> Diagnostic {
-    let (name, words) = (&attribute.name.value, attribute.format.value.words());
-    let plural = if words == 1 { "1 word" } else { &format!("{words} words") };
-    let message = format!("nothing reads the attribute `{name}`, which is {plural} of every fragment");
+    let (name, words) = (&attribute.name.value, counted(attribute.format.value.words(), "word"));
+    let message = format!("nothing reads the attribute `{name}`, which is {words} of every fragment");
     Diagnostic::new(
         codes::UNUSED_ATTRIBUTE,
         &attribute.name.span,

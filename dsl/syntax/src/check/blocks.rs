@@ -9,6 +9,7 @@ use quote::ToTokens;
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
+use super::given::source;
 use super::mismatch::quoted;
 use super::written_types::written_type;
 use crate::tree::{Block, Expr, Kind, Statement, VariableId};
@@ -72,6 +73,13 @@ impl Checker<'_, '_, '_> {
     fn statement(&mut self, statement: &syn::Stmt) -> Option<Statement> {
         match statement {
             syn::Stmt::Local(local) => self.local(local),
+            syn::Stmt::Expr(expr, Some(_)) if decremented(expr).is_some() => {
+                let place = decremented(expr).map_or_else(String::new, source);
+                let message = "invalid Rust syntax: Rust has no operator `--`";
+                let help = format!("write `{place} -= {}`", if place.contains(['.', '[']) { "1.0" } else { "1" });
+                self.report.error(codes::UNEXPECTED_TOKEN, &self.at(expr.span()), message, help);
+                None
+            }
             syn::Stmt::Expr(expr, semi) => {
                 // Rust parses an inner block without `;` as a statement, which must not have a value.
                 let expected = if semi.is_none() { Some(Type::Unit) } else { None };
@@ -181,6 +189,16 @@ impl Checker<'_, '_, '_> {
         self.bind(id);
         id
     }
+}
+
+/// Returns the operand of `--n`, which Rust parses as a double negation.
+fn decremented(expr: &syn::Expr) -> Option<&syn::Expr> {
+    let negated = |expr| match expr {
+        &syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), ref expr, .. }) => Some(&**expr),
+        _ => None,
+    };
+    let operand = negated(negated(expr)?)?;
+    matches!(operand, syn::Expr::Path(_) | syn::Expr::Field(_) | syn::Expr::Index(_)).then_some(operand)
 }
 
 /// The variable of a pattern.

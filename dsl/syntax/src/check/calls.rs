@@ -7,8 +7,9 @@ use fragbuf_model::{Diagnostic, SourceSpan, codes, nearest_name};
 use syn::spanned::Spanned;
 
 use super::checker::Checker;
-use super::given::given;
+use super::given::{given, source_of_generics};
 use super::mismatch::quoted;
+use super::swizzles;
 use super::written_types::segments;
 use crate::foreign_functions::{self, Given};
 use crate::methods::{self, Spelling};
@@ -200,9 +201,13 @@ impl Checker<'_, '_, '_> {
 
     pub(super) fn method_call(&mut self, call: &syn::ExprMethodCall) -> Expr {
         let span = self.at(call.span());
+        if let Some(error) = self.iterator_chain(call) {
+            return error;
+        }
         if let Some(generics) = &call.turbofish {
             let span = self.at(generics.span());
-            return self.unsupported(span, "generics are not supported", "remove `::<…>`");
+            let help = format!("remove `{}`", source_of_generics(generics));
+            return self.unsupported(span, "generics are not supported", help);
         }
         let receiver = self.expr(&call.receiver, None);
         let name = call.method.to_string();
@@ -215,7 +220,7 @@ impl Checker<'_, '_, '_> {
                 }
                 Expr::error(span)
             }
-            Type::Fragments => self.list_method(&name, arguments.len(), span, &name_span),
+            Type::Fragments => self.list_method(call, span, &name_span),
             Type::Unknown(_) => self.unknown_receiver(&receiver, call, span, &name_span),
             ty => self.method((receiver, &call.receiver), ty, &name, &arguments, span, &name_span),
         }
@@ -256,7 +261,9 @@ impl Checker<'_, '_, '_> {
             return;
         }
         let existing: Vec<&str> = methods::names_on(ty).collect();
+        let swizzle = given.first().and_then(|receiver| swizzles::instead(ty, name, &receiver.source));
         let instead = match methods::is_method(name) {
+            _ if swizzle.is_some() => swizzle,
             true => foreign_functions::of_components(name, given).or_else(|| foreign_functions::help(name, given)),
             false => foreign_names::function(name, &in_order_of_functions(name, given)),
         };
@@ -266,34 +273,6 @@ impl Checker<'_, '_, '_> {
             None => unknown_name::help(name, &existing),
         };
         self.report.error(codes::UNKNOWN_METHOD, name_span, format!("no method `{name}` for {of}"), help);
-    }
-
-    fn list_method(&mut self, name: &str, arguments: usize, span: SourceSpan, name_span: &SourceSpan) -> Expr {
-        match name {
-            "len" => {
-                self.require_count(name, 0, arguments, &span);
-                Expr::new(Kind::LayerCount, Type::Usize, span)
-            }
-            "is_empty" => {
-                self.require_count(name, 0, arguments, &span);
-                let count = Expr::new(Kind::LayerCount, Type::Usize, span.clone());
-                let zero = Expr::new(Kind::Integer(0), Type::Usize, span.clone());
-                let kind = Kind::Binary(crate::tree::Operator::Equal, Box::new(count), Box::new(zero));
-                Expr::new(kind, Type::Bool, span)
-            }
-            _ => {
-                let message = format!("no method `{name}` for the list of fragments");
-                let help = match nearest_name(name, &["len", "is_empty"]) {
-                    _ if ["iter", "rev"].contains(&name) => {
-                        "it is only for loops: `for f in fragments.iter().rev() { … }`".to_string()
-                    }
-                    Some(nearest) => format!("did you mean `{nearest}`?"),
-                    None => "use `len()`, `is_empty()`, or iterate with `for f in fragments { … }`".to_string(),
-                };
-                self.report.error(codes::UNKNOWN_METHOD, name_span, message, help);
-                Expr::error(span)
-            }
-        }
     }
 
     /// Reports a method call on a number of unknown type, as Rust does.
@@ -310,6 +289,14 @@ impl Checker<'_, '_, '_> {
         let has_integers = methods::find(Type::U32, &name).is_some();
         let ty =
             if self.inference.is_integer(receiver.ty) && has_integers && !has_float { Type::U32 } else { Type::F32 };
+        if !has_method(ty, &name) {
+            // No type of number has it: `n.extend(1.0)`.
+            let ty = self.inference.resolve_or_default(receiver.ty);
+            let all = [&[given(&call.receiver, ty, false)], arguments.as_slice()].concat();
+            self.unknown_method(ty, &name, &all, name_span);
+            self.ignore(receiver);
+            return Expr::error(span);
+        }
         let message = format!("cannot call method `{name}` on a number of unknown type");
         let help = match self.typed_declaration(receiver, ty) {
             Some(declaration) => format!("give the variable its type: `{declaration}`"),
@@ -325,7 +312,7 @@ impl Checker<'_, '_, '_> {
         Expr::error(span)
     }
 
-    fn require_count(&mut self, name: &str, expected: usize, given: usize, span: &SourceSpan) {
+    pub(super) fn require_count(&mut self, name: &str, expected: usize, given: usize, span: &SourceSpan) {
         if expected != given {
             let (message, help) = argument_count(name, expected, given);
             self.report.error(codes::ARGUMENT_COUNT, span, message, help);

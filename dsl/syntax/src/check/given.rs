@@ -23,6 +23,11 @@ pub(super) fn source(expr: &syn::Expr) -> String {
     if text.chars().count() > LONGEST { "…".to_owned() } else { text }
 }
 
+/// Returns the source of the generic arguments of a call: `::<f32>`.
+pub(super) fn source_of_generics(generics: &syn::AngleBracketedGenericArguments) -> String {
+    token_limits::spaced(&generics.to_token_stream()).replace(' ', "")
+}
+
 /// Returns the source of an expression, in parentheses unless it is a name, a literal or a call.
 pub(super) fn source_of_operand(expr: &syn::Expr) -> String {
     let source = source(expr);

@@ -195,7 +195,7 @@ impl Checker<'_, '_, '_> {
             other => ("loop", self.at(other.span())),
         };
         let message = format!("this `{keyword}` loop has no iteration limit");
-        let help = "write `for _ in 0..N { … }` with a sufficient limit, and `break` when done";
+        let help = "write `for _ in 0..64 { … }` with a sufficient limit, and `break` when done";
         self.report.error(codes::UNBOUNDED_LOOP, &span, message, help);
         Expr::error(span)
     }

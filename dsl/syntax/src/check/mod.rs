@@ -12,6 +12,8 @@ mod declared_names;
 mod expressions;
 mod fields;
 mod given;
+mod iterators;
+mod list_methods;
 mod literal_variables;
 mod literals;
 mod loops;

@@ -4,6 +4,7 @@
 
 use crate::environment::Environment;
 use crate::foreign_names;
+use crate::types::Type;
 
 /// Replaces the swizzles of an expression that are fields by methods. Attributes and uniforms of such a name stay.
 pub(super) fn correct(expr: &mut syn::Expr, environment: &Environment) {
@@ -35,6 +36,24 @@ pub(super) fn correct(expr: &mut syn::Expr, environment: &Environment) {
 /// Whether a name is a swizzle of several components `xyzw`.
 pub(super) fn is_swizzle(name: &str) -> bool {
     (2..=4).contains(&name.len()) && name.chars().all(|letter| "xyzw".contains(letter))
+}
+
+/// Returns the help for a method that is a swizzle of other letters, `v.rgb()`, or one component, `v.x()`. `None`: it is neither.
+pub(super) fn instead(ty: Type, name: &str, receiver: &str) -> Option<String> {
+    let Type::Vector(size) = ty else { return None };
+    let xyzw = match name {
+        _ if !name.is_empty() && name.len() <= 4 && name.chars().all(|letter| "xyzw".contains(letter)) => {
+            name.to_owned()
+        }
+        _ => foreign_names::swizzle(name).filter(|_| (1..=4).contains(&name.len()))?,
+    };
+    let is_inside = xyzw.chars().all(|letter| "xyzw".find(letter).is_some_and(|at| at < usize::from(size)));
+    let letters = "x, y, z, w".get(..usize::from(size) * 3 - 2)?;
+    Some(match (is_inside, xyzw.len()) {
+        (false, _) => format!("the components of `Vec{size}` are {letters}"),
+        (true, 1) => format!("a component is a field: write `{receiver}.{xyzw}`"),
+        (true, _) => format!("components are named x, y, z, w: write `{receiver}.{xyzw}()`"),
+    })
 }
 
 /// Returns the method of a field that is a swizzle, or a field with the name of the component.

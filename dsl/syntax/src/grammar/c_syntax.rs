@@ -1,28 +1,50 @@
-//! Syntax of GLSL, HLSL and WGSL in closures, and what Rust has instead.
+//! Syntax of C, GLSL, HLSL and WGSL in closures, and what Rust has instead.
 //!
-//! Input: tokens that are not Rust. Output: the help of the error, if they look like another language.
+//! Input: tokens that are not Rust. Output: the error at the part that another language has, if there is one.
 
 use std::borrow::Cow;
 
 use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
+use super::c_loop;
 use super::cursor::is_punct;
 use crate::{foreign_names, token_limits};
 
-/// Returns the help for the first part that another language has.
-pub(super) fn help(tokens: &TokenStream) -> Option<Cow<'static, str>> {
+/// A part that another language has.
+pub(super) struct Foreign {
+    pub(super) span: Span,
+    /// What Rust does not have.
+    pub(super) message: Cow<'static, str>,
+    /// What Rust has instead.
+    pub(super) help: Cow<'static, str>,
+}
+
+/// Returns the first part that another language has.
+pub(super) fn find(tokens: &TokenStream) -> Option<Foreign> {
+    if let Some((span, help)) = ternary(tokens) {
+        return Some(Foreign { span, message: "Rust has no operator `? :`".into(), help });
+    }
+    first(tokens)
+}
+
+fn first(tokens: &TokenStream) -> Option<Foreign> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     (0..tokens.len()).find_map(|at| {
-        let rest = tokens.get(at..).unwrap_or_default();
+        let (before, rest) = tokens.split_at_checked(at)?;
         match rest.first() {
-            Some(TokenTree::Group(group)) => help(&group.stream()),
-            _ => pattern(rest),
+            Some(TokenTree::Group(group)) => first(&group.stream()),
+            Some(token) => {
+                let (offset, message, help) = pattern(before, rest)?;
+                let span = rest.get(offset).unwrap_or(token).span();
+                Some(Foreign { span, message, help })
+            }
+            None => None,
         }
     })
 }
 
 /// Returns the `?` of the first `condition ? a : b`, and the help with the `if` of Rust.
-pub(super) fn ternary(tokens: &TokenStream) -> Option<(Span, Cow<'static, str>)> {
+fn ternary(tokens: &TokenStream) -> Option<(Span, Cow<'static, str>)> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let inside = |token: &TokenTree| match token {
         TokenTree::Group(group) => ternary(&group.stream()),
@@ -99,11 +121,49 @@ fn is_before_condition(tokens: &[TokenTree], at: usize) -> bool {
     }
 }
 
-fn pattern(tokens: &[TokenTree]) -> Option<Cow<'static, str>> {
-    if matches!(tokens.first(), Some(TokenTree::Ident(word)) if word == "not") {
-        return Some(format!("write `!{}`", operand(tokens.get(1..).unwrap_or_default())).into());
+/// A part of another language: the index of its first token, what Rust does not have, and what it has instead.
+type Pattern = (usize, Cow<'static, str>, Cow<'static, str>);
+
+fn pattern(before: &[TokenTree], tokens: &[TokenTree]) -> Option<Pattern> {
+    match tokens.first() {
+        Some(TokenTree::Ident(word)) if word == "not" => {
+            let help = format!("write `!{}`", operand(tokens.get(1..).unwrap_or_default()));
+            Some((0, "Rust has no operator `not`".into(), help.into()))
+        }
+        Some(TokenTree::Ident(word)) if word == "for" => {
+            let Some(TokenTree::Group(head)) = tokens.get(1) else { return None };
+            // `for (i, f) in …` is Rust.
+            let is_rust = matches!(tokens.get(2), Some(TokenTree::Ident(word)) if word == "in");
+            let help = c_loop::range(&head.stream());
+            (head.delimiter() == Delimiter::Parenthesis && !is_rust)
+                .then(|| (0, "a `for` loop of Rust iterates over a range".into(), help.into()))
+        }
+        _ => step(before, tokens).or_else(|| {
+            fixed_pattern(tokens).map(|(at, message, help)| (at, Cow::Borrowed(message), Cow::Borrowed(help)))
+        }),
     }
-    fixed_pattern(tokens).map(Cow::Borrowed)
+}
+
+/// Returns the pattern of `i++`, `i--` or `++i`.
+fn step(before: &[TokenTree], tokens: &[TokenTree]) -> Option<Pattern> {
+    let sign = ['+', '-'].into_iter().find(|sign| is_doubled(tokens, *sign))?;
+    let place = match tokens.get(2) {
+        None => c_loop::place_before(before)?,
+        Some(next) if is_punct(Some(next), ';') || is_punct(Some(next), ',') => c_loop::place_before(before)?,
+        // `--x` is a double negation in Rust.
+        _ if sign == '-' => return None,
+        Some(_) => c_loop::place_after(tokens.get(2..)?)?,
+    };
+    // Components and attributes are floats.
+    let one = if place.contains(['.', '[']) { "1.0" } else { "1" };
+    let message = format!("Rust has no operator `{sign}{sign}`");
+    Some((0, message.into(), format!("write `{place} {sign}= {one}`").into()))
+}
+
+/// Whether the first two tokens are this character twice, without a space.
+fn is_doubled(tokens: &[TokenTree], character: char) -> bool {
+    matches!(tokens.first(), Some(TokenTree::Punct(punct)) if punct.as_char() == character && punct.spacing() == Spacing::Joint)
+        && is_punct(tokens.get(1), character)
 }
 
 /// Returns the operand that follows `not`, up to the next logical operator: `not` of other languages precedes a whole comparison.
@@ -123,61 +183,50 @@ fn operand(tokens: &[TokenTree]) -> String {
     }
 }
 
-fn fixed_pattern(tokens: &[TokenTree]) -> Option<&'static str> {
+/// Returns a pattern whose message and help are always the same.
+fn fixed_pattern(tokens: &[TokenTree]) -> Option<(usize, &'static str, &'static str)> {
     let ident = |at: usize| match tokens.get(at) {
         Some(TokenTree::Ident(name)) => Some(name.to_string()),
         _ => None,
     };
     let parentheses =
         matches!(tokens.get(1), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
-    let joint = |character: char| {
-        matches!(tokens.first(), Some(TokenTree::Punct(punct)) if punct.as_char() == character && punct.spacing() == Spacing::Joint)
-            && is_punct(tokens.get(1), character)
-    };
-    let generic =
-        ident(0).filter(|_| is_punct(tokens.get(1), '<') && ident(2).is_some() && is_punct(tokens.get(3), '>'));
+    let is = |at: usize, character: char| is_punct(tokens.get(at), character);
+    let generic = ident(0).filter(|_| is(1, '<') && ident(2).is_some() && is(3, '>'));
     if let Some(help) = generic.and_then(|name| foreign_names::generic_constructor(&name)) {
-        return Some(help);
+        return Some((0, "the constructors of Rust's vectors have no type in `<…>`", help));
     }
     match ident(0).as_deref() {
-        Some("and") => return Some("write `&&`"),
-        Some("or") => return Some("write `||`"),
+        Some("and") => return Some((0, "Rust has no operator `and`", "write `&&`")),
+        Some("or") => return Some((0, "Rust has no operator `or`", "write `||`")),
+        // A keyword of Rust.
+        Some("mod") if parentheses => {
+            return Some((0, "Rust has no function `mod`", "write `x - y * (x / y).floor()` for `mod(x, y)`"));
+        }
         _ => {}
     }
     // Comparisons of other languages. `=>` is also in a `match`, which is described elsewhere.
-    let second = |character: char| is_punct(tokens.get(1), character);
-    if (joint('=') || is_punct(tokens.first(), '!') && second('=')) && is_punct(tokens.get(2), '=') {
-        return Some(if joint('=') { "write `==`" } else { "write `!=`" });
+    if is_doubled(tokens, '=') && is(2, '=') {
+        return Some((0, "Rust has no operator `===`", "write `==`"));
     }
-    match tokens.first() {
-        Some(TokenTree::Punct(punct)) if punct.as_char() == '=' && second('<') => return Some("write `<=`"),
-        Some(TokenTree::Punct(punct)) if punct.as_char() == '=' && second('!') => return Some("write `!=`"),
-        Some(TokenTree::Punct(punct)) if punct.as_char() == '<' && second('>') => return Some("write `!=`"),
+    if is(0, '!') && is(1, '=') && is(2, '=') {
+        return Some((0, "Rust has no operator `!==`", "write `!=`"));
+    }
+    match (is(0, '='), is(0, '<')) {
+        (true, _) if is(1, '<') => return Some((0, "Rust has no operator `=<`", "write `<=`")),
+        (true, _) if is(1, '!') => return Some((0, "Rust has no operator `=!`", "write `!=`")),
+        (_, true) if is(1, '>') => return Some((0, "Rust has no operator `<>`", "write `!=`")),
         _ => {}
     }
     // `.5` after an operator.
-    let is_operator =
-        ['<', '>', '=', '+', '-', '*', '/', ','].iter().any(|operator| is_punct(tokens.first(), *operator));
-    if is_operator && is_punct(tokens.get(1), '.') && matches!(tokens.get(2), Some(TokenTree::Literal(_))) {
-        return Some("write a digit before the point: `0.5`");
-    }
-    // A keyword of Rust.
-    if ident(0).as_deref() == Some("mod") && parentheses {
-        return Some("write `x - y * (x / y).floor()` for `mod(x, y)`");
-    }
-    if ident(0).as_deref() == Some("for") && parentheses {
-        return Some("write `for i in 0..4 { … }`");
-    }
-    if joint('+') {
-        return Some("write `i += 1`");
-    }
-    // `--x` is a double negation in Rust.
-    if joint('-') && (tokens.len() == 2 || is_punct(tokens.get(2), ';')) {
-        return Some("write `i -= 1`");
+    let is_operator = ['<', '>', '=', '+', '-', '*', '/', ','].iter().any(|operator| is(0, *operator));
+    if is_operator && is(1, '.') && matches!(tokens.get(2), Some(TokenTree::Literal(_))) {
+        return Some((1, "a number of Rust does not begin with its point", "write a digit before the point: `0.5`"));
     }
     let is_type = ident(0).is_some_and(|name| foreign_names::rust_type(&name).is_some());
-    if (is_type && ident(1).is_some() || ident(0).as_deref() == Some("var")) && is_punct(tokens.get(2), '=') {
-        return Some("declare variables with `let x = …;`, or `let mut x = …;` to change them later");
+    if (is_type && ident(1).is_some() || ident(0).as_deref() == Some("var")) && is(2, '=') {
+        let help = "declare variables with `let x = …;`, or `let mut x = …;` to change them later";
+        return Some((0, "Rust declares variables with `let`", help));
     }
     None
 }

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, Spanned, codes};
+use fragbuf_model::{Alternative, Choice, Diagnostic, KeepCount, OptionValue, SET, Spanned, codes};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::cursor::{Cursor, is_punct};
@@ -15,6 +15,9 @@ use crate::report::{FIRST, Report, Stop};
 
 /// The form of a value.
 const VALUE_HELP: &str = "a value is a name, and its options are in braces: `sync: spin_lock { limit: 4096 };`";
+
+/// The form of a value that the command line gives.
+const OUTSIDE_HELP: &str = "a value is a name, and its options are in braces: `sync=spin_lock { limit: 4096 }`";
 
 /// The form of options.
 const OPTION_HELP: &str = "write each option as `name: value`, and separate them by commas";
@@ -33,7 +36,7 @@ pub(super) fn choice(cursor: &mut Cursor, report: &mut Report) -> Result<Choice,
 fn alternatives(axis: Spanned<String>, cursor: &mut Cursor, report: &mut Report) -> Result<Choice, Stop> {
     let mut alternatives: Vec<Alternative> = Vec::new();
     loop {
-        alternatives.push(alternative(&axis.value, cursor, report)?);
+        alternatives.push(alternative(&axis, cursor, report)?);
         if !cursor.take_keyword("else") {
             break;
         }
@@ -52,8 +55,7 @@ pub(crate) fn all_alternatives(
     if cursor.is_done() {
         return Ok(choice);
     }
-    let help = "a value is a name, and its options are in braces: `sync=spin_lock { limit: 4096 }`";
-    Err(cursor.expected("the end of the value", help, report))
+    Err(cursor.expected("the end of the value", OUTSIDE_HELP, report))
 }
 
 /// Returns the help for what follows a choice in place of its `;`.
@@ -185,20 +187,40 @@ fn not_an_axis(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Returns the help for a token that is no value.
-fn help_for_value(axis: &str, cursor: &Cursor) -> String {
-    let Some(TokenTree::Literal(literal)) = cursor.peek() else { return VALUE_HELP.to_owned() };
-    let text = literal.to_string();
-    match text.strip_prefix('"').and_then(|text| text.strip_suffix('"')) {
-        Some(path) if path.ends_with(".wgsl") => format!("write `{axis}: wgsl({text});`"),
-        Some(name) => format!("write the name without quotes: `{axis}: {name};`"),
-        None if axis == "k" => format!("write `keep {text};`"),
-        None => VALUE_HELP.to_owned(),
+/// Returns a choice as it is written in a description, or as the option of the command line.
+fn written(axis: &Spanned<String>, value: &str) -> String {
+    match &*axis.span.file == SET {
+        true => format!("{SET} {}={value}", axis.value),
+        false => format!("{}: {value};", axis.value),
     }
 }
 
-fn alternative(axis: &str, cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
-    let value = match user_file(cursor, report)? {
+/// Returns a user file as the value of a choice.
+fn written_file(axis: &Spanned<String>, path: &str) -> String {
+    match &*axis.span.file == SET {
+        true => written(axis, path),
+        false => written(axis, &format!("wgsl(\"{path}\")")),
+    }
+}
+
+/// Returns the help for a token that is no value.
+fn help_for_value(axis: &Spanned<String>, cursor: &Cursor) -> String {
+    let form = || match &*axis.span.file == SET {
+        true => OUTSIDE_HELP.to_owned(),
+        false => VALUE_HELP.to_owned(),
+    };
+    let Some(TokenTree::Literal(literal)) = cursor.peek() else { return form() };
+    let text = literal.to_string();
+    match text.strip_prefix('"').and_then(|text| text.strip_suffix('"')) {
+        Some(path) if path.ends_with(".wgsl") => format!("write `{}`", written_file(axis, path)),
+        Some(name) => format!("write the name without quotes: `{}`", written(axis, name)),
+        None if axis.value == "k" => format!("write `keep {text};`"),
+        None => form(),
+    }
+}
+
+fn alternative(axis: &Spanned<String>, cursor: &mut Cursor, report: &mut Report) -> Result<Alternative, Stop> {
+    let value = match user_file(axis, cursor, report)? {
         Some(file) => file,
         None => {
             let help = help_for_value(axis, cursor);
@@ -213,7 +235,11 @@ fn alternative(axis: &str, cursor: &mut Cursor, report: &mut Report) -> Result<A
 }
 
 /// Parses `wgsl("path")` if it is next: a user file in place of a name of the registry.
-fn user_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<String>>, Stop> {
+fn user_file(
+    axis: &Spanned<String>,
+    cursor: &mut Cursor,
+    report: &mut Report,
+) -> Result<Option<Spanned<String>>, Stop> {
     let Some(TokenTree::Group(group)) = cursor.peek_second().filter(|_| cursor.at_keyword("wgsl")) else {
         return Ok(None);
     };
@@ -224,15 +250,36 @@ fn user_file(cursor: &mut Cursor, report: &mut Report) -> Result<Option<Spanned<
     cursor.take();
     cursor.take();
     let span = inside.source_span(report);
+    let found = inside.describe();
     let path = inside.take().and_then(|token| syn::parse2::<syn::LitStr>(token.into()).ok()).map(|path| path.value());
-    match path.filter(|path| is_relative(path) && inside.is_done()) {
-        Some(path) => Ok(Some(Spanned::new(Alternative::value_of_file(&path), span))),
-        None => {
-            let message = "expected a quoted path, relative to the description";
-            report.error(codes::UNEXPECTED_TOKEN, &span, message, "write `storage: wgsl(\"my_storage.wgsl\");`");
-            Err(Stop)
+    let (message, help) = match path.filter(|_| inside.is_done()) {
+        Some(path) if is_relative(&path) => return Ok(Some(Spanned::new(Alternative::value_of_file(&path), span))),
+        Some(path) if is_absolute(&path) => {
+            let name = path.rsplit(['/', '\\']).next().unwrap_or(&path);
+            let message = format!("expected a path relative to {}, found {found}", folder(axis));
+            (message, format!("with the file in that folder, write `{}`", written_file(axis, name)))
         }
-    }
+        Some(path) if path.contains('\\') => {
+            let message = format!("expected a path with `/` between folders, found {found}");
+            (message, format!("write `{}`", written_file(axis, &path.replace('\\', "/"))))
+        }
+        _ => {
+            let message = format!("expected a quoted path relative to {}, found {found}", folder(axis));
+            (message, format!("write `{}`", written_file(axis, "file.wgsl")))
+        }
+    };
+    report.error(codes::UNEXPECTED_TOKEN, &span, message, help);
+    Err(Stop)
+}
+
+/// Returns the folder to which paths are relative.
+fn folder(axis: &Spanned<String>) -> &'static str {
+    if &*axis.span.file == SET { "the current folder" } else { "the description" }
+}
+
+/// Returns whether a path is absolute, on any system.
+fn is_absolute(path: &str) -> bool {
+    Path::new(path).is_absolute() || path.starts_with(['/', '\\']) || path.get(1..3) == Some(":\\")
 }
 
 /// Returns whether a path is relative. Paths appear in generated source, which must not depend on the description's folder.

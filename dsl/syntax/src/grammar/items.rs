@@ -116,6 +116,7 @@ fn item(items: &mut Items, cursor: &mut Cursor, report: &mut Report) -> Result<(
         }
         "resolve" => {
             cursor.take();
+            items.effect.get_or_insert(cursor.source_span(report));
             let function = closures::closure(cursor, Role::Resolve, &mut items.function_tokens, report)?;
             items.add_resolve(function, &span, report);
         }

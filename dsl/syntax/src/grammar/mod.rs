@@ -5,6 +5,7 @@
 //! are reported together.
 
 mod blocks;
+mod c_loop;
 mod c_syntax;
 mod choices;
 mod closures;

@@ -6,28 +6,24 @@
 use fragbuf_model::codes;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
-use super::c_syntax;
+use super::c_syntax::{self, Foreign};
 use super::cursor::{described_end, end_of};
 use crate::report::Report;
 
 /// Reports tokens that are not Rust.
 pub(super) fn syntax_error(tokens: &TokenStream, error: &syn::Error, report: &mut Report) {
-    if let Some((span, help)) = c_syntax::ternary(tokens) {
-        let message = "invalid Rust syntax: Rust has no operator `? :`";
-        report.error(codes::UNEXPECTED_TOKEN, &report.at(span), message, help);
+    if let Some(Foreign { span, message, help }) = c_syntax::find(tokens) {
+        report.error(codes::UNEXPECTED_TOKEN, &report.at(span), format!("invalid Rust syntax: {message}"), help);
         return;
     }
-    let at = report.at(error.span());
-    let foreign = c_syntax::help(tokens);
     // A missing `;` belongs to the statement before the token that is not expected.
-    let last = token_before(tokens, error.span()).filter(|_| foreign.is_none() && is_missing_semicolon(error));
+    let last = token_before(tokens, error.span()).filter(|_| is_missing_semicolon(error));
     let (span, after) = match last {
         Some(last) => (report.at(end_of(&last)), format!(" after `{}`", described_end(&last))),
-        None => (at, String::new()),
+        None => (report.at(error.span()), String::new()),
     };
     let message = format!("invalid Rust syntax: {error}{after}");
-    let help = foreign.unwrap_or_else(|| syntax_help(&error.to_string()).into());
-    report.error(codes::UNEXPECTED_TOKEN, &span, message, help);
+    report.error(codes::UNEXPECTED_TOKEN, &span, message, syntax_help(&error.to_string()));
 }
 
 fn is_missing_semicolon(error: &syn::Error) -> bool {

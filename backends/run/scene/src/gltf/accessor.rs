@@ -51,8 +51,11 @@ impl<'a> Elements<'a> {
         let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
         if !types.dimensions.contains(&dimensions) || !types.components.contains(&kind) {
             return Err(error(format!(
-                "its type is {dimensions:?} of {kind:?}; its use allows {:?} of {:?}",
-                types.dimensions, types.components
+                "its type is {} of {}; its use allows {} of {}",
+                shape(dimensions),
+                component(kind),
+                one_of(types.dimensions.iter().map(|allowed| shape(*allowed))),
+                one_of(types.components.iter().map(|allowed| component(*allowed)))
             )));
         }
         let (count, size) = (accessor.count(), accessor.size());
@@ -198,4 +201,38 @@ fn slices<'a>(
 
 fn chunk<const N: usize>(bytes: &[u8]) -> Option<[u8; N]> {
     bytes.first_chunk().copied()
+}
+
+/// Returns the name of a shape in the format.
+fn shape(dimensions: Dimensions) -> &'static str {
+    match dimensions {
+        Dimensions::Scalar => "SCALAR",
+        Dimensions::Vec2 => "VEC2",
+        Dimensions::Vec3 => "VEC3",
+        Dimensions::Vec4 => "VEC4",
+        Dimensions::Mat2 => "MAT2",
+        Dimensions::Mat3 => "MAT3",
+        Dimensions::Mat4 => "MAT4",
+    }
+}
+
+/// Returns the name and the number of a component type in the format.
+fn component(kind: DataType) -> &'static str {
+    match kind {
+        DataType::I8 => "BYTE (5120)",
+        DataType::U8 => "UNSIGNED_BYTE (5121)",
+        DataType::I16 => "SHORT (5122)",
+        DataType::U16 => "UNSIGNED_SHORT (5123)",
+        DataType::U32 => "UNSIGNED_INT (5125)",
+        DataType::F32 => "FLOAT (5126)",
+    }
+}
+
+/// Returns `a, b or c`.
+fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    match names.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => names.concat(),
+    }
 }

@@ -3,13 +3,16 @@
 //!
 //! Nothing is collected: a number is read where it is in the file, so a body needs no memory beside its file.
 
-use super::header::{Element, Encoding, Header, Kind};
+use super::header::{Element, Encoding, Header, Kind, Property};
 use crate::error::{FileError, FilePosition};
-use crate::text::{quoted, quoted_bytes};
+use crate::text::{counted, quoted, quoted_bytes};
 use crate::warnings::{FileWarnings, Message, WarningKind};
 
 /// The least number of bytes after a binary body that a reader warns of: fewer may align the file.
 const LEAST_RECORD: usize = 4;
+
+/// The greatest number of properties that a message names.
+const MOST_NAMES: usize = 12;
 
 /// Returns the number of lines that are not empty.
 pub(super) fn lines(bytes: &[u8]) -> usize {
@@ -28,6 +31,8 @@ pub(super) struct Body<'a> {
     line: usize,
     /// The record that is read.
     record: Option<Record>,
+    /// The first line that has another number of values than its record, with the message about it: the likely cause of later errors.
+    mismatch: Option<(usize, String)>,
 }
 
 /// A record of an element, for messages.
@@ -44,7 +49,7 @@ impl<'a> Body<'a> {
     pub(super) fn new(header: &Header, bytes: &'a [u8]) -> Self {
         let is_empty = header.length >= bytes.len();
         let line = if is_empty { header.lines } else { header.lines + 1 };
-        Body { encoding: header.encoding, bytes, at: header.length, line, record: None }
+        Body { encoding: header.encoding, bytes, at: header.length, line, record: None, mismatch: None }
     }
 
     /// Begins the records of an element.
@@ -79,9 +84,35 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Returns an error at the current position.
+    /// Returns an error at the current position, or at the line that does not have the values of its record.
     pub(super) fn error(&self, message: impl Into<String>) -> FileError {
-        FileError::Malformed(self.position(), message.into())
+        let message = message.into();
+        match &self.mismatch {
+            Some((line, _)) if *line == self.line => FileError::Malformed(self.position(), message),
+            Some((line, text)) => {
+                let message = format!("{text}: values are read across lines, and line {}: {message}", self.line);
+                FileError::Malformed(FilePosition::Line(*line), message)
+            }
+            None => FileError::Malformed(self.position(), message),
+        }
+    }
+
+    /// Returns the message about the current record of an ASCII body, which began at byte `start`, if it does not have a line of its own.
+    /// `properties` are those of the record.
+    pub(super) fn mismatch(&mut self, (line, start): (usize, usize), properties: &[Property]) -> String {
+        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        let (before, rest) = self.bytes.split_at_checked(start).unwrap_or_default();
+        let begin = before.iter().rposition(is_end).map_or(0, |at| at + 1);
+        let end = start + rest.iter().position(is_end).unwrap_or(rest.len());
+        let words = self.bytes.get(begin..end).unwrap_or_default().split(u8::is_ascii_whitespace);
+        let found = counted(words.filter(|word| !word.is_empty()).count(), "value");
+        let names: Vec<String> = properties.iter().map(|property| quoted(&property.name)).collect();
+        let text = match properties.iter().any(|property| property.list.is_some()) || names.len() > MOST_NAMES {
+            true => format!("a line has {found}, and is no vertex of {} properties", names.len()),
+            false => format!("a line has {found}, and a vertex has {}: {}", names.len(), names.join(", ")),
+        };
+        self.mismatch.get_or_insert((line, text.clone()));
+        text
     }
 
     /// Warns of what follows the last record: more words, or more bytes than a writer appends for alignment. `header` declares too few
@@ -112,10 +143,7 @@ impl<'a> Body<'a> {
     /// Returns how many lines are left, in words; `word` was the last that was read.
     fn records_after(&self, word: &[u8]) -> String {
         let start = self.at.saturating_sub(word.len());
-        match lines(self.bytes.get(start..).unwrap_or_default()) {
-            1 => "1 more line".to_owned(),
-            count => format!("{count} more lines"),
-        }
+        counted(lines(self.bytes.get(start..).unwrap_or_default()), "more line")
     }
 
     /// Reads the length of a list of numbers of type `item`. A list that the rest of the file cannot hold is an error.
@@ -131,7 +159,9 @@ impl<'a> Body<'a> {
             Encoding::Little | Encoding::Big => rest / item.size(),
         };
         if value > most as f64 {
-            return Err(self.error(format!("a list of {value} numbers, and {rest} bytes follow")));
+            let (numbers, bytes) = (counted(value, "number"), counted(rest, "byte"));
+            let follow = if rest == 1 { "follows" } else { "follow" };
+            return Err(self.error(format!("a list of {numbers}, and {bytes} {follow}")));
         }
         Ok(value as u64)
     }
@@ -176,13 +206,13 @@ impl<'a> Body<'a> {
         Ok(bytes)
     }
 
-    /// Skips to the next word of an ASCII body; returns its line. `None`: the body is binary.
-    pub(super) fn next_line(&mut self) -> Option<usize> {
+    /// Skips to the next word of an ASCII body; returns its line and its byte. `None`: the body is binary.
+    pub(super) fn next_line(&mut self) -> Option<(usize, usize)> {
         if self.encoding != Encoding::Ascii {
             return None;
         }
         self.skip_space();
-        Some(self.line)
+        Some((self.line, self.at))
     }
 
     /// Returns the line of the last word that was read.

@@ -102,7 +102,8 @@ impl<'a> Faces<'a> {
     fn corners(&mut self, (length, kind): (Kind, Kind), body: &mut Body<'_>) -> Result<Option<Held<'a>>, FileError> {
         let length = body.length(length, kind)?;
         if length < 3 {
-            let text = || format!("a face with {length} vertices, which needs 3 or more");
+            let noun = if length == 1 { "vertex" } else { "vertices" };
+            let text = || format!("a face with {length} {noun}, which needs 3 or more");
             let message = || Message::new(text(), "it is skipped");
             self.warnings.add(WarningKind::DegenerateFace, "", || (body.position(), message()));
             for _ in 0..length {

@@ -46,7 +46,10 @@ impl Header {
             _ if message.contains("declares") => None,
             FilePosition::Line(line) if line > self.lines && self.encoding == Encoding::Ascii => {
                 let found = lines(bytes.get(self.length..).unwrap_or_default());
-                (found != records).then(|| format!(", and {found} lines follow it"))
+                (found != records).then(|| match found {
+                    1 => ", and 1 line follows it".to_owned(),
+                    _ => format!(", and {found} lines follow it"),
+                })
             }
             FilePosition::Byte(_) if ["a list", "no vertex"].iter().any(|begin| message.starts_with(begin)) => {
                 Some(String::new())

@@ -208,13 +208,12 @@ impl<'a> Vertices<'a> {
                     _ => color[*slot - RED] = channel(value, property, body)?,
                 }
             }
-            if let Some(line) = line {
+            if let Some((line, start)) = line {
                 // One vertex per line, as every writer does. Otherwise a value is missing, or is one too many.
                 if line != body.last_line() || line_before == Some(line) {
-                    let count = self.element.properties.len();
-                    let message = || format!("a line does not have the {count} values of a vertex");
                     warnings.add(WarningKind::OutOfRange, "", || {
-                        (FilePosition::Line(line), Message::new(message(), "values are read across lines"))
+                        let text = body.mismatch((line, start), &self.element.properties);
+                        (FilePosition::Line(line), Message::new(text, "values are read across lines"))
                     });
                 }
                 line_before = Some(body.last_line());

@@ -4,7 +4,7 @@
 //! channel of every texel, as a cleared depth buffer does.
 
 use fragbuf_interpreter::{Buffer, Bytecode, Space};
-use fragbuf_model::nearest_name;
+use fragbuf_model::{counted, nearest_name};
 use naga::ScalarKind;
 
 use crate::memory::{Memory, TexelLayout, memory_index};
@@ -82,7 +82,11 @@ fn content(bound: &Bound<'_>, shader: &Shader<'_>) -> Result<Vec<u32>, Error> {
     }
     let most = if bound.is_open { MOST_WORDS as usize } else { bound.words };
     if filled.len() > most {
-        return Err(Error::Unable(format!("`{name}` can have {most} words, and is filled with {}", filled.len())));
+        return Err(Error::Unable(format!(
+            "`{name}` can have {}, and is filled with {}",
+            counted(most, "word"),
+            filled.len()
+        )));
     }
     let mut words = filled.clone();
     words.resize(words.len().max(bound.words), bound.other);

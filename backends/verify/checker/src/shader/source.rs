@@ -221,6 +221,12 @@ fn override_values(module: &Module, shader: &Shader<'_>) -> Result<PipelineConst
     Ok(values)
 }
 
+/// Tests whether an override has a value.
+fn is_given(one: &naga::Override, values: &PipelineConstants) -> bool {
+    let key = one.id.map(|id| id.to_string()).or_else(|| one.name.clone());
+    key.is_some_and(|key| values.contains_key(&key))
+}
+
 /// Replaces overrides by constants, in what an entry point uses.
 fn without_overrides(
     module: &Module,
@@ -230,7 +236,9 @@ fn without_overrides(
     shader: &Shader<'_>,
 ) -> Result<(Module, ModuleInfo), Error> {
     let (module, info) = process_overrides(module, info, Some(entry), values).map_err(|error| {
-        let text = format!("{}: {}: give overrides values with `--override NAME=VALUE`", shader.file, causes(&error));
+        let without = module.overrides.iter().find(|(_, one)| one.init.is_none() && !is_given(one, values));
+        let name = without.and_then(|(_, one)| one.name.clone()).unwrap_or_else(|| "NAME".to_owned());
+        let text = format!("{}: {}: give it a value with `--override {name}=1`", shader.file, causes(&error));
         Error::Unable(text)
     })?;
     Ok((module.into_owned(), info.into_owned()))
