@@ -202,4 +202,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "",
         "copies are counted as lost instead of composited: test `peeling` of the runtime",
     ),
+    ("peeling/both_sides", "accumulated_load(4u, pixel),", "accumulated_load(3u, pixel),", COLORS),
+    ("peeling/both_sides", "accumulated_store(4u, pixel, words.x);", "accumulated_store(3u, pixel, words.x);", COLORS),
 ];
