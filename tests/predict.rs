@@ -141,6 +141,39 @@ fn an_animation_has_an_image_and_a_line_per_frame() {
     assert!(stderr(&fails).contains("--camera orbit"), "{}", stderr(&fails));
 }
 
+/// With `--lagged` a frame has the k that the frame before wants for itself, or a greater one for eight frames, and the same k on every device.
+#[test]
+fn a_lagged_k_is_that_of_the_frame_before_on_every_device() {
+    let folder = empty_folder("lagged");
+    let run = |device: &str, options: &[&str]| {
+        let out = folder.join(format!("{device}.png"));
+        let scene = ["--scene", "builtin:hairball,strands=80", "--size", "40x30", "--device", device, "--json"];
+        let set = ["--set", "allocation=predicted", "--set", "allocation.hit_ratio=90", "--set", "k=64"];
+        let render = ["render", "kplus_array", "--frames", "12", "--orbit", "180", "--out", out.to_str().unwrap()];
+        let output = fragbuf(&[render.as_slice(), &scene, &set, options].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let frames: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let of = |frame: &serde_json::Value| (frame["k"].as_u64().unwrap(), frame["k_lagged"].as_bool().unwrap());
+        frames.as_array().unwrap().iter().map(of).collect::<Vec<_>>()
+    };
+    let wanted = run("cpu", &[]);
+    assert!(wanted.iter().all(|(_, lags)| !lags));
+    let (mut k, mut smaller, mut expected) = (wanted[0].0, Vec::new(), vec![(wanted[0].0, false)]);
+    for (wanted, _) in &wanted[..11] {
+        match *wanted < k {
+            true => smaller.push(*wanted),
+            false => (k, smaller) = (*wanted, Vec::new()),
+        }
+        if smaller.len() == 8 {
+            (k, smaller) = (*smaller.iter().max().unwrap(), Vec::new());
+        }
+        expected.push((k, true));
+    }
+    assert!(expected.windows(2).any(|pair| pair[0].0 != pair[1].0), "k changes: {expected:?}");
+    assert_eq!(run("cpu", &["--lagged"]), expected);
+    assert_eq!(run("llvmpipe", &["--lagged"]), expected);
+}
+
 fn empty_folder(name: &str) -> std::path::PathBuf {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);

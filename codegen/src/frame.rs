@@ -73,7 +73,8 @@ pub enum Action {
     Loop(LoopId),
     /// Ends the body of a loop.
     LoopEnd(LoopId),
-    /// Runs a host function. The frame continues after the words that it reads have been read back.
+    /// Runs a host function. The frame continues after the words that it reads have been read back, unless the device uses the values of
+    /// an earlier frame ([`Decision::may_lag`]).
     Host(Decision),
 }
 
@@ -112,6 +113,8 @@ pub struct Decision {
     pub reads: Vec<Range>,
     /// The symbols that it sets, in order.
     pub sets: Vec<SymbolId>,
+    /// Whether a frame may use the values that the words of an earlier frame gave.
+    pub may_lag: bool,
 }
 
 /// Words of a resource.

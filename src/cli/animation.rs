@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use fragbuf_frame::Decisions;
+
 use super::output::Failure;
 use super::picture;
 use super::view::View;
@@ -15,6 +17,10 @@ pub(crate) struct Animation {
     /// Degrees by which the camera orbits the scene over all frames; the last is one step before the end
     #[arg(long, value_name = "DEGREES", default_value_t = 360.0, requires = "frames", allow_negative_numbers = true)]
     orbit: f64,
+    /// Render as an application does that never waits for the device: a frame uses the k that the previous frame predicted. A k grows at
+    /// once, and shrinks after eight frames that need less
+    #[arg(long, requires = "frames")]
+    lagged: bool,
 }
 
 impl Animation {
@@ -38,6 +44,7 @@ impl Animation {
                 Failure::Usage(text.to_owned())
             })?;
             let mut one = view.clone();
+            one.decisions = if self.lagged { Decisions::LAGGED } else { Decisions::Immediate };
             (one.camera, one.out, one.is_later_frame) = (camera, numbered(&view.out, number), number > 0);
             Ok(one)
         };

@@ -144,7 +144,7 @@ impl Side<'_> {
     fn request<'a>(&'a mut self, opaque: Option<&'a SceneView>, held: u64) -> (RenderRequest<'a>, &'a mut Input) {
         let Side { description, input, set, uniforms, .. } = self;
         // The hit ratio needs every event.
-        (RenderRequest { description, set, uniforms, count_all: true, opaque, held, words: &[] }, input)
+        (RenderRequest { description, set, uniforms, count_all: true, opaque, held, lagged: None, words: &[] }, input)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use fragbuf::Registry;
+use fragbuf_frame::LaggedValues;
 use serde_json::Value;
 
 use super::animation::Animation;
@@ -62,12 +63,13 @@ impl Render {
             return Err(Failure::Usage("`--watch` renders one image again and again: leave out `--frames`".to_owned()));
         }
         let views = self.animation.views(&self.view)?;
-        let mut statistics = Vec::new();
+        let (mut statistics, mut lagged) = (Vec::new(), None);
         for (number, view) in (0..).zip(views) {
-            let found = self.frame(&view, &mut Vec::new())?;
+            let frame = self.frame(&view, lagged.as_ref(), &mut Vec::new())?;
+            lagged = frame.lagged;
             match view.json {
-                true => statistics.push(found),
-                false => output::print(&line(number, &found))?,
+                true => statistics.push(frame.statistics),
+                false => output::print(&line(number, &frame.statistics))?,
             }
         }
         match self.view.json {
@@ -78,15 +80,20 @@ impl Render {
 
     /// Renders once, and adds the files that it reads to `files`.
     fn render(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
-        let found = self.frame(&self.view, files)?;
+        let frame = self.frame(&self.view, None, files)?;
         match self.view.json {
-            true => output::print(&output::json(&found)),
+            true => output::print(&output::json(&frame.statistics)),
             false => Ok(()),
         }
     }
 
-    /// Renders a view, adds the files that it reads to `files`, and returns the statistics of the frame.
-    fn frame(&self, view: &View, files: &mut Vec<PathBuf>) -> Result<Value, Failure> {
+    /// Renders a view with the lagged decisions of the previous frame, and adds the files that it reads to `files`.
+    fn frame(
+        &self,
+        view: &View,
+        lagged: Option<&LaggedValues>,
+        files: &mut Vec<PathBuf>,
+    ) -> Result<RenderedFrame, Failure> {
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
@@ -106,6 +113,7 @@ impl Render {
             count_all: view.json || self.animation.is_given(),
             opaque: opaque.as_ref(),
             held: 0,
+            lagged,
             words: &[],
         };
         let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
@@ -113,16 +121,25 @@ impl Render {
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
         picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
-        Ok(statistics(&self.description, &result, &selection, &scene))
+        let statistics = statistics(&self.description, &result, &selection, &scene);
+        Ok(RenderedFrame { statistics, lagged: result.stats.lagged })
     }
 }
 
-/// Returns the line of a frame: k, bytes and hit ratio, as far as the description has them.
+/// A frame whose image is written.
+struct RenderedFrame {
+    statistics: Value,
+    /// The decisions for the next frame.
+    lagged: Option<LaggedValues>,
+}
+
+/// Returns the line of a frame: k, bytes and hit ratio, as far as the description has them, and whether an earlier frame decided k.
 fn line(number: u32, found: &Value) -> String {
     let value = |name: &str| match &found[name] {
         Value::Null => "-".to_owned(),
         value => value.to_string(),
     };
     let ratio = found["hit_ratio"].as_f64().map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.4}"));
-    format!("frame {number}: k = {}, {} bytes, hit ratio {ratio}\n", value("k"), value("bytes"))
+    let lagged = if found["k_lagged"] == true { ", k lags" } else { "" };
+    format!("frame {number}: k = {}, {} bytes, hit ratio {ratio}{lagged}\n", value("k"), value("bytes"))
 }

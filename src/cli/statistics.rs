@@ -26,6 +26,7 @@ pub(crate) fn statistics(
         "target": result.target,
         "triangles": scene.scene.triangles(),
         "k": stats.k,
+        "k_lagged": stats.is_lagged,
         "fragment": payload(result),
         "ms": if stats.times.is_some() { Value::from(ms) } else { Value::Null },
         "bytes": stats.bytes,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fragbuf_cpu::FragmentOrder;
+use fragbuf_frame::Decisions;
 use fragbuf_model::nearest_name;
 use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
@@ -71,6 +72,9 @@ pub(crate) struct View {
     /// Whether an earlier frame has printed the warnings about the models.
     #[arg(skip)]
     pub(crate) is_later_frame: bool,
+    /// Whether frames use the decisions of their own host steps, or those of earlier frames.
+    #[arg(skip)]
+    pub(crate) decisions: Decisions,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -114,6 +118,7 @@ impl View {
             strict: false,
             json: true,
             is_later_frame: false,
+            decisions: Decisions::Immediate,
         }
     }
 

@@ -15,8 +15,9 @@ pub(crate) fn rows() -> Vec<Row> {
 fn predicted() -> Row {
     let complexity = Resource::new("complexity", Element::Word, "fragments of the pixel");
     let count = Pass::geometry("count_complexity", "count_complexity").uses("complexity", Access::Atomic);
-    let mut steps = vec![Step::Pass(count)];
-    steps.extend(prediction("complexity"));
+    let (evaluate, decision) = prediction("complexity");
+    // The bytes of k slots per pixel do not depend on the fragments, so the k of an earlier frame is within the budget, too.
+    let steps = vec![Step::Pass(count), Step::Pass(evaluate), Step::Host(decision.lags())];
     Row {
         template: Some(template!("allocation/predicted")),
         resources: vec![complexity.by("pixel", "pixels").cleared(0)],
@@ -26,14 +27,17 @@ fn predicted() -> Row {
     }
 }
 
-/// Uses the counts of a storage that counts anyway.
+/// Uses the counts of a storage that counts anyway. The bytes depend on the fragments of the frame, whose sum the frame waits for before
+/// it allocates regions, so k does not lag.
 fn predicted_exact() -> Row {
+    let (evaluate, decision) = prediction("counts");
+    let steps = vec![Step::Pass(evaluate), Step::Host(decision)];
     Row {
         template: Some(template!("allocation/predicted_exact")),
         requires: vec![Capability::Counted],
         conditions: vec![limited()],
         calls: vec!["storage"],
-        edits: vec![Edit::AddResource(histogram()), Edit::After("count".to_owned(), prediction("counts"))],
+        edits: vec![Edit::AddResource(histogram()), Edit::After("count".to_owned(), steps)],
         ..by_histogram("predicted_exact", "the same for storages that count fragments first and allocate exactly")
     }
 }
@@ -59,10 +63,8 @@ fn histogram() -> Resource {
 }
 
 /// Returns the pass that evaluates the counts, and the decision.
-fn prediction(counts: &str) -> Vec<Step> {
+fn prediction(counts: &str) -> (Pass, Host) {
     let pass = Pass::compute("build_histogram", "build_histogram", "ceil_div(width, 16)", "ceil_div(height, 16)");
-    vec![
-        Step::Pass(pass.uses(counts, Access::Read).uses("histogram", Access::Atomic)),
-        Step::Host(Host::new("predict_k").reads_all("histogram").sets("k")),
-    ]
+    let pass = pass.uses(counts, Access::Read).uses("histogram", Access::Atomic);
+    (pass, Host::new("predict_k").reads_all("histogram").sets("k"))
 }

@@ -309,6 +309,6 @@ impl LoweringContext<'_> {
                 format!("the host function `{name}` sets `{symbol}`, which host functions cannot set")
             })?);
         }
-        Ok(Decision { name: name.clone(), function, reads, sets })
+        Ok(Decision { name: name.clone(), function, reads, sets, may_lag: host.may_lag })
     }
 }

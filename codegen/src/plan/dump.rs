@@ -119,7 +119,8 @@ impl Decision {
         };
         let reads: Vec<String> = self.reads.iter().map(read).collect();
         let sets: Vec<&str> = self.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
-        format!("{}: reads {}; sets {}", self.name, reads.join(", "), sets.join(", "))
+        let lags = if self.may_lag { "; may lag" } else { "" };
+        format!("{}: reads {}; sets {}{lags}", self.name, reads.join(", "), sets.join(", "))
     }
 }
 

@@ -15,7 +15,7 @@ const GOOD: &str = "// What it is.\n\
     //: buffer rest[slot < k * 2][pixel < ceil_div(width, 8) * height]: value, persistent -- the rest\n\
     //: pass reset: heads plain\n\
     //: pass store as again: heads atomic rechecked, rest coherent\n\
-    //: host allocate: reads heads[pixels]; sets fragments\n\
+    //: host allocate: reads heads[pixels]; sets fragments; lags\n\
     //: provides keeps-best, conservative-bound\n\
     //: requires mutual-exclusion, fragment-atomics\n\
     //: when keep <= 64 && color -- write `keep 64;`\n\
@@ -47,7 +47,7 @@ fn a_row_has_the_values_of_its_lines() {
     assert_eq!((store.name.as_str(), store.skeleton.as_str()), ("again", "store"));
     let uses: Vec<_> = store.uses.iter().map(|usage| (usage.resource.as_str(), usage.access, usage.loads)).collect();
     assert_eq!(uses, [("heads", Access::Atomic, Loads::Rechecked), ("rest", Access::Coherent, Loads::Exact)]);
-    assert_eq!(*host, Host::new("allocate").reads_word("heads", "pixels").sets("fragments"));
+    assert_eq!(*host, Host::new("allocate").reads_word("heads", "pixels").sets("fragments").lags());
     assert_eq!(row.provides, [Capability::KeepsBest, Capability::ConservativeBound]);
     assert_eq!(
         (row.requires.as_slice(), row.implies.as_slice()),

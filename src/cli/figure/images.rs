@@ -106,8 +106,16 @@ fn draw(
     let set = changes(&variant.series, 0);
     let mut input = Input::read(variant.series.technique, &registry)?;
     let description = variant.series.technique;
-    let request =
-        RenderRequest { description, set: &set, uniforms: &[], count_all: true, opaque: None, held: 0, words: &[] };
+    let request = RenderRequest {
+        description,
+        set: &set,
+        uniforms: &[],
+        count_all: true,
+        opaque: None,
+        held: 0,
+        lagged: None,
+        words: &[],
+    };
     let result = match render_quietly(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {
         Ok(result) => result,
         Err(failure) => return unavailable(failure).map(Err),

@@ -230,6 +230,7 @@ impl Prepared {
             count_all: false,
             opaque: None,
             held: 0,
+            lagged: None,
             words: &[],
         };
         match prepare(&request, &mut input, (view, &mut run.selection), scene, &run.silent) {

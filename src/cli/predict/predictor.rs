@@ -83,7 +83,16 @@ pub(crate) fn count(
     let (scene, _) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
     check_sources(&[&variant], &scene.scene, &view.attributes)?;
     let words = &["histogram"];
-    let request = RenderRequest { description, set: &set, uniforms, count_all: false, opaque: None, held: 0, words };
+    let request = RenderRequest {
+        description,
+        set: &set,
+        uniforms,
+        count_all: false,
+        opaque: None,
+        held: 0,
+        lagged: None,
+        words,
+    };
     let mut selection = select(view, &scene, &mut [(&request, input)])?;
     let result = render_quietly(&request, input, (view, &mut selection), &scene, &progress)?;
     if result.stats.slices > 1 {

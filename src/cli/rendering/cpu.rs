@@ -61,12 +61,18 @@ pub(super) fn render(
     loop {
         let sizing =
             redraw.pool_size.map_or(Sizing::Auto, |fragments| Sizing::Capacity(PoolSize::Fragments(fragments)));
-        let settings = Settings { sizing, order, slice: redraw.slice, memory, ..Settings::new(width, height) };
+        let decisions = view.decisions;
+        let settings =
+            Settings { sizing, decisions, order, slice: redraw.slice, memory, ..Settings::new(width, height) };
         let mut device = match Device::new(code.clone(), settings) {
             // The pool for all fragments of a slice is too large.
             Err(error) if is_too_large(&error) && redraw.halve() => continue,
             created => created?,
         };
+        match request.lagged.map_or(Ok(()), |lagged| device.resume_lagged(lagged)) {
+            Err(error) if is_too_large(&error) && redraw.halve() => continue,
+            resumed => resumed?,
+        }
         redraw.rows = Some(height.div_ceil(device.slices()));
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
@@ -108,6 +114,8 @@ pub(super) fn render(
             slices: device.slices(),
             loops: picture.loops,
             k: device.symbol("k").and_then(|k| u32::try_from(k).ok()).filter(|_| code.plan.variant.keep.is_some()),
+            is_lagged: device.is_lagged(),
+            lagged: Some(device.lagged_values()),
             words: request.words.iter().map(|name| device.words(name).unwrap_or_default()).collect(),
         };
         let result = RenderResult {

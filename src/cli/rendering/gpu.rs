@@ -163,6 +163,7 @@ impl GpuRenderer {
         drop(geometry);
         let settings = Settings {
             memory,
+            decisions: view.decisions,
             timestamps: view.json,
             interlock: self.headless.interlock,
             ..Settings::new(BLENDED, width, height)
@@ -178,6 +179,12 @@ impl GpuRenderer {
                 Err(error) if is_too_large(&error) && redraw.halve() => continue,
                 created => created?,
             };
+            if let Some(lagged) = request.lagged {
+                match block_on(device, renderer.resume_lagged(lagged))? {
+                    Err(error) if is_too_large(&error) && redraw.halve() => continue,
+                    resumed => resumed?,
+                }
+            }
             for (name, value) in &uniforms {
                 renderer.set_uniform(name, *value)?;
             }
@@ -253,6 +260,7 @@ impl GpuRenderer {
         renderer.set_camera(&scene.camera.view_projection);
         let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        let is_lagged = renderer.is_lagged();
         let loops = renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (counters, by_slice) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
@@ -279,7 +287,7 @@ impl GpuRenderer {
             return Ok(FrameOutcome::PoolExhausted { needed });
         }
         let pixels = offscreen.colors(device, queue)?;
-        Ok(FrameOutcome::Complete(FrameStats {
+        let mut stats = FrameStats {
             pixels,
             counters,
             times,
@@ -287,8 +295,14 @@ impl GpuRenderer {
             slices: renderer.slices(),
             loops,
             k: renderer.k(),
+            is_lagged,
+            lagged: None,
             words,
-        }))
+        };
+        // The image has been read back, so all words of the frame have, too.
+        block_on(device, renderer.decide())??;
+        stats.lagged = Some(renderer.lagged_values().clone());
+        Ok(FrameOutcome::Complete(stats))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The types that every renderer takes: what the command line asks for, and the task for one device.
 
 use fragbuf::Variant;
+use fragbuf_frame::LaggedValues;
 
 use super::opaque::OpaqueScene;
 use crate::cli::memory::Budget;
@@ -18,6 +19,8 @@ pub(crate) struct RenderRequest<'a> {
     pub(crate) opaque: Option<&'a SceneView>,
     /// The bytes of other images that the command holds meanwhile.
     pub(crate) held: u64,
+    /// The decisions of the previous frame of an animation that lag.
+    pub(crate) lagged: Option<&'a LaggedValues>,
     /// Resources whose words are read after the frame; of several slices, those of the last.
     pub(crate) words: &'a [&'a str],
 }

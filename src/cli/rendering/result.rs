@@ -2,7 +2,7 @@
 
 use fragbuf::Plan;
 use fragbuf::vocabulary::Capability;
-use fragbuf_frame::{Counters, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime, Value};
+use fragbuf_frame::{Counters, LaggedValues, LoopEnd, LoopReport, OUT_OF_ORDER, PARTIAL_COVERAGE, PassTime, Value};
 use fragbuf_model::counted;
 use fragbuf_scene::Scene;
 
@@ -38,6 +38,10 @@ pub(crate) struct FrameStats {
     pub(crate) loops: Vec<LoopReport>,
     /// The fragments that a pixel of the last slice keeps at most; `None`: all.
     pub(crate) k: Option<u32>,
+    /// Whether an earlier frame decided k.
+    pub(crate) is_lagged: bool,
+    /// The decisions for the next frame.
+    pub(crate) lagged: Option<LaggedValues>,
     /// The words that the request reads.
     pub(crate) words: Vec<Vec<u32>>,
 }
@@ -149,6 +153,8 @@ mod tests {
             slices: 1,
             loops,
             k: None,
+            is_lagged: false,
+            lagged: None,
             words: Vec::new(),
         };
         let messages: Vec<String> = stats.unfinished_loops().collect();

@@ -16,6 +16,9 @@ pub struct Host {
     pub reads: Vec<Read>,
     /// The symbols to set, in order.
     pub sets: Vec<String>,
+    /// Whether a frame may use the values that the words of an earlier frame gave, so that it need not wait for its own: any values in
+    /// the range of the symbols must give a correct frame.
+    pub may_lag: bool,
 }
 
 /// A range of words of a resource that the host reads back.
@@ -44,7 +47,7 @@ pub enum Words {
 impl Host {
     /// Makes a step that calls `function`.
     pub fn new(function: &str) -> Self {
-        Host { function: function.to_owned(), reads: Vec::new(), sets: Vec::new() }
+        Host { function: function.to_owned(), reads: Vec::new(), sets: Vec::new(), may_lag: false }
     }
 
     /// Reads one word of `resource`.
@@ -68,6 +71,12 @@ impl Host {
     /// Sets `symbol`.
     pub fn sets(mut self, symbol: &str) -> Self {
         self.sets.push(symbol.to_owned());
+        self
+    }
+
+    /// Allows the values of an earlier frame ([`Host::may_lag`]).
+    pub fn lags(mut self) -> Self {
+        self.may_lag = true;
         self
     }
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use fragbuf_codegen::Plan;
 use fragbuf_frame::{
-    MemoryLimits, Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform, unsupported,
-    zero_uniforms,
+    LaggedValues, MemoryLimits, Readbacks, Value, Values, initial_values, pool_size_after, resource, set_uniform,
+    unsupported, zero_uniforms,
 };
 use fragbuf_templates::vocabulary::{Element, TextureFormat};
 
@@ -23,6 +23,8 @@ pub struct Device {
     pub(crate) values: Values,
     pub(crate) limits: MemoryLimits,
     pub(crate) readbacks: Readbacks,
+    /// The decisions of earlier frames that later ones use.
+    pub(crate) lag: LaggedValues,
     pub(crate) memory: Memory,
     pub(crate) uniforms: Vec<u32>,
     pub(crate) camera: Vec<u32>,
@@ -50,8 +52,9 @@ impl Device {
         let resources = code.plan.resources.iter().enumerate();
         let missing = resources.filter(|(_, planned)| planned.is_external()).map(|(index, _)| index).collect();
         let (camera, objects) = (Vec::new(), Vec::new());
+        let lag = LaggedValues::new(&code.plan, settings.decisions);
         let mut device =
-            Device { code, settings, values, limits, readbacks, memory, uniforms, camera, objects, missing };
+            Device { code, settings, values, limits, readbacks, lag, memory, uniforms, camera, objects, missing };
         device.set_camera(&IDENTITY);
         Ok(device)
     }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use fragbuf_codegen::PassId;
 use fragbuf_frame::{
-    COUNTERS_RESOURCE, Counters, Cursor, FrameStep, HostWait, LoopReport, PassTime, Values, WordRange, resource,
+    COUNTERS_RESOURCE, Counters, Cursor, FrameStep, HostWait, LoopReport, PassTime, Values, WordRange, decide, resource,
 };
 
 use crate::device::Device;
@@ -31,6 +31,7 @@ impl Device {
             let name = format!("the texture `{}`", planned.resource.name);
             return Err(fragbuf_frame::Error::BadValue { name, expected }.into());
         }
+        self.decide()?;
         let (width, height) = (self.settings.width, self.settings.height);
         let slice = Slice { rows: 0..self.values.rows().min(height), size: (width, height) };
         let output = zeros("the output", 4 * OUTPUT_WORDS as u64 * slice.pixels() as u64)?;
@@ -53,7 +54,7 @@ impl Device {
             counters: Vec::new(),
             loops: Vec::new(),
             out_of_bounds: Vec::new(),
-            cursor: Cursor::new(&code.plan, self.readbacks, self.memory.flipped),
+            cursor: Cursor::new(&code.plan, self.frame_readbacks(), self.memory.flipped),
             objects: Vec::new(),
             device: self,
         };
@@ -125,7 +126,7 @@ impl Frame<'_> {
         self.number = number;
         self.output.iter_mut().for_each(|word| *word = AtomicU32::default());
         self.samples.fill(0);
-        self.cursor = Cursor::new(&self.code.plan, self.device.readbacks, flipped);
+        self.cursor = Cursor::new(&self.code.plan, self.device.frame_readbacks(), flipped);
         self.device.values = values.clone();
         self.device.memory.resize(&self.code.plan, values, &self.device.limits)
     }
@@ -143,7 +144,14 @@ impl Frame<'_> {
                 FrameStep::Wait(wait) => {
                     let words = self.read_back(wait);
                     self.cursor.supply(plan, &words, &mut self.device.values)?;
+                    self.device.lag.record(&self.device.values);
                     self.device.memory.resize(plan, &self.device.values, &self.device.limits)?;
+                }
+                FrameStep::Read(read) => {
+                    let words: Vec<u32> = read.ranges.iter().flat_map(|range| self.words(*range)).collect();
+                    let mut decided = self.device.values.clone();
+                    decide(plan, &read, &words, &mut decided)?;
+                    self.device.lag.record(&decided);
                 }
             }
         }

@@ -29,6 +29,7 @@ mod fragments;
 mod frame;
 mod helpers;
 mod interface;
+mod lagged;
 mod lane_group;
 mod memory;
 mod mesh;

@@ -1,6 +1,6 @@
 //! The settings of a device.
 
-use fragbuf_frame::{DEFAULT_MEMORY, Sizing};
+use fragbuf_frame::{DEFAULT_MEMORY, Decisions, Sizing};
 
 /// The settings of a device. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,8 @@ pub struct Settings {
     pub height: u32,
     /// How pools are sized whose number of fragments is not known before the frame.
     pub sizing: Sizing,
+    /// Whether frames use the decisions of their own host steps, or those of earlier frames.
+    pub decisions: Decisions,
     /// The order in which the fragments of a pixel run.
     pub order: FragmentOrder,
     /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole mesh. `None`: as many rows as
@@ -33,6 +35,7 @@ impl Settings {
             width,
             height,
             sizing: Sizing::Auto,
+            decisions: Decisions::Immediate,
             order: FragmentOrder::Submission,
             slice: None,
             memory: DEFAULT_MEMORY,

@@ -11,7 +11,7 @@ use fragbuf_templates::vocabulary::Objects;
 
 use crate::host_step::{apply, decision, word_ranges};
 use crate::loops::iteration_limit;
-use crate::step::{FrameStep, HostWait, PassRun, WordRange};
+use crate::step::{FrameStep, HostRead, HostWait, PassRun, WordRange};
 use crate::{Error, LoopEnd, LoopReport, Readbacks, Values};
 
 /// A position in the commands of a frame.
@@ -44,7 +44,7 @@ enum Purpose {
 
 impl Cursor {
     /// Returns a cursor at the beginning of a frame. With [`Readbacks::Disabled`] it requests nothing: it skips host steps, runs
-    /// loops to their limits and drops no object. `flipped` is [`Cursor::flipped`] at the end of the previous frame, 0 at first.
+    /// loops to their limits and drops no object. With [`Readbacks::Lagged`] it only passes on what host steps read that may lag. `flipped` is [`Cursor::flipped`] at the end of the previous frame, 0 at first.
     pub fn new(plan: &Plan, readbacks: Readbacks, flipped: u32) -> Self {
         Cursor {
             readbacks,
@@ -84,8 +84,8 @@ impl Cursor {
                     Some(wait) => return Ok(Some(FrameStep::Wait(wait))),
                     None => continue,
                 },
-                Action::Host(decision) => match self.request_reads(plan, values, decision, flipped)? {
-                    Some(wait) => return Ok(Some(FrameStep::Wait(wait))),
+                Action::Host(decision) => match self.host_step(plan, values, decision, flipped)? {
+                    Some(step) => return Ok(Some(step)),
                     None => continue,
                 },
             };
@@ -219,22 +219,26 @@ impl Cursor {
         Ok(())
     }
 
-    /// Requests the words that a host step reads; `None` if host steps are skipped. The cursor moves past the step.
-    fn request_reads(
+    /// Returns the step that reads the words of a host step; `None` if host steps are skipped. The cursor moves past the step.
+    fn host_step(
         &mut self,
         plan: &Plan,
         values: &Values,
         decision: &Decision,
         flipped: u32,
-    ) -> Result<Option<HostWait>, Error> {
+    ) -> Result<Option<FrameStep>, Error> {
         let command = self.at;
         self.at += 1;
-        if self.readbacks != Readbacks::Enabled {
+        if matches!(self.readbacks, Readbacks::LoopsOnly | Readbacks::Disabled) {
             return Ok(None);
         }
-        let wait = HostWait::Words(word_ranges(plan, values, decision, flipped)?);
+        let ranges = word_ranges(plan, values, decision, flipped)?;
+        if self.readbacks == Readbacks::Lagged && decision.may_lag {
+            return Ok(Some(FrameStep::Read(HostRead { command, ranges })));
+        }
+        let wait = HostWait::Words(ranges);
         self.requested = Some((wait.clone(), Purpose::Decision(command)));
-        Ok(Some(wait))
+        Ok(Some(FrameStep::Wait(wait)))
     }
 }
 

@@ -4,7 +4,7 @@ use fragbuf_codegen::{Action, Decision, Plan, Range};
 use fragbuf_templates::vocabulary::HostCall;
 
 use crate::memory::buffer_bytes;
-use crate::step::WordRange;
+use crate::step::{HostRead, WordRange};
 use crate::{Error, Values};
 
 /// Returns the host step of a command.
@@ -41,6 +41,15 @@ pub(crate) fn word_ranges(
         Ok(WordRange { resource: plan.frame.physical(range.resource, flipped), first, count })
     };
     decision.reads.iter().map(word_range).collect()
+}
+
+/// Runs a host step that a frame did not wait for, with the words that the frame has read for it, and sets the symbols that it decides.
+/// Missing words count as 0. An error leaves the values unchanged.
+pub fn decide(plan: &Plan, read: &HostRead, words: &[u32], values: &mut Values) -> Result<(), Error> {
+    match decision(plan, read.command) {
+        Some(decision) => apply(plan, decision, (words, &read.ranges), values),
+        None => Ok(()),
+    }
 }
 
 /// Calls a host function and sets the symbols that it decides. Missing words count as 0.

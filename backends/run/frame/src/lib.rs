@@ -1,5 +1,6 @@
 //! A frame of a plan, for every device that runs one: the cursor that steps through its commands, values of the symbols in
-//! formulas, sizes of buffers, rows of a slice within a memory budget, capacities for uncounted fragments, uniform words, counters.
+//! formulas, sizes of buffers, rows of a slice within a memory budget, capacities for uncounted fragments, decisions that lag,
+//! uniform words, counters.
 //!
 //! Input: a plan and the frame's size. Output: steps, numbers and words. This crate names no device and allocates nothing on
 //! one.
@@ -9,6 +10,7 @@ mod counters;
 mod cursor;
 mod error;
 mod host_step;
+mod lag;
 mod loop_report;
 mod loops;
 mod memory;
@@ -22,6 +24,8 @@ pub use boxes::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
 pub use cursor::Cursor;
 pub use error::{Error, MemoryNeed};
+pub use host_step::decide;
+pub use lag::{Decisions, LaggedValues};
 pub use loop_report::{LoopEnd, LoopReport};
 pub use loops::{max_iterations, max_pass_runs};
 pub use memory::{BufferLimit, DEFAULT_MEMORY, MemoryLimits, buffer_bytes, most_rows, resource_bytes};
@@ -29,7 +33,7 @@ pub use pass_time::PassTime;
 pub use pool_size::{
     PoolSize, Readbacks, Sizing, host_sets_k, initial_values, pool_size_after, reserve, reuse_pool_sizes,
 };
-pub use step::{FrameStep, HostWait, PassRun, WordRange};
+pub use step::{FrameStep, HostRead, HostWait, PassRun, WordRange};
 pub use uniforms::{Value, set_uniform, zero_uniforms};
 pub use values::Values;
 

@@ -41,6 +41,8 @@ impl Sizing {
 pub enum Readbacks {
     /// Host steps run, loops end on their conditions, and queries drop objects.
     Enabled,
+    /// The same, except that host steps which may lag do not run in the frame: the device reads their words for a later frame.
+    Lagged,
     /// The caller has reserved what host steps would set. Host steps are skipped; loops end on their conditions, and queries drop
     /// objects.
     LoopsOnly,
@@ -69,7 +71,7 @@ pub fn initial_values(plan: &Plan, size: (u32, u32), sizing: Sizing) -> Result<(
     };
     for id in counted {
         match readbacks {
-            Readbacks::Enabled => values.set(id, 0),
+            Readbacks::Enabled | Readbacks::Lagged => values.set(id, 0),
             Readbacks::LoopsOnly | Readbacks::Disabled => values.set_per_pixel(id, Sizing::AUTO_PER_PIXEL),
         }
     }

@@ -23,6 +23,17 @@ pub enum FrameStep {
     Pass(PassRun),
     /// Supply words ([`Cursor::supply`](crate::Cursor::supply)); the frame continues then.
     Wait(HostWait),
+    /// Copy words for a host step whose decision takes effect in a later frame ([`decide`](crate::decide)); the frame continues at once.
+    Read(HostRead),
+}
+
+/// The words of a host step that the frame does not wait for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostRead {
+    /// The index of the host step among the commands of the plan.
+    pub(crate) command: usize,
+    /// The words, one range after the other.
+    pub ranges: Vec<WordRange>,
 }
 
 /// One run of a pass.

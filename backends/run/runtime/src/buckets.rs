@@ -1,6 +1,8 @@
 //! Any k from one description. The code contains the plan's capacity, because local arrays need literals. Up to the capacity k
 //! is a uniform. A greater k needs other code, which is generated once per bucket (1, 2, 4, 8, …) and kept.
 
+use fragbuf_codegen::Plan;
+
 use crate::{Error, Pipelines, Renderer, Settings, Shaders};
 
 /// A renderer for every k that the description supports.
@@ -9,6 +11,8 @@ pub struct Buckets<F> {
     settings: Settings,
     pipelines: Vec<Pipelines>,
     renderer: Renderer,
+    /// The plan of the greatest capacity for which host steps decide.
+    widest: Option<Plan>,
 }
 
 impl<F: FnMut(u32) -> Result<Shaders, Error>> Buckets<F> {
@@ -23,7 +27,25 @@ impl<F: FnMut(u32) -> Result<Shaders, Error>> Buckets<F> {
         let pipelines = Pipelines::new(device, &shaders(bucket(k))?, settings).await?;
         let mut renderer = Renderer::with(device, queue, &pipelines, settings).await?;
         renderer.switch_pipelines(&pipelines, k).await?;
-        Ok(Buckets { shaders, settings: settings.clone(), pipelines: vec![pipelines], renderer })
+        Ok(Buckets { shaders, settings: settings.clone(), pipelines: vec![pipelines], renderer, widest: None })
+    }
+
+    /// Applies what earlier frames have decided, as [`Renderer::decide`] does, up to the capacity of the bucket of `most`: another k may need
+    /// the pipelines of another bucket. An error changes nothing.
+    pub async fn decide(&mut self, most: u32) -> Result<(), Error> {
+        let capacity = bucket(most.max(1));
+        if self.widest.as_ref().is_none_or(|plan| plan.capacity() != capacity) {
+            self.widest = Some((self.shaders)(capacity)?.plan);
+        }
+        let (lag, values) = self.renderer.next_values(self.widest.as_ref()).await?;
+        match values.k().filter(|k| bucket(*k) != self.renderer.capacity()) {
+            Some(k) => {
+                self.set_k(k).await?;
+                self.renderer.lag = lag;
+                Ok(())
+            }
+            None => self.renderer.apply_lagged(lag, values).await,
+        }
     }
 
     /// Returns the renderer. Its [`Renderer::set_k`] stays within the bucket.

@@ -12,6 +12,7 @@ use fragbuf_frame::{FrameStep, HostWait, LoopReport};
 use crate::draw::{Draw, Output};
 use crate::error_scope::{in_error_scope, is_lost};
 use crate::external::missing;
+use crate::lagged::FrameReads;
 use crate::recording::{Readback, Recording, clear, copy_slice_counters, readbacks};
 use crate::segment::{FrameCursor, SegmentPart, segment};
 use crate::{Error, Renderer};
@@ -22,6 +23,8 @@ pub struct Frame {
     id: u64,
     at: FrameCursor,
     recording: Recording,
+    /// The words for lagged decisions; `None` if the frame copies none.
+    reads: Option<FrameReads>,
 }
 
 /// The result of [`Frame::record`].
@@ -75,6 +78,12 @@ impl Frame {
                     let cursor = if action.slice == self.at.slice { &self.at.cursor } else { &segment.end.cursor };
                     self.recording.pass(renderer, encoder, (action, *run), cursor, (output, draw));
                 }
+                FrameStep::Read(read) => {
+                    if let Some(reads) = &mut self.reads {
+                        let wait = HostWait::Words(read.ranges.clone());
+                        reads.push((read.clone(), readbacks(renderer, encoder, &wait, &self.recording.runs)));
+                    }
+                }
                 FrameStep::Wait(_) => {}
             }
         }
@@ -84,6 +93,7 @@ impl Frame {
                 timing.resolve(encoder, &self.recording.runs);
             }
             renderer.store_flipped(self.at.flipped);
+            renderer.store_reads(self.reads.unwrap_or_default());
             return Ok(Recorded::Finished(self.at.loops));
         };
         let readbacks = readbacks(renderer, encoder, &wait, &self.recording.runs);
@@ -115,6 +125,7 @@ impl SuspendedFrame {
         let mut values = before.clone();
         let plan = renderer.plan();
         frame.at.cursor.supply(plan, &words, &mut values)?;
+        renderer.lag.record(&values);
         if values != before {
             renderer.apply_decision(values).await?;
             frame.id = renderer.frame_id;
@@ -146,16 +157,18 @@ impl Renderer {
         }
         self.write_frame_blocks()?;
         self.frame_id += 1;
-        let at = FrameCursor::new(self.plan(), self.readbacks, self.flipped());
-        Ok(Frame { id: self.frame_id, at, recording: Recording::default() })
+        let at = FrameCursor::new(self.plan(), self.frame_readbacks(), self.flipped());
+        let reads = self.copies_reads().then(Vec::new);
+        Ok(Frame { id: self.frame_id, at, recording: Recording::default(), reads })
     }
 
     /// Renders and submits a whole frame, and blocks where the host must read. Browsers cannot block: record segments and await
-    /// there. Returns reports on the loops ([`Recorded::Finished`]).
+    /// there. Lagged decisions are applied first ([`Renderer::decide`]). Returns reports on the loops ([`Recorded::Finished`]).
     pub fn render(&mut self, output: &Output<'_>, draw: &mut Draw<'_>) -> Result<Vec<LoopReport>, Error> {
+        let device = self.device.clone();
+        crate::block_on(&device, self.decide())??;
         let mut frame = self.begin()?;
         loop {
-            let device = self.device.clone();
             let record = || {
                 let descriptor = wgpu::CommandEncoderDescriptor { label: Some("fragbuf") };
                 let mut encoder = device.create_command_encoder(&descriptor);

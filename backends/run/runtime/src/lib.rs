@@ -30,6 +30,7 @@ mod frame_blocks;
 mod frame_resources;
 mod geometry_pass;
 pub mod headless;
+mod lagged;
 mod layout;
 mod limits;
 mod memory;
@@ -60,7 +61,8 @@ pub use buckets::Buckets;
 pub use draw::{Call, Draw, Output};
 pub use error::Error;
 pub use fragbuf_frame::{
-    Counter, Counters, DEFAULT_MEMORY, LoopEnd, LoopReport, MemoryNeed, PassTime, PoolSize, Sizing, Value,
+    Counter, Counters, DEFAULT_MEMORY, Decisions, LaggedValues, LoopEnd, LoopReport, MemoryNeed, PassTime, PoolSize,
+    Sizing, Value,
 };
 pub use frame::{Frame, Recorded, SuspendedFrame};
 pub use geometry_pass::{GeometryPass, ModuleFunction};

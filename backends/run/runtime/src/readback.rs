@@ -1,6 +1,7 @@
 //! Readbacks of words from the device. A [`Pending`] is a future that becomes ready after the recorded commands are submitted.
 //! Where blocking is possible, [`Pending::wait`] blocks.
 
+use std::fmt;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -75,6 +76,12 @@ impl<T> Pending<T> {
         drop(view);
         self.buffer.unmap();
         Ok(words)
+    }
+}
+
+impl<T> fmt::Debug for Pending<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Pending").field("is_ready", &self.is_ready()).finish_non_exhaustive()
     }
 }
 

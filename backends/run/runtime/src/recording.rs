@@ -203,6 +203,7 @@ pub(crate) fn clear(renderer: &Renderer, encoder: &mut wgpu::CommandEncoder, res
 }
 
 /// Words for the host.
+#[derive(Debug)]
 pub(crate) enum Readback {
     Pending(Pending<Vec<u32>>),
     /// This many zeros: for an empty resource, a range beyond a buffer's end, or the samples of a pass that has not run.

@@ -3,18 +3,20 @@
 //! Input: a device, a queue, shaders and settings. Output: frames to record ([`Renderer::begin`]), and the kept fragments, counters
 //! and times of a frame. Only [`Renderer::render`] submits commands.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use fragbuf_codegen::{Plan, SymbolId};
 use fragbuf_frame::{
-    MemoryLimits, Readbacks, Values, host_sets_k, initial_values, pool_size_after, reserve, reuse_pool_sizes,
-    set_uniform, zero_uniforms,
+    LaggedValues, MemoryLimits, Readbacks, Values, host_sets_k, initial_values, pool_size_after, reserve,
+    reuse_pool_sizes, set_uniform, zero_uniforms,
 };
 
 use crate::error_scope::in_error_scope;
 use crate::external::accept;
 use crate::frame_resources::{DeviceObjects, FrameResources, Timestamps};
+use crate::lagged::FrameReads;
 use crate::memory_limits::memory_limits;
 use crate::objects::Objects;
 use crate::pipelines::PipelineSet;
@@ -40,7 +42,11 @@ pub struct Renderer {
     timestamps: Timestamps,
     uniform_buffers: UniformBuffers,
     uniforms: Vec<u32>,
-    k: Option<u32>,
+    pub(crate) k: Option<u32>,
+    /// The decisions of earlier frames that later ones use.
+    pub(crate) lag: LaggedValues,
+    /// The words that frames have copied for such decisions, the oldest first.
+    pub(crate) reads: Mutex<VecDeque<FrameReads>>,
     camera: Mutex<[f32; 16]>,
     /// The exchanges that the last frame left flipped.
     flipped: AtomicU32,
@@ -95,6 +101,8 @@ impl Renderer {
             uniform_buffers,
             uniforms,
             k,
+            lag: LaggedValues::new(&pipelines.0.plan, settings.decisions),
+            reads: Mutex::new(VecDeque::new()),
             camera: Mutex::new(IDENTITY),
             flipped: AtomicU32::new(0),
             queries,
@@ -117,6 +125,7 @@ impl Renderer {
         if is_decided {
             self.k = Some(1);
         }
+        self.forget_decisions();
         Ok(())
     }
 
@@ -288,7 +297,7 @@ impl Renderer {
     }
 
     /// Resizes the frame to `values`, in slices that fit. An error changes nothing.
-    async fn resize_to(&mut self, values: Values) -> Result<(), Error> {
+    pub(crate) async fn resize_to(&mut self, values: Values) -> Result<(), Error> {
         let rows = self.rows(&values)?;
         self.reallocate(values.with_rows(rows)).await
     }
@@ -334,7 +343,7 @@ impl Renderer {
             plan: self.plan(),
             values: self.current_values(),
             memory: &self.resources.memory,
-            readbacks: self.readbacks,
+            readbacks: self.frame_readbacks(),
             flipped: self.flipped(),
             max_workgroups: self.device.limits().max_compute_workgroups_per_dimension,
         }

@@ -1,6 +1,6 @@
 //! The settings of a renderer.
 
-use fragbuf_frame::{DEFAULT_MEMORY, Sizing};
+use fragbuf_frame::{DEFAULT_MEMORY, Decisions, Sizing};
 
 /// The settings of a renderer. [`Settings::new`] has the defaults; every field may be changed.
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub struct Settings {
     pub height: u32,
     /// How memory is sized for fragments whose number is unknown in advance.
     pub sizing: Sizing,
+    /// Whether frames wait for the decisions of host steps, or use those of earlier frames ([`crate::Renderer::decide`]).
+    pub decisions: Decisions,
     /// The rows of a slice. The frame is drawn slice by slice, and each slice draws the whole scene. `None`: as many rows as
     /// the device's limits and `memory` allow, which is the whole frame unless its buffers are too large.
     pub slice: Option<u32>,
@@ -73,6 +75,7 @@ impl Settings {
             width,
             height,
             sizing: Sizing::Auto,
+            decisions: Decisions::Immediate,
             slice: None,
             memory: DEFAULT_MEMORY,
             checks: Checks::Auto,

@@ -14,9 +14,9 @@ use crate::drivers::scene::{Quad, first_difference, image, vertices};
 use crate::order::Numbers;
 use crate::stage::{BACKGROUND, FORMAT, device, renderer, shaders, technique, vertex_buffer};
 
-const SIDE: u32 = 128;
+pub const SIDE: u32 = 128;
 /// The budget of the descriptions: 1 MiB.
-const BUDGET: u64 = 1 << 20;
+pub const BUDGET: u64 = 1 << 20;
 /// Storages of k slots per pixel: technique, sync, and the words per pixel beside the entries. One counts the fragments for the histogram.
 const SLOTS: [(&str, &str, u64); 4] = [
     ("kplus_array", "spin_lock", 3),
@@ -26,7 +26,7 @@ const SLOTS: [(&str, &str, u64); 4] = [
 ];
 
 /// Returns quads of different depths: ten of them share one corner of the frame.
-fn scene(seed: u64) -> Vec<Quad> {
+pub fn scene(seed: u64) -> Vec<Quad> {
     let mut numbers = Numbers::seeded(seed);
     let quad = |id: u32| Quad {
         x: [0, 1 + numbers.below(SIDE)],
@@ -39,7 +39,7 @@ fn scene(seed: u64) -> Vec<Quad> {
 }
 
 /// Returns the number of fragments of each pixel.
-fn fragments(quads: &[Quad]) -> Vec<u32> {
+pub fn fragments(quads: &[Quad]) -> Vec<u32> {
     let covers =
         |quad: &Quad, x: u32, y: u32| (quad.x[0]..quad.x[1]).contains(&x) && (quad.y[0]..quad.y[1]).contains(&y);
     (0..SIDE * SIDE)
@@ -48,7 +48,7 @@ fn fragments(quads: &[Quad]) -> Vec<u32> {
 }
 
 /// Returns the least k that keeps `percent` of the fragments, and the greatest within the budget if pixels have these constants.
-fn expected_k(counts: &[u32], percent: u64, most: u32, bytes: impl Fn(u32, u64) -> u64) -> u32 {
+pub fn expected_k(counts: &[u32], percent: u64, most: u32, bytes: impl Fn(u32, u64) -> u64) -> u32 {
     let kept = |k: u32| counts.iter().map(|count| u64::from(*count.min(&k))).sum::<u64>();
     let all = kept(u32::MAX);
     let fitting: Vec<u32> = (1..=most).filter(|k| bytes(*k, kept(*k)) <= BUDGET).collect();
@@ -99,7 +99,7 @@ fn check(key: &str, variant: &Variant, percent: u64, most: u32, bytes: impl Fn(u
 }
 
 /// The words of the resources that do not follow k: the histogram, and the counters.
-fn constant(variant: &Variant) -> u64 {
+pub fn constant(variant: &Variant) -> u64 {
     let names = ["histogram", "counters", "changed"];
     let plan = shaders(variant, "wgsl").plan;
     let fixed = plan.resources.iter().filter(|planned| names.contains(&planned.resource.name.as_str()));

@@ -27,6 +27,7 @@ mod drivers;
 mod embedding;
 mod failures;
 mod invariance;
+mod lagged;
 mod larger;
 mod limits;
 mod losses;

@@ -149,6 +149,8 @@ impl<'s> Frame<'s> {
                 }
             }
             FrameStep::Wait(wait) => self.supply(wait)?,
+            // The cursor of the checker waits for every decision.
+            FrameStep::Read(_) => {}
         }
         Ok(())
     }

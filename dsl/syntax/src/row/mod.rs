@@ -10,7 +10,8 @@
 //! //: pass store: taken atomic, entries plain                 a pass of the frame, in order, and its uses
 //! //: pass resolve: taken read, entries read
 //! //: host allocate: reads offsets[pixels]; sets fragments    a decision of the host between two passes: `name`, all
-//!                                                            words; `name[index]`, one; `name[first for count]`, some
+//!                                                            words; `name[index]`, one; `name[first for count]`, some;
+//!                                                            `; lags` if values of an earlier frame will do
 //! //: provides keeps-best, indexed                              capabilities
 //! //: requires mutual-exclusion, fragment-atomics                      capabilities of other rows, features of targets
 //! //: requires u64-atomics when LIMIT > 64                      features that are required under a condition

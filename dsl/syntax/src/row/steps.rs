@@ -48,20 +48,24 @@ impl Statements {
         Ok(())
     }
 
-    /// Parses `host function: reads offsets[pixels], histogram, words[4 for 8]; sets fragments`.
+    /// Parses `host function: reads offsets[pixels], histogram, words[4 for 8]; sets fragments`, and `; lags` after it.
     pub(super) fn host(&mut self, line: &mut Line<'_>) -> Read<()> {
         const SHAPE: &str = "`host allocate: reads offsets[pixels]; sets fragments`";
         let function = self.reader.name(line, "the host's function", SHAPE)?;
         self.reader.punct(line, ':', SHAPE)?;
         let mut host = Host::new(&function.value);
         loop {
-            let verb = self.reader.name(line, "`reads` or `sets`", SHAPE)?;
+            let verb = self.reader.name(line, "`reads`, `sets` or `lags`", SHAPE)?;
             loop {
                 host = match verb.value.as_str() {
                     "reads" => self.host_read(line, host, SHAPE)?,
                     "sets" => self.host_set(line, host, SHAPE)?,
+                    "lags" => {
+                        host = host.lags();
+                        break;
+                    }
                     other => {
-                        let message = format!("expected `reads` or `sets`, found `{other}`");
+                        let message = format!("expected `reads`, `sets` or `lags`, found `{other}`");
                         return self.reader.stop(codes::INVALID_ROW, &verb.span, message, format!("write {SHAPE}"));
                     }
                 };

@@ -81,7 +81,11 @@ fn host(plan: &Plan, decision: &Decision) -> Value {
     };
     let reads: Vec<Value> = decision.reads.iter().map(read).collect();
     let sets: Vec<&str> = decision.sets.iter().map(|id| &*plan.symbols.get(*id).name).collect();
-    json!({ "do": "host", "function": decision.name, "reads": reads, "sets": sets })
+    let mut step = json!({ "do": "host", "function": decision.name, "reads": reads, "sets": sets });
+    if decision.may_lag {
+        step["may_lag"] = true.into();
+    }
+    step
 }
 
 /// Tests whether a command uses one resource of a pair.
