@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fragbuf_frame::Decisions;
 
+use super::animated_image::AnimatedImage;
 use super::output::Failure;
 use super::picture;
 use super::view::View;
@@ -21,11 +22,23 @@ pub(crate) struct Animation {
     /// once, and shrinks after eight frames that need less
     #[arg(long, requires = "frames")]
     lagged: bool,
+    /// Write the frames to one animated PNG, `--out`, instead of numbered images
+    #[arg(long, requires = "frames")]
+    animated: bool,
+    /// Milliseconds for which an animated PNG shows each frame
+    #[arg(long, value_name = "MS", default_value_t = 100, requires = "animated", value_parser = clap::value_parser!(u16).range(1..))]
+    delay: u16,
 }
 
 impl Animation {
     pub(crate) fn is_given(&self) -> bool {
         self.frames.is_some()
+    }
+
+    /// Returns the animated PNG for the frames of `views`, if there is to be one.
+    pub(crate) fn image(&self, view: &View) -> Option<AnimatedImage> {
+        let frames = self.frames.filter(|_| self.animated)?;
+        Some(AnimatedImage::new(&view.out, view.size, frames, self.delay, view.linear))
     }
 
     /// Returns the view of each frame.
@@ -35,7 +48,9 @@ impl Animation {
             return Err(Failure::Usage("`--orbit` is not a finite number of degrees".to_owned()));
         }
         if picture::is_stdout(&view.out) {
-            return Err(Failure::Usage("`--frames` writes several images: give a file to `--out`".to_owned()));
+            return Err(Failure::Usage(
+                "`--frames` prints a line per frame on stdout: give a file to `--out`".to_owned(),
+            ));
         }
         let step = self.orbit / f64::from(frames);
         let one = |number: u32| {

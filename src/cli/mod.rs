@@ -3,6 +3,7 @@
 //! Exit code 0: done. 1: an error in the description or an input. 2: usage. 3: device or file system.
 
 #[cfg(feature = "pictures")]
+mod animated_image;
 mod animation;
 mod assignment;
 #[cfg(feature = "pictures")]

@@ -91,6 +91,23 @@ impl From<png::EncodingError> for EncodeError {
     }
 }
 
+/// Returns an encoder of red, green, blue and alpha in 8 bits each.
+pub(super) fn encoder<W: Write>(file: W, (width, height): (u32, u32), linear: bool) -> png::Encoder<'static, W> {
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    if !linear {
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    }
+    encoder
+}
+
+/// Returns a value from 0 to 1 in 8 bits.
+pub(super) fn byte(value: f32) -> u8 {
+    (255.0 * value).round() as u8
+}
+
 /// Writes the pixels as a PNG.
 fn encode(
     file: &mut dyn Write,
@@ -98,19 +115,12 @@ fn encode(
     pixels: &mut dyn Iterator<Item = [f32; 4]>,
     linear: bool,
 ) -> Result<(), EncodeError> {
-    let mut encoder = png::Encoder::new(&mut *file, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
-    if !linear {
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    }
-    let mut writer = encoder.write_header()?;
+    let mut writer = encoder(&mut *file, (width, height), linear).write_header()?;
     let mut stream = writer.stream_writer()?;
     let mut row = Vec::with_capacity(4 * width as usize);
     for _ in 0..height {
         row.clear();
-        row.extend(pixels.take(width as usize).flatten().map(|value| (255.0 * value).round() as u8));
+        row.extend(pixels.take(width as usize).flatten().map(byte));
         stream.write_all(&row).map_err(EncodeError::Write)?;
     }
     stream.finish()?;

@@ -6,6 +6,7 @@ use fragbuf::Registry;
 use fragbuf_frame::LaggedValues;
 use serde_json::Value;
 
+use super::animated_image::AnimatedImage;
 use super::animation::Animation;
 use super::assignment::{assignment, uniform};
 use super::attributes::{check_sources, model_attributes};
@@ -63,15 +64,16 @@ impl Render {
             return Err(Failure::Usage("`--watch` renders one image again and again: leave out `--frames`".to_owned()));
         }
         let views = self.animation.views(&self.view)?;
-        let (mut statistics, mut lagged) = (Vec::new(), None);
+        let mut statistics = Vec::new();
+        let mut sequence = Sequence { lagged: None, image: self.animation.image(&self.view) };
         for (number, view) in (0..).zip(views) {
-            let frame = self.frame(&view, lagged.as_ref(), &mut Vec::new())?;
-            lagged = frame.lagged;
+            let found = self.frame(&view, &mut sequence, &mut Vec::new())?;
             match view.json {
-                true => statistics.push(frame.statistics),
-                false => output::print(&line(number, &frame.statistics))?,
+                true => statistics.push(found),
+                false => output::print(&line(number, &found))?,
             }
         }
+        sequence.image.map_or(Ok(()), AnimatedImage::finish)?;
         match self.view.json {
             true => output::print(&output::json(&statistics.into())),
             false => Ok(()),
@@ -80,20 +82,15 @@ impl Render {
 
     /// Renders once, and adds the files that it reads to `files`.
     fn render(&self, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
-        let frame = self.frame(&self.view, None, files)?;
+        let found = self.frame(&self.view, &mut Sequence::default(), files)?;
         match self.view.json {
-            true => output::print(&output::json(&frame.statistics)),
+            true => output::print(&output::json(&found)),
             false => Ok(()),
         }
     }
 
-    /// Renders a view with the lagged decisions of the previous frame, and adds the files that it reads to `files`.
-    fn frame(
-        &self,
-        view: &View,
-        lagged: Option<&LaggedValues>,
-        files: &mut Vec<PathBuf>,
-    ) -> Result<RenderedFrame, Failure> {
+    /// Renders the next frame of a sequence, adds the files that it reads to `files`, and returns the statistics of the frame.
+    fn frame(&self, view: &View, sequence: &mut Sequence, files: &mut Vec<PathBuf>) -> Result<Value, Failure> {
         let progress = Progress::new();
         progress.set_message(format!("loading {}", view.scene));
         let registry = Registry::builtin();
@@ -113,24 +110,31 @@ impl Render {
             count_all: view.json || self.animation.is_given(),
             opaque: opaque.as_ref(),
             held: 0,
-            lagged,
+            lagged: sequence.lagged.as_ref(),
             words: &[],
         };
         let mut selection = select(view, &scene, &mut [(&request, &mut input)])?;
         let result = render(&request, &mut input, (view, &mut selection), &scene, &progress)?;
         progress.set_message(format!("writing {}", view.out.display()));
         let shown = |pixel: &[f32; 4]| picture::displayed(*pixel, view.background, view.linear);
-        picture::write(&view.out, view.size, &mut result.stats.pixels.iter().map(shown), view.linear)?;
+        let pixels = &mut result.stats.pixels.iter().map(shown);
+        match &mut sequence.image {
+            Some(image) => image.append(pixels)?,
+            None => picture::write(&view.out, view.size, pixels, view.linear)?,
+        }
         let statistics = statistics(&self.description, &result, &selection, &scene);
-        Ok(RenderedFrame { statistics, lagged: result.stats.lagged })
+        sequence.lagged = result.stats.lagged;
+        Ok(statistics)
     }
 }
 
-/// A frame whose image is written.
-struct RenderedFrame {
-    statistics: Value,
-    /// The decisions for the next frame.
+/// What the frames of an animation pass on.
+#[derive(Default)]
+struct Sequence {
+    /// The decisions of the previous frame.
     lagged: Option<LaggedValues>,
+    /// The image of all frames; `None` if each has its own.
+    image: Option<AnimatedImage>,
 }
 
 /// Returns the line of a frame: k, bytes and hit ratio, as far as the description has them, and whether an earlier frame decided k.
