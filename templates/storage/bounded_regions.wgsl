@@ -55,8 +55,8 @@ fn storage_reserve(pixel: u32, entry: Packed) -> bool {
         on_lost(pixel, entry, POOL_EXHAUSTED);
         return true;
     }
-    entries_store(slot, pixel, entry);
-    keys_store(slot, pixel, entry.key);
+    region_entries_store(begin + slot, entry);
+    region_keys_store(begin + slot, entry.key);
     return true;
 }
 
@@ -74,21 +74,22 @@ fn storage_insert(pixel: u32, entry: Packed) {
 
 fn storage_worst(pixel: u32) -> u32 {
     // Only over-capacity pixels displace fragments, and array and heap keep the worst in the same slot.
-    return array_worst(pixel);
+    return offsets_load(pixel) + array_worst(pixel);
 }
 
 fn storage_replace(pixel: u32, cursor: u32, entry: Packed) {
-    array_replace(pixel, cursor, entry);
+    array_replace(pixel, cursor - offsets_load(pixel), entry);
 }
 
 fn storage_first(pixel: u32) -> u32 {
-    let size = offsets_load(pixel + 1u) - offsets_load(pixel);
+    let begin = offsets_load(pixel);
+    let size = offsets_load(pixel + 1u) - begin;
     if bounded_regions_is_over_capacity(pixel) {
-        return bounded_regions_cursor(pixel, size - kept_counts_load(pixel));
+        return bounded_regions_cursor(pixel, begin + size - kept_counts_load(pixel));
     }
     // Slots are reserved from the last down; no fragment reserved those below the count.
     let left = counts_load(pixel);
-    return bounded_regions_cursor(pixel, select(left, 0u, left > size));
+    return bounded_regions_cursor(pixel, begin + select(left, 0u, left > size));
 }
 
 fn storage_next(pixel: u32, cursor: u32) -> u32 {
@@ -96,17 +97,16 @@ fn storage_next(pixel: u32, cursor: u32) -> u32 {
 }
 
 fn storage_read(pixel: u32, cursor: u32) -> Packed {
-    return entries_load(cursor, pixel, keys_load(cursor, pixel));
+    return region_entries_load(cursor, region_keys_load(cursor));
 }
 
 fn bounded_regions_is_over_capacity(pixel: u32) -> bool {
     return counts_load(pixel) >> 30u == OVER_CAPACITY >> 30u;
 }
 
-fn bounded_regions_cursor(pixel: u32, slot: u32) -> u32 {
-    let begin = offsets_load(pixel);
-    let end = min(offsets_load(pixel + 1u), frame.kept);
-    return select(END, slot, begin + slot < end);
+/// Returns the cursor if it is in the region. A cursor is the number of a slot in all regions.
+fn bounded_regions_cursor(pixel: u32, cursor: u32) -> u32 {
+    return select(END, cursor, cursor < min(offsets_load(pixel + 1u), frame.kept));
 }
 
 // Accessors that the array and the heap use as their memory: slots of the pixel's region.
