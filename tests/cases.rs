@@ -119,6 +119,7 @@ fn written() -> Vec<Case> {
         ("dual_fab", technique("dual_fab"), vec![]),
         ("dual_kb", technique("dual_kb"), vec![]),
         ("predicted", technique("mdt32_coplanar"), vec![("allocation", "predicted"), ("allocation.hit_ratio", "90")]),
+        ("by_importance", technique("kplus_ab_sb"), vec![("allocation", "by_importance")]),
         ("temporal", technique("kplus_array"), vec![("cull", "temporal")]),
         ("ab_ll_paged", technique("ab_ll_paged"), vec![]),
         ("ab_ll_bun", technique("ab_ll_bun"), vec![]),

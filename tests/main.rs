@@ -25,6 +25,7 @@ mod examples;
 mod figures;
 mod fixes;
 mod fuzz;
+mod importance;
 mod inputs;
 mod instances;
 mod limits;

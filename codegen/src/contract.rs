@@ -43,6 +43,8 @@ pub const CONTRACTS: &[Contract] = &[
         "(pixel: u32) -> u32",
         "returns how many fragments of the pixel were counted",
     ),
+    row("allocation", "allocation_slots", "(pixel: u32) -> u32", "returns how many fragments the pixel keeps at most"),
+    row("allocation", "allocation_level", "(pixel: u32) -> u32", "returns the importance of the pixel, from 0 to 255"),
     row("storage", "storage_prepass", "(pixel: u32, entry: Packed)", "records a fragment that a later pass will store"),
     row("storage", "storage_insert", "(pixel: u32, entry: Packed)", "stores a fragment, or passes one to on_lost"),
     row("storage", "storage_refine", "(pixel: u32, entry: Packed)", "writes further words of a stored fragment"),

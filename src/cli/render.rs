@@ -54,7 +54,7 @@ impl Render {
         }
         let is_file = Input::is_file(&self.description, &Registry::builtin());
         let description = is_file.then(|| PathBuf::from(&self.description));
-        let files = description.into_iter().chain(self.view.models()).collect();
+        let files = description.into_iter().chain(self.view.files()).collect();
         watch(files, "give a .fragbuf file, or a model to `--scene`", |files| self.render(files))
     }
 
@@ -101,6 +101,7 @@ impl Render {
         // Before the scene is loaded and a device is selected.
         uniforms::values(&self.uniforms, &variant)?;
         let (scene, opaque) = view.scene_views(&model_attributes(&[&variant], &view.attributes)?)?;
+        files.extend(view.importance.clone());
         files.extend([Some(&scene), opaque.as_ref()].into_iter().flatten().flat_map(|view| view.scene.files.clone()));
         check_sources(&[&variant], &scene.scene, &view.attributes)?;
         let request = RenderRequest {

@@ -24,6 +24,9 @@ pub(crate) struct View {
     /// camera frames both scenes. The description uses `opaque=in_shader` unless it chooses another value
     #[arg(long, value_name = "PATH|builtin:NAME")]
     opaque: Option<String>,
+    /// PNG of the size of the image with the importance of each pixel, white for the most, for `allocation=by_importance`
+    #[arg(long, value_name = "PNG")]
+    pub(crate) importance: Option<PathBuf>,
     /// Size of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub(crate) size: (u32, u32),
@@ -104,6 +107,7 @@ impl View {
         View {
             scene,
             opaque: None,
+            importance: None,
             size,
             out: PathBuf::new(),
             camera,
@@ -163,10 +167,11 @@ impl View {
         Ok(scene)
     }
 
-    /// Returns the paths of the models among the scenes.
-    pub(crate) fn models(&self) -> impl Iterator<Item = PathBuf> {
+    /// Returns the paths of the models among the scenes, and that of the importance.
+    pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let scenes = std::iter::once(&self.scene).chain(&self.opaque);
-        scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from)
+        let models = scenes.filter(|scene| !scene.starts_with("builtin:")).map(PathBuf::from);
+        models.chain(self.importance.clone())
     }
 
     /// Returns the memory that is left beside scenes.

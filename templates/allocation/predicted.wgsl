@@ -10,3 +10,7 @@ fn allocation_count(pixel: u32) {
 fn allocation_fragments(pixel: u32) -> u32 {
     return complexity_load(pixel);
 }
+
+fn allocation_slots(pixel: u32) -> u32 {
+    return frame.k;
+}

@@ -6,3 +6,7 @@
 fn allocation_fragments(pixel: u32) -> u32 {
     return storage_fragments(pixel);
 }
+
+fn allocation_slots(pixel: u32) -> u32 {
+    return frame.k;
+}

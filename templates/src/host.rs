@@ -1,5 +1,6 @@
 //! Axis `host`: decisions of the host between two submissions. These rows have a function and no template.
 
+use crate::importance::share_k;
 use crate::prediction::predict_k;
 use crate::vocabulary::{HostCall, HostFunction, Row};
 
@@ -17,6 +18,10 @@ pub(crate) fn rows() -> Vec<Row> {
                 "sets k by a histogram, a budget and a hit ratio",
                 "K15 §4.2, Eq. 4-7, corrected",
             )
+        },
+        Row {
+            host: Some(HostFunction(share_k)),
+            ..Row::new("host", "share_k", "sets k by a budget and the importance of pixels", "Vasilakis et al. 2017")
         },
     ]
 }

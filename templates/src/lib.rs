@@ -24,6 +24,7 @@ mod conditions;
 mod counters;
 mod cull;
 mod host;
+mod importance;
 mod opaque;
 mod overflow;
 mod pass;

@@ -133,6 +133,12 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "allocation"],
         ),
         row(
+            "count_by_importance",
+            "counts the pixels of each importance and each number of fragments",
+            template!("pass/count_by_importance"),
+            vec!["addressing", "allocation"],
+        ),
+        row(
             "occupancy_bound",
             "narrows the range of each pixel's keys to those that can be kept",
             template!("pass/occupancy_bound"),

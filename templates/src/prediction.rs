@@ -105,7 +105,7 @@ impl Histogram {
 }
 
 /// Returns the first number from 1 to `end` that holds, or `end + 1`. No number may fail after one that holds.
-fn first(end: u32, holds: impl Fn(u32) -> bool) -> u32 {
+pub(crate) fn first(end: u32, holds: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (1, end + 1);
     while low < high {
         let middle = low + (high - low) / 2;

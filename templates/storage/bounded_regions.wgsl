@@ -3,6 +3,7 @@
 // fragments, each fragment decrements the count, which reserves a slot for it without a lock. An over-capacity pixel
 // (f > k) uses its region as a max array, or as a max heap if k > ARRAY_MOST, under the lock. The count is not limited
 // while fragments are counted: the published check before the addition overshoots k, and cannot tell f = k from f > k.
+// The k of a pixel is that of the frame, unless the allocation gives each pixel its own.
 //
 // Invariant: in an over-capacity pixel, at every instant, the key of slot 0 is EMPTY or at least the k-th best key so
 // far. The array or the heap keeps it so, and it is EMPTY until k fragments are stored. So the bound is that word, and
@@ -23,11 +24,16 @@ fn storage_fragments(pixel: u32) -> u32 {
 }
 
 fn storage_size(pixel: u32) -> u32 {
-    return min(counts_load(pixel), frame.k);
+    let fragments = counts_load(pixel);
+    // Padding has no fragments, and nor have rows below the frame. A pixel that has one fragment keeps it.
+    if fragments <= 1u {
+        return fragments;
+    }
+    return min(fragments, allocation_slots(pixel));
 }
 
 fn storage_reset(pixel: u32) {
-    if counts_load(pixel) <= frame.k {
+    if counts_load(pixel) <= storage_size(pixel) {
         return;
     }
     kept_counts_store(pixel, 0u);
@@ -65,7 +71,7 @@ fn storage_insert(pixel: u32, entry: Packed) {
         on_lost(pixel, entry, POOL_EXHAUSTED);
         return;
     }
-    if frame.k > ARRAY_MOST {
+    if allocation_slots(pixel) > ARRAY_MOST {
         heap_insert(pixel, entry);
     } else {
         array_insert(pixel, entry);

@@ -18,13 +18,13 @@ fn storage_bound(pixel: u32) -> u32 {
 
 fn storage_insert(pixel: u32, entry: Packed) {
     let kept_before = kept_counts_load(pixel);
-    if kept_before + 1u < frame.k {
-        max_array_write(pixel, frame.k - 1u - kept_before, entry);
+    if kept_before + 1u < allocation_slots(pixel) {
+        max_array_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry);
         kept_counts_store(pixel, kept_before + 1u);
         return;
     }
-    if kept_before < frame.k {
-        kept_counts_store(pixel, frame.k);
+    if kept_before < allocation_slots(pixel) {
+        kept_counts_store(pixel, allocation_slots(pixel));
     }
     let worst = max_array_read(pixel, 0u);
     if !better(entry, worst) {
@@ -62,7 +62,7 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
 fn max_array_replace_worst(pixel: u32, entry: Packed) {
     var worst = entry;
     var worst_slot = 0u;
-    for (var slot = 1u; slot < frame.k; slot++) {
+    for (var slot = 1u; slot < allocation_slots(pixel); slot++) {
         let resident = max_array_read(pixel, slot);
         if better(worst, resident) {
             worst = resident;

@@ -19,8 +19,8 @@ fn storage_bound(pixel: u32) -> u32 {
 
 fn storage_insert(pixel: u32, entry: Packed) {
     let kept_before = kept_counts_load(pixel);
-    if kept_before + 1u < frame.k {
-        max_heap_write(pixel, frame.k - 1u - kept_before, entry);
+    if kept_before + 1u < allocation_slots(pixel) {
+        max_heap_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry);
         kept_counts_store(pixel, kept_before + 1u);
         return;
     }
@@ -31,9 +31,9 @@ fn storage_insert(pixel: u32, entry: Packed) {
     }
     // The k-th insert sifts every slot with children, the deepest first; each later one sifts slot 0 only.
     var tops = 1u;
-    if kept_before < frame.k {
-        kept_counts_store(pixel, frame.k);
-        tops = max(frame.k / 2u, 1u);
+    if kept_before < allocation_slots(pixel) {
+        kept_counts_store(pixel, allocation_slots(pixel));
+        tops = max(allocation_slots(pixel) / 2u, 1u);
     }
     for (; tops > 0u; tops--) {
         var sifted = entry;
@@ -72,9 +72,9 @@ fn storage_read(pixel: u32, cursor: u32) -> Packed {
 fn max_heap_sift(pixel: u32, top: u32, entry: Packed) {
     var hole = top;
     var child = 2u * hole + 1u;
-    while child < frame.k {
+    while child < allocation_slots(pixel) {
         var worst = max_heap_read(pixel, child);
-        if child + 1u < frame.k {
+        if child + 1u < allocation_slots(pixel) {
             let sibling = max_heap_read(pixel, child + 1u);
             if better(worst, sibling) {
                 worst = sibling;

@@ -1,6 +1,6 @@
 //! Resources of a plan and their sizes.
 
-use fragbuf_templates::vocabulary::{Element, Expression, Formula, FormulaError, Init, Resource};
+use fragbuf_templates::vocabulary::{Element, Expression, Formula, FormulaError, Init, Resource, TextureFormat};
 
 use crate::Quantity;
 
@@ -23,6 +23,11 @@ impl PlannedResource {
     /// Tests whether it is an external texture: the caller owns its memory and writes it.
     pub fn is_external(&self) -> bool {
         self.resource.init == Init::External && matches!(self.resource.element, Element::Texture(_))
+    }
+
+    /// Tests whether it is the external depth buffer of opaque surfaces.
+    pub fn is_opaque_depth(&self) -> bool {
+        self.is_external() && self.resource.element == Element::Texture(TextureFormat::Depth32Float)
     }
 
     /// Tests whether it is a texture with several samples per pixel.

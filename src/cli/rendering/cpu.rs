@@ -9,7 +9,9 @@ use fragbuf::{Diagnostics, Registry};
 use fragbuf_cpu::{Code, Device, Error, FragmentOrder, Mesh, Settings};
 use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
 
-use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::external::ExternalTextures;
+use super::importance::Importance;
+use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
@@ -50,12 +52,15 @@ pub(super) fn render(
     progress.set_message(format!("{}: compiling", request.description));
     let code = Code::of(variant, registry).map_err(|error| failure(error, |errors| input.failure(errors)))?;
     let code = Arc::new(code);
-    let external = external_textures(&code.plan, *opaque)?;
+    let external = ExternalTextures::of(&code.plan, view, *opaque)?;
     let opaque = opaque.map(|opaque| render_opaque(task, opaque, order, registry)).transpose()?;
     let geometry = geometry((&scene.scene, &view.attributes), &code.plan, *memory)?;
     let mesh = Mesh { vertices: &geometry.vertices, indices: &geometry.indices };
     let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
-    let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?.left();
+    let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?;
+    let importance = view.importance.as_ref().filter(|_| !external.importance.is_empty());
+    let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
+    let memory = importance.as_ref().map_or(memory, |importance| importance.memory).left();
     let uniforms = uniforms::values(request.uniforms, variant)?;
     let (width, height) = view.size;
     loop {
@@ -77,8 +82,11 @@ pub(super) fn render(
         for (name, value) in &uniforms {
             device.set_uniform(name, *value)?;
         }
-        for (name, opaque) in external.iter().zip(opaque.iter().cycle()) {
+        for (name, opaque) in external.depths.iter().zip(opaque.iter().cycle()) {
             device.set_texture(name, &opaque.depths)?;
+        }
+        for (name, importance) in external.importance.iter().zip(importance.iter().cycle()) {
+            device.set_texture(name, &importance.values)?;
         }
         device.set_objects(&geometry.objects);
         device.set_camera(&scene.camera.view_projection);

@@ -9,8 +9,10 @@ use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen, supported_interloc
 use fragbuf_runtime::wgpu;
 use fragbuf_runtime::{Error, Output, Pipelines, Renderer, Settings, Shaders, block_on};
 
+use super::external::ExternalTextures;
+use super::importance::Importance;
 use super::mesh::Mesh;
-use super::opaque::{OpaqueScene, depth_texture, external_textures};
+use super::opaque::{OpaqueScene, depth_texture};
 use super::prepared::FrameTime;
 use super::request::{RedrawState, RenderTask};
 use super::result::{FrameStats, RenderResult};
@@ -151,7 +153,7 @@ impl GpuRenderer {
         redraw: &mut RedrawState,
     ) -> Result<(RenderResult, GpuFrame), Failure> {
         let RenderTask { request, view, scene, progress, variant, opaque: opaque_scene, memory } = task;
-        let external = external_textures(&self.shaders.plan, *opaque_scene)?;
+        let external = ExternalTextures::of(&self.shaders.plan, view, *opaque_scene)?;
         let (width, height) = view.size;
         let Headless { device, queue, .. } = &self.headless;
         progress.set_message(format!("{}: creating pipelines", request.description));
@@ -159,7 +161,11 @@ impl GpuRenderer {
         let mesh = Mesh::upload(device, queue, &geometry)?;
         let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
         let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?;
-        let memory = memory.without(view.image_bytes(IMAGE), "the image")?.left();
+        let memory = memory.without(view.image_bytes(IMAGE), "the image")?;
+        let importance = view.importance.as_ref().filter(|_| !external.importance.is_empty());
+        let importance = importance.map(|path| Importance::read(path, view.size, memory)).transpose()?;
+        let memory = importance.as_ref().map_or(memory, |importance| importance.memory).left();
+        let importance = importance.map(|importance| importance.upload(device, queue, view.size));
         drop(geometry);
         let settings = Settings {
             memory,
@@ -188,8 +194,11 @@ impl GpuRenderer {
             for (name, value) in &uniforms {
                 renderer.set_uniform(name, *value)?;
             }
-            for (name, opaque) in external.iter().zip(opaque.iter().cycle()) {
+            for (name, opaque) in external.depths.iter().zip(opaque.iter().cycle()) {
                 block_on(device, renderer.set_texture(name, &opaque.depths))??;
+            }
+            for (name, importance) in external.importance.iter().zip(importance.iter().cycle()) {
+                block_on(device, renderer.set_texture(name, importance))??;
             }
             redraw.frames += 1;
             let (frame, slices) = (redraw.frames, renderer.slices());

@@ -6,8 +6,10 @@
 mod cpu;
 #[cfg(feature = "gpu")]
 mod estimate;
+mod external;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod importance;
 #[cfg(feature = "gpu")]
 mod mesh;
 mod opaque;

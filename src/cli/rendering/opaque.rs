@@ -1,9 +1,9 @@
 //! The opaque scene of `--opaque`, which is rendered first.
 //!
-//! Input: a scene view. Output: its description, and the texture names that connect it to the description rendered after it.
+//! Input: a scene view. Output: its description, and the name of the depth buffer that it leaves.
 //! Its depth buffer hides transparent fragments behind it; its image is their background.
 
-use fragbuf::vocabulary::{Capability, Init, Row, Technique};
+use fragbuf::vocabulary::{Capability, Init, Technique};
 use fragbuf::{Plan, Registry, Variant};
 
 use super::precision::{UNROUNDED, needs_unrounded_colors};
@@ -54,28 +54,6 @@ pub(super) fn depth_texture(plan: &Plan) -> Result<String, Failure> {
     let mut tests = plan.passes.iter().filter_map(|pass| pass.state.depth.as_ref());
     let written = tests.find(|test| test.write).map(|test| test.resource.clone());
     written.ok_or_else(|| Failure::Input("the opaque technique leaves no depth buffer".to_owned()))
-}
-
-/// Returns the names of the external textures that a plan reads. `Err`: it reads some, but there is no opaque scene.
-pub(super) fn external_textures(plan: &Plan, opaque: Option<&OpaqueScene<'_>>) -> Result<Vec<String>, Failure> {
-    let external = plan.resources.iter().filter(|planned| planned.is_external());
-    let names: Vec<String> = external.map(|planned| planned.resource.name.clone()).collect();
-    match names.first().filter(|_| opaque.is_none()) {
-        Some(name) => Err(Failure::Usage(missing_scene(plan, name))),
-        None => Ok(names),
-    }
-}
-
-/// Returns the message about a texture that only an opaque scene gives: the choice that reads it, and the value that reads none.
-fn missing_scene(plan: &Plan, texture: &str) -> String {
-    let reads = |row: &&Row| row.resources.iter().any(|resource| resource.name == texture);
-    let row = plan.selection.rows.iter().map(|selected| &*selected.row).find(reads);
-    let what = row.map_or("the description".to_owned(), |row| format!("`{}: {}`", row.axis, row.key));
-    let default = row.and_then(|row| Registry::builtin().axis(&row.axis)?.default.map(|key| (row.axis.clone(), key)));
-    let other = default.map_or(String::new(), |(axis, key)| format!(", or choose `--set {axis}={key}`"));
-    format!(
-        "{what} reads the external texture `{texture}`, which an opaque scene gives: add `--opaque SCENE`, as `--opaque builtin:cubes`{other}"
-    )
 }
 
 /// Blends premultiplied colours over a background.

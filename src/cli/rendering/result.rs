@@ -85,7 +85,7 @@ impl RenderResult {
                 false => format!("the image is empty: {}", self.reasons_of_empty(uniforms)),
             });
         }
-        if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_external()) {
+        if self.opaque.is_some() && !self.plan.resources.iter().any(|planned| planned.is_opaque_depth()) {
             warn("it does not read the opaque depth buffer, so fragments behind opaque surfaces are visible");
         }
         self.stats.unfinished_loops().for_each(|text| warn(&text));

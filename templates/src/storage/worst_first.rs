@@ -74,7 +74,7 @@ fn worst_first(row: Row) -> Row {
             ),
             resolve(&["keys", "entries", "kept_counts"]),
         ],
-        calls: vec!["overflow"],
+        calls: vec!["allocation", "overflow"],
         provides: [REPLACES_WORST.as_slice(), &SLOTS].concat(),
         requires: vec![Capability::MutualExclusion],
         needs: vec![Feature::FragmentAtomics],

@@ -30,6 +30,7 @@ names! {
         KeyPerSlot "a resource with the key of each of the k best fragments of a pixel, equal keys included";
         SlotsPerPixel "k slots per pixel, which a reset pass empties";
         Counted "the number of fragments of each pixel before they are stored";
+        KPerPixel "regions of fragments whose k may differ from pixel to pixel";
         ReportsWholeFragments "a storage that reports each lost fragment as a whole, with key and payload";
         KeepsArrival "kept fragments in the order of arrival if their keys are equal";
         Indexed "kept fragments with an index";

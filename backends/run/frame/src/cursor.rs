@@ -44,7 +44,8 @@ enum Purpose {
 
 impl Cursor {
     /// Returns a cursor at the beginning of a frame. With [`Readbacks::Disabled`] it requests nothing: it skips host steps, runs
-    /// loops to their limits and drops no object. With [`Readbacks::Lagged`] it only passes on what host steps read that may lag. `flipped` is [`Cursor::flipped`] at the end of the previous frame, 0 at first.
+    /// loops to their limits and drops no object. With [`Readbacks::Lagged`] it hands on the words of host steps that may lag, and does
+    /// not wait. `flipped` is [`Cursor::flipped`] at the end of the previous frame, 0 at first.
     pub fn new(plan: &Plan, readbacks: Readbacks, flipped: u32) -> Self {
         Cursor {
             readbacks,

@@ -38,4 +38,4 @@ pub use lanes::{LANES, LaneMachine, LaneMemory, LaneSet, LaneWorkgroup};
 pub use machine::{Exit, Machine, OutOfBoundsAccess};
 pub use memory::{Access, Atomic, Barrier, Event, Operation, Reply, Sequential, SharedMemory, WordAddress};
 pub use retry::LEAST_RETRY_LIMIT;
-pub use workgroup::{DispatchEnd, dispatch, set_invocation_ids, workgroup};
+pub use workgroup::{DispatchEnd, dispatch, dispatch_with_textures, set_invocation_ids, workgroup};

@@ -21,8 +21,21 @@ pub enum DispatchEnd {
     OutOfBounds(OutOfBoundsAccess),
 }
 
-/// Runs `groups` workgroups, one after the other.
+/// Returns the four channels of a texel of the texture with this number, at a column, row, and sample or level. `None`: out of bounds.
+pub type Texels<'a> = dyn Fn(u16, [u32; 3]) -> Option<[u32; 4]> + 'a;
+
+/// Runs `groups` workgroups, one after the other. There are no textures.
 pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) -> DispatchEnd {
+    dispatch_with_textures(program, groups, buffers, &|_, _| None)
+}
+
+/// Runs `groups` workgroups, one after the other.
+pub fn dispatch_with_textures(
+    program: &Bytecode,
+    groups: [u32; 3],
+    buffers: &mut [Vec<u32>],
+    texels: &Texels<'_>,
+) -> DispatchEnd {
     let mut outcome = DispatchEnd::Ended;
     for z in 0..groups[2] {
         for y in 0..groups[1] {
@@ -33,7 +46,8 @@ pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) 
                         words.resize(buffer.words as usize, buffer.initial);
                     }
                 }
-                match workgroup(program, [x, y, z], groups, &mut Sequential { buffers: &mut *buffers }) {
+                let mut memory = WithTextures { memory: Sequential { buffers: &mut *buffers }, texels };
+                match workgroup(program, [x, y, z], groups, &mut memory) {
                     DispatchEnd::Ended => {}
                     DispatchEnd::OutOfBounds(access) => outcome = DispatchEnd::OutOfBounds(access),
                     other => return other,
@@ -42,6 +56,30 @@ pub fn dispatch(program: &Bytecode, groups: [u32; 3], buffers: &mut [Vec<u32>]) 
         }
     }
     outcome
+}
+
+/// Sequential memory beside textures.
+struct WithTextures<'a> {
+    memory: Sequential<'a>,
+    texels: &'a Texels<'a>,
+}
+
+impl SharedMemory for WithTextures<'_> {
+    fn length(&self, buffer: u16) -> u32 {
+        self.memory.length(buffer)
+    }
+
+    fn constant(&self, address: WordAddress) -> u32 {
+        self.memory.constant(address)
+    }
+
+    fn texel(&self, texture: u16, coordinates: [u32; 3]) -> Option<[u32; 4]> {
+        (self.texels)(texture, coordinates)
+    }
+
+    fn event(&mut self, event: &Event) -> Reply {
+        self.memory.event(event)
+    }
 }
 
 /// Runs one of `groups` workgroups. In `shared`, workgroup memory has its initial words, and machines stop at barriers.

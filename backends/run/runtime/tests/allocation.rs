@@ -100,7 +100,7 @@ fn check(key: &str, variant: &Variant, percent: u64, most: u32, bytes: impl Fn(u
 
 /// The words of the resources that do not follow k: the histogram, and the counters.
 pub fn constant(variant: &Variant) -> u64 {
-    let names = ["histogram", "counters", "changed"];
+    let names = ["histogram", "shares", "counters", "changed"];
     let plan = shaders(variant, "wgsl").plan;
     let fixed = plan.resources.iter().filter(|planned| names.contains(&planned.resource.name.as_str()));
     fixed.map(|planned| 4 * plan.symbols.evaluate(&planned.words, &|_| None).unwrap()).sum()

@@ -26,6 +26,7 @@ mod criteria;
 mod drivers;
 mod embedding;
 mod failures;
+mod importance;
 mod invariance;
 mod lagged;
 mod larger;

@@ -8,14 +8,14 @@ use fragbuf_frame::{Cursor, FrameStep, HostWait, PassRun, Readbacks, Values, Wor
 use fragbuf_interpreter::{DispatchEnd, Exit};
 use fragbuf_templates::vocabulary::Kind;
 
-use crate::memory::{Memory, STALE, WIDTH, with_buffers};
+use crate::memory::{Memory, STALE, WIDTH, memory_index, with_buffers};
 use crate::programs::{FullscreenProgram, Runnable};
 use crate::report::code_location;
 use crate::sequential::{machine_with, run_alone};
 use crate::subject::Subject;
 
-/// The opaque depth of a pixel without an opaque surface: the far plane.
-const NOTHING_OPAQUE: u32 = 1f32.to_bits();
+/// The word of a pixel in every external texture: the far plane, which no opaque surface is nearer than, and the greatest importance.
+const EXTERNAL: u32 = 1f32.to_bits();
 
 /// A frame between two of its steps.
 #[derive(Clone, Debug)]
@@ -73,18 +73,18 @@ impl<'s> Frame<'s> {
         let sizes = resource_bytes(plan, &self.values).map_err(|error| error.to_string())?;
         let memory = self.memory[FIRST_BINDING as usize..].iter_mut();
         for ((planned, (_, bytes)), words) in plan.resources.iter().zip(sizes).zip(memory) {
-            // External textures begin without opaque surfaces.
-            let value = if planned.is_external() { NOTHING_OPAQUE } else { STALE };
+            // External textures begin without opaque surfaces, and with pixels of the greatest importance.
+            let value = if planned.is_external() { EXTERNAL } else { STALE };
             words.resize((bytes as usize / 4).max(1), value);
         }
         self.set_iteration(0)
     }
 
-    /// Sets the opaque depth of a pixel in every external texture.
+    /// Sets the opaque depth of a pixel in every external depth buffer.
     pub(crate) fn set_opaque(&mut self, pixel: u32, depth: f32) {
         let resources = &self.subject.plan.resources;
         for (planned, words) in resources.iter().zip(&mut self.memory[FIRST_BINDING as usize..]) {
-            if let Some(word) = words.get_mut(pixel as usize).filter(|_| planned.is_external()) {
+            if let Some(word) = words.get_mut(pixel as usize).filter(|_| planned.is_opaque_depth()) {
                 *word = depth.to_bits();
             }
         }
@@ -231,8 +231,10 @@ impl<'s> Frame<'s> {
                     let groups = values.word(groups, &runnable.pass.name);
                     *count = groups.map_err(|error| error.to_string())?;
                 }
+                let textures = runnable.program.textures.iter().map(|texture| memory_index(texture.binding));
+                let textures = textures.map(|index| self.memory.get(index).cloned().unwrap_or_default()).collect();
                 let end = with_buffers(&runnable.program, &mut self.memory, |buffers| {
-                    self.subject.dispatches.run(runnable, counts, buffers)
+                    self.subject.dispatches.run(runnable, counts, buffers, textures)
                 });
                 let (name, location) =
                     (&runnable.pass.name, |at| code_location(&runnable.program, at, &runnable.source));

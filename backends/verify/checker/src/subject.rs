@@ -3,12 +3,12 @@
 //! Input: a variant, a target, the registry. Output: the plan, one program per stage of every pass, and the functions that
 //! read a storage out.
 
-use fragbuf_codegen::{Action, Form, Linking, LoopUntil, PassId, Plan, link, plan};
+use fragbuf_codegen::{Action, Form, Linking, LoopUntil, PassId, Plan, PlannedResource, link, plan};
 use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, SourceSpan, Variant, codes};
 use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
+use fragbuf_templates::vocabulary::{Access, Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
 
 use crate::dispatches::Dispatches;
 use crate::fragments::AttributeValues;
@@ -135,7 +135,9 @@ impl Subject {
 
     /// Returns whether shaders reject fragments behind the external opaque depth.
     pub(crate) fn reads_opaque_depth(&self) -> bool {
-        self.passes.iter().any(|pass| !pass.program.textures.is_empty())
+        let is_depth = |name: &str| self.plan.resource(name).is_some_and(PlannedResource::is_opaque_depth);
+        let mut uses = self.passes.iter().flat_map(|pass| &pass.pass.uses);
+        uses.any(|usage| usage.access == Access::Sampled && is_depth(&usage.resource))
     }
 
     /// Returns whether a row culls fragments by the other fragments of the pixel, kept or not.

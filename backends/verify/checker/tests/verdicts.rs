@@ -30,6 +30,7 @@ pub(crate) fn outcome(report: &Report) -> Outcome {
     }
 }
 
+const BY_IMPORTANCE: &[(&str, &str)] = &[("allocation", "by_importance")];
 const PREDICTED: &[(&str, &str)] = &[("allocation", "predicted")];
 const PEELED: &[(&str, &str)] = &[("peeling", "k_layers")];
 const LAYERS: &[(&str, &str)] = &[("peeling", "depth_layers")];
@@ -53,7 +54,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 112] = [
+pub(crate) const VERDICTS: [Verdict; 114] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -85,6 +86,8 @@ pub(crate) const VERDICTS: [Verdict; 112] = [
     ("kplus_ab_sb", &[], "spirv", Model::Relaxed, Holds),
     ("unified", &[], "wgsl", Model::Sequential, Holds),
     ("unified", &[], "spirv", Model::Relaxed, Holds),
+    ("kplus_ab_sb", BY_IMPORTANCE, "wgsl", Model::Sequential, Holds),
+    ("kplus_ab_sb", BY_IMPORTANCE, "spirv", Model::Relaxed, Holds),
     ("k_peeling", &[], "wgsl", Model::Sequential, Holds),
     ("k_peeling", &[], "wgsl", Model::Relaxed, Fails),
     ("k_peeling", &[], "spirv", Model::Relaxed, Holds),

@@ -16,9 +16,14 @@ pub(in crate::link) enum Substitute {
     Literal(String),
     /// For a function that returns its argument of this number.
     Argument(usize),
+    /// For a function that returns this member of the uniform block of the frame.
+    FrameMember(String),
     /// For a constant that is this whole number.
     Integer(u64),
 }
+
+/// The uniform block of the frame: its members are the same for every invocation, and no shader writes them.
+pub(super) const FRAME: &str = "frame";
 
 /// Returns the substitute of a declaration.
 pub(in crate::link) fn substitute(tokens: &[Token<'_>]) -> Substitute {
@@ -46,6 +51,12 @@ fn of_function(tokens: &[Token<'_>]) -> Substitute {
     match &tokens[open + 1..] {
         [_] => Substitute::Nothing,
         [keyword, value, _, _] if keyword.text == "return" => returned(value, &tokens[..open]),
+        [keyword, base, dot, member, _, _] if keyword.text == "return" && base.text == FRAME && dot.text == "." => {
+            match parameters(&tokens[..open]).any(|name| name == FRAME) {
+                true => Substitute::None,
+                false => Substitute::FrameMember(format!("{FRAME}.{}", member.text)),
+            }
+        }
         _ => Substitute::None,
     }
 }

@@ -14,6 +14,16 @@ const TABLE = array(1.0, 2.0);
 var<private> state: u32;
 var<private> pair: vec2<u32>;
 
+struct Frame {
+    k: u32,
+}
+
+var<uniform> frame: Frame;
+
+fn size(a: u32) -> u32 {
+    return frame.k;
+}
+
 fn nothing(a: u32) {}
 
 fn yes() -> bool {
@@ -177,6 +187,13 @@ fn numbers_and_arguments_replace_calls() {
     folds(" -> u32", "    return 2u * second(x, x + state);\n", "    return 2u * (x + state);\n");
     folds(" -> u32", "    return second(\n        read(x),\n        write(x),\n    );\n", "    return write(x);\n");
     folds(" -> u32", "    return second(write(x), x);\n", "    return second(write(x), x);\n");
+}
+
+#[test]
+fn members_of_the_frame_replace_calls() {
+    folds(" -> u32", "    return 8u / size(x) - 1u;\n", "    return 8u / frame.k - 1u;\n");
+    folds(" -> u32", "    return size(write(x));\n", "    return size(write(x));\n");
+    folds(" -> u32", "    let frame = x;\n    return size(frame);\n", "    let frame = x;\n    return size(frame);\n");
 }
 
 #[test]

@@ -53,6 +53,7 @@ impl Values<'_> {
         let name = self.first(call);
         match (self.substitute(name), arguments) {
             (Substitute::Argument(number), _) => arguments.get(number).is_some_and(|kept| self.is_runtime(kept)),
+            (Substitute::FrameMember(_), _) => true,
             (Substitute::None, [_, _, condition]) if self.is_select(call) => self.is_runtime(condition),
             (Substitute::None, _) => {
                 let is_declared = (self.environment.kind)(name) == Some(DeclarationKind::Function);

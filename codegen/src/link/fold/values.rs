@@ -10,7 +10,7 @@ use super::effects::built_in_has_effects;
 use super::environment::{DeclarationKind, Environment};
 use super::expression::{Expression, Kind};
 use super::locals::Locals;
-use super::substitute::{Substitute, integer};
+use super::substitute::{FRAME, Substitute, integer};
 use crate::link::token::{Token, TokenKind};
 
 /// The context of an expression.
@@ -148,6 +148,12 @@ impl<'v> Values<'v> {
         match (self.substitute(self.first(call)), arguments) {
             (Substitute::Literal(text), _)
                 if position.may_be_constant && arguments.iter().all(|one| self.is_pure(one)) =>
+            {
+                self.replace(call, &text);
+            }
+            // A value at run time fits everywhere.
+            (Substitute::FrameMember(text), _)
+                if !self.locals.declares(FRAME) && arguments.iter().all(|one| self.is_pure(one)) =>
             {
                 self.replace(call, &text);
             }
