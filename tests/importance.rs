@@ -57,7 +57,9 @@ fn bad_importance_is_an_error() {
         stderr(&output)
     };
     let fails = |options: &[&str]| fails_at("40x30", options);
-    assert!(fails(&[]).contains("reads the external texture `importance`, which an image gives: add `--importance PNG`"));
+    assert!(
+        fails(&[]).contains("reads the external texture `importance`, which an image gives: add `--importance PNG`")
+    );
     let map = folder.join("map.png");
     let path = ["--importance", map.to_str().unwrap()];
     assert!(fails(&path).contains("map.png"));

@@ -31,7 +31,9 @@ impl ExternalTextures {
             (Some(name), _) if opaque.is_none() => {
                 missing(name, "which an opaque scene gives: add `--opaque SCENE`, as `--opaque builtin:cubes`")
             }
-            (_, Some(name)) if view.importance.is_none() => missing(name, "which an image gives: add `--importance PNG`"),
+            (_, Some(name)) if view.importance.is_none() => {
+                missing(name, "which an image gives: add `--importance PNG`")
+            }
             _ => Ok(textures),
         }
     }
