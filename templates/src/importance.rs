@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn kept_fragments_are_counted() {
-        let kept: Vec<u64> = (1..=4).map(|k| super::kept(&words(), 4, k)).collect();
+        let kept: Vec<u64> = (1..=4).map(|k| kept(&words(), 4, k)).collect();
         // 4, 7, 9 and 10 of the important pixels; 1, 1, 1 and 2 of the next; 1.
         assert_eq!(kept, [6, 9, 11, 13]);
     }
