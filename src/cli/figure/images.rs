@@ -246,8 +246,8 @@ mod tests {
         let check = |variant, expected| finding(&ImageClaim { statement: "", variant, expected }, &all);
         let agrees = |text: &str| Finding::Agrees(text.to_owned());
         let differs = |text: &str| Finding::Differs(text.to_owned());
-        assert_eq!(check("few", Expected::Different), agrees("1 of 4 pixels differ"));
-        assert_eq!(check("few", Expected::Equal), differs("1 of 4 pixels differ"));
+        assert_eq!(check("few", Expected::Different), agrees("1 of 4 pixels differs"));
+        assert_eq!(check("few", Expected::Equal), differs("1 of 4 pixels differs"));
         assert_eq!(check("none", Expected::Equal), agrees("0 of 4 pixels differ"));
         assert_eq!(check("none", Expected::Different), differs("0 of 4 pixels differ"));
         assert_eq!(check("few", Expected::FewerThan("many")), agrees("1 instead of 3 pixels differ"));
