@@ -16,8 +16,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/max_array",
-        "if kept_before < frame.k {",
-        "if kept_before <= frame.k {",
+        "if kept_before < allocation_slots(pixel) {",
+        "if kept_before <= allocation_slots(pixel) {",
         "a full array is marked as full again",
     ),
     (
@@ -40,8 +40,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/max_array",
-        "max_array_write(pixel, frame.k - 1u - kept_before, entry); kept_counts_store(pixel, kept_before + 1u);",
-        "kept_counts_store(pixel, kept_before + 1u); max_array_write(pixel, frame.k - 1u - kept_before, entry);",
+        "max_array_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry); kept_counts_store(pixel, kept_before + 1u);",
+        "kept_counts_store(pixel, kept_before + 1u); max_array_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry);",
         "inside the lock no fragment reads between the two, and outside it the cull reads slot 0 only, which is not written",
     ),
     (
@@ -59,20 +59,20 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ("storage/cascade", "return;", "", "an early return: no slot has the key of a fragment behind the last"),
     (
         "storage/max_heap",
-        "if kept_before < frame.k {",
-        "if kept_before <= frame.k {",
+        "if kept_before < allocation_slots(pixel) {",
+        "if kept_before <= allocation_slots(pixel) {",
         "the slots of a full heap are in order and do not change",
     ),
     (
         "storage/max_heap",
-        "tops = max(frame.k / 2u, 1u);",
-        "tops = max(frame.k / 1u, 1u);",
+        "tops = max(allocation_slots(pixel) / 2u, 1u);",
+        "tops = max(allocation_slots(pixel) / 1u, 1u);",
         "a slot without children does not change",
     ),
     (
         "storage/max_heap",
-        "kept_counts_store(pixel, frame.k); tops = max(frame.k / 2u, 1u);",
-        "tops = max(frame.k / 2u, 1u); kept_counts_store(pixel, frame.k);",
+        "kept_counts_store(pixel, allocation_slots(pixel)); tops = max(allocation_slots(pixel) / 2u, 1u);",
+        "tops = max(allocation_slots(pixel) / 2u, 1u); kept_counts_store(pixel, allocation_slots(pixel));",
         "one of the two is a variable of the invocation",
     ),
     (
@@ -83,8 +83,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/max_heap",
-        "max_heap_write(pixel, frame.k - 1u - kept_before, entry); kept_counts_store(pixel, kept_before + 1u);",
-        "kept_counts_store(pixel, kept_before + 1u); max_heap_write(pixel, frame.k - 1u - kept_before, entry);",
+        "max_heap_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry); kept_counts_store(pixel, kept_before + 1u);",
+        "kept_counts_store(pixel, kept_before + 1u); max_heap_write(pixel, allocation_slots(pixel) - 1u - kept_before, entry);",
         "inside the lock no fragment reads between the two, and outside it the cull reads slot 0 only, which is not written",
     ),
     (
@@ -126,9 +126,27 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/bounded_regions",
-        "entries_store(slot, pixel, entry); keys_store(slot, pixel, entry.key);",
-        "keys_store(slot, pixel, entry.key); entries_store(slot, pixel, entry);",
+        "region_entries_store(begin + slot, entry); region_keys_store(begin + slot, entry.key);",
+        "region_keys_store(begin + slot, entry.key); region_entries_store(begin + slot, entry);",
         "a slot of a pixel within capacity belongs to one invocation, and no other reads it before the end of the pass",
+    ),
+    (
+        "storage/bounded_regions",
+        "if fragments <= 1u {",
+        "if fragments < 1u {",
+        "a pixel with one fragment keeps it by any k: the early return only spares padding the read of its k",
+    ),
+    (
+        "storage/bounded_regions",
+        "if fragments <= 1u {",
+        "if fragments <= 0u {",
+        "a pixel with one fragment keeps it by any k: the early return only spares padding the read of its k",
+    ),
+    (
+        "storage/bounded_regions",
+        "return fragments;",
+        "",
+        "a pixel with one fragment keeps it by any k: the early return only spares padding the read of its k",
     ),
     (
         "storage/bounded_regions",
@@ -139,8 +157,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/bounded_regions",
-        "if frame.k > ARRAY_MOST {",
-        "if frame.k >= ARRAY_MOST {",
+        "if allocation_slots(pixel) > ARRAY_MOST {",
+        "if allocation_slots(pixel) >= ARRAY_MOST {",
         "array and heap keep the same fragments: the choice changes speed only",
     ),
     (
@@ -151,8 +169,8 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/bounded_regions",
-        "return bounded_regions_cursor(pixel, select(left, 0u, left > size));",
-        "return bounded_regions_cursor(pixel, select(left, 0u, left >= size));",
+        "return bounded_regions_cursor(pixel, begin + select(left, 0u, left > size));",
+        "return bounded_regions_cursor(pixel, begin + select(left, 0u, left >= size));",
         "the number left equals the number of slots only in an empty region: positions are invariant, so every counted \
          fragment is drawn again",
     ),
