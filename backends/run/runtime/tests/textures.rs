@@ -172,10 +172,7 @@ fn descriptions_that_fixed_function_cannot_keep_are_rejected() {
         ("buffer B from z_buffer { keep 1 least |f| f.color.x; }", "depth as the key, without a criterion"),
         ("buffer B from z_buffer { sync: spin_lock; }", "`sync: fixed_function`"),
         ("buffer B from kb_sr { keep 5; }", "write `keep 4;`"),
-        (
-            "buffer B from kplus_array { sync: fixed_function; }",
-            "a storage that depth test, stencil test or blending synchronises",
-        ),
+        ("buffer B from kplus_array { sync: fixed_function; }", "choose `sync: spin_lock`"),
     ];
     for (source, help) in cases {
         let errors = errors_of(source);
