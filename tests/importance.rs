@@ -47,6 +47,27 @@ fn important_pixels_keep_more() {
     }
 }
 
+/// Peeling keeps what a pixel has no slots for in a later iteration, whatever its k.
+#[test]
+fn peeling_shows_every_fragment_of_every_pixel() {
+    let folder = folder("importance-peeled");
+    let map = folder.join("halves.png");
+    halves(&map, png::ColorType::Grayscale);
+    for device in ["cpu", "llvmpipe"] {
+        let image = |key: &str, options: &[&str]| {
+            let output = render(&folder, "40x30", key, &[&["--device", device], options].concat());
+            assert!(output.status.success(), "{}", stderr(&output));
+            read(&folder.join(format!("{key}.png"))).2
+        };
+        let set = ["--set", "storage=bounded_regions", "--set", "allocation=by_importance", "--set", "k=4"];
+        let peeled = image("k_peeling", &[&set, ["--importance", map.to_str().unwrap()].as_slice()].concat());
+        let (all, nearest) = (image("ab_sb", &[]), image("kplus_array", &["--set", "k=4"]));
+        assert!(all != nearest, "no pixel has more than four fragments");
+        let near = |(one, other): (&[u8; 4], &[u8; 4])| one.iter().zip(other).all(|(a, b)| a.abs_diff(*b) <= 1);
+        assert!(peeled.iter().zip(&all).all(near), "{device}");
+    }
+}
+
 #[test]
 fn bad_importance_is_an_error() {
     let folder = folder("bad-importance");
