@@ -14,7 +14,11 @@ type Entry = (&'static str, &'static str, &'static str, Option<(&'static str, &'
 /// Why peeling of layers needs more words than D13 counts: any storage can hold a layer, and any target shows the colour.
 const STORED_KEYS: &str = "the storage also has the key of each fragment, and the colour so far, which the paper has in the target, is four floats";
 
-const CATALOGUE: [Entry; 34] = [
+/// Why peeling by ids needs more words than D13 counts.
+const BY_IDS: &str =
+    "the window of ids and what is found are words of their own, and the colour so far is four floats for each end";
+
+const CATALOGUE: [Entry; 40] = [
     ("z_buffer", "2", "1", None),
     ("kb", "2k", "1", None),
     ("kb_multi", "2k", "k+1", None),
@@ -57,6 +61,17 @@ const CATALOGUE: [Entry; 34] = [
     ("dual_ll", "2f+6", "1025", Some(("3f+13", STORED_KEYS))),
     ("dual_fab", "n+6", "1025", Some(("2n+13", STORED_KEYS))),
     ("dual_kb", "n+4", "1025", Some(("2n+12", STORED_KEYS))),
+    ("f2b_2p", "10", "2049", Some(("19", BY_IDS))),
+    ("f2b_3p", "10", "3072", Some(("20", BY_IDS))),
+    ("dual", "6", "1025", Some(("16", STORED_KEYS))),
+    ("dual_2p", "20", "2049", Some(("38", BY_IDS))),
+    ("bun", "18", "1025", Some(("66", "as `dual`, for each of four buckets, and the range"))),
+    (
+        "bad",
+        "3k/2+3",
+        "4",
+        Some(("ceil_div(k, 32)+2k+6", "keys are whole words, and a bit per part orders fragments of equal depth")),
+    ),
     (
         "kb_stream",
         "2k+1",
@@ -116,6 +131,10 @@ fn every_target_supports_it_or_names_the_missing_feature() {
         rejected.extend(of_key);
     }
     let expected = [
+        ("f2b_3p", "glsl-es", Feature::EarlyDepth),
+        ("f2b_3p", "wgsl", Feature::EarlyDepth),
+        ("f2b_3p", "hlsl", Feature::EarlyDepth),
+        ("f2b_3p", "msl", Feature::EarlyDepth),
         ("kb_mdt64", "wgsl", Feature::U64Atomics),
         ("kb_mdt64", "glsl-es", Feature::U64Atomics),
         ("kb_mdt64", "hlsl", Feature::U64Atomics),

@@ -163,10 +163,29 @@ pub const CONTRACTS: &[Contract] = &[
     ),
     row(
         "peeling",
-        "peeling_reads",
-        "(pixel: u32, entry: Packed) -> bool",
-        "returns whether this pass continues the effect with the fragment",
+        "peeling_find",
+        "(pixel: u32, entry: Packed)",
+        "records a fragment before this iteration stores any, to find those that it stores",
     ),
+    row(
+        "peeling",
+        "peeling_is_left",
+        "(pixel: u32, entry: Packed) -> bool",
+        "returns whether no earlier iteration has stored the fragment",
+    ),
+    row(
+        "peeling",
+        "peeling_slots",
+        "() -> u32",
+        "returns into how many slots an iteration divides the fragments of a pixel",
+    ),
+    row(
+        "peeling",
+        "peeling_slot",
+        "(pixel: u32, entry: Packed) -> u32",
+        "returns the slot of a fragment that this iteration stores; the fragments of a slot have equal keys",
+    ),
+    row("peeling", "peeling_begin", "(slot: u32)", "begins to continue the effect with the fragments of a slot"),
     row("peeling", "peeling_resume", "(pixel: u32)", "begins to resolve the pixel"),
     row(
         "peeling",
@@ -207,6 +226,7 @@ pub const CONTRACTS: &[Contract] = &[
         "saves both, for the fragments of the next iteration",
     ),
     row("peeling", "peeling_result", "(pixel: u32) -> vec4<f32>", "returns the premultiplied colour of the pixel"),
+    row("sort", "sort_begin", "()", "forgets the fragments that were added"),
     row("sort", "sort_gather", "(entry: Packed)", "adds one fragment of the pixel"),
     row("sort", "sort_finish", "()", "sorts the fragments, nearest first"),
     row(

@@ -8,11 +8,13 @@
 //
 // Memory: 12 words per pixel, and one word.
 
+/// The sides: slots of an iteration's fragments, and parts of what has been composited.
 const PEELING_FRONT = 0u;
 const PEELING_BACK = 1u;
 
-/// The pixel that is resolved.
+/// The pixel that is resolved, and the side.
 var<private> peeling_pixel: u32;
+var<private> peeling_side: u32;
 
 fn peeling_find_first(pixel: u32, key: u32) {
     // Most fragments are between others: reading is cheaper than a minimum that changes nothing.
@@ -66,9 +68,16 @@ fn peeling_resume(pixel: u32) {
     peeling_pixel = pixel;
 }
 
-/// One pass reads the layer of the front, another that of the back.
-fn peeling_reads(pixel: u32, entry: Packed) -> bool {
-    return (entry.key == layer_keys_load(PEELING_FRONT, pixel)) == (PEELING_SIDE == PEELING_FRONT);
+fn peeling_slots() -> u32 {
+    return PEELING_SLOTS;
+}
+
+fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
+    return select(PEELING_BACK, PEELING_FRONT, entry.key == layer_keys_load(PEELING_FRONT, pixel));
+}
+
+fn peeling_begin(slot: u32) {
+    peeling_side = slot;
 }
 
 fn peeling_layer_count(sorted: u32) -> u32 {
@@ -88,7 +97,7 @@ fn peeling_sorted_index(index: u32) -> u32 {
 }
 
 fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    if PEELING_SIDE == PEELING_FRONT {
+    if peeling_side == PEELING_FRONT {
         return accumulated_color(peeling_pixel);
     }
     // The layer of the back is composited alone, and then over those behind it.
@@ -96,44 +105,24 @@ fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
 }
 
 fn peeling_transmittance() -> f32 {
-    if PEELING_SIDE == PEELING_FRONT {
+    if peeling_side == PEELING_FRONT {
         return accumulated_transmittance(peeling_pixel);
     }
     return 1.0;
 }
 
 fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    if PEELING_SIDE == PEELING_FRONT {
-        accumulated_save(peeling_pixel, color, transmittance);
-        return;
+    var composited = vec4<f32>(color, transmittance);
+    if peeling_side == PEELING_BACK {
+        composited = accumulated_over(composited, accumulated_part(PEELING_BACK, peeling_pixel));
     }
-    let behind = peeling_behind(peeling_pixel);
-    peeling_save_behind(peeling_pixel, vec4<f32>(color + transmittance * behind.rgb, transmittance * behind.a));
-}
-
-/// Returns the colour and the transmittance of the layers composited from the back.
-fn peeling_behind(pixel: u32) -> vec4<f32> {
-    return bitcast<vec4<f32>>(vec4<u32>(
-        accumulated_load(4u, pixel),
-        accumulated_load(5u, pixel),
-        accumulated_load(6u, pixel),
-        accumulated_load(7u, pixel) ^ ACCUMULATED_TRANSPARENT,
-    ));
-}
-
-fn peeling_save_behind(pixel: u32, behind: vec4<f32>) {
-    let words = bitcast<vec4<u32>>(behind);
-    accumulated_store(4u, pixel, words.x);
-    accumulated_store(5u, pixel, words.y);
-    accumulated_store(6u, pixel, words.z);
-    accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);
+    accumulated_save_part(peeling_side, peeling_pixel, composited);
 }
 
 /// The pass that stores layers finds the next ones.
 fn peeling_advance() {}
 
 fn peeling_result(pixel: u32) -> vec4<f32> {
-    let transmittance = accumulated_transmittance(pixel);
-    let behind = peeling_behind(pixel);
-    return vec4<f32>(accumulated_color(pixel) + transmittance * behind.rgb, 1.0 - transmittance * behind.a);
+    let all = accumulated_over(accumulated_part(PEELING_FRONT, pixel), accumulated_part(PEELING_BACK, pixel));
+    return vec4<f32>(all.rgb, 1.0 - all.a);
 }

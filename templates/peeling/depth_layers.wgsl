@@ -55,6 +55,10 @@ fn peeling_resume(pixel: u32) {
     peeling_pixel = pixel;
 }
 
+fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
+    return 0u;
+}
+
 fn peeling_layer_count(sorted: u32) -> u32 {
     return sorted;
 }

@@ -15,6 +15,12 @@ fn sorted_layer(index: u32) -> Fragment {
     return fragment_unpack(layers[min(index, max(gathered, 1u) - 1u)]);
 }
 
+/// Forgets the fragments of the pixel.
+fn layers_begin() {
+    gathered = 0u;
+    layers_dropped = 0u;
+}
+
 /// Appends one fragment. A sort that gathers by this function calls `layers_finish` before it sorts: what does not fit
 /// is handled there, because a loop inside of the loop over the fragments would slow down every pixel.
 fn layers_gather(entry: Packed) {

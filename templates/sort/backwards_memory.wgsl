@@ -6,6 +6,11 @@
 
 var<private> backwards_count: u32;
 
+fn sort_begin() {
+    backwards_count = 0u;
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     backwards_count += 1u;
 }

@@ -3,6 +3,10 @@
 // others: they never move, and comparisons with them are omitted. Which indices are compared depends only on the
 // number.
 
+fn sort_begin() {
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     layers_gather(entry);
 }

@@ -21,6 +21,10 @@ var<private> block_merged: u32;
 /// The fragment that was merged last.
 var<private> block_current: Packed;
 
+fn sort_begin() {
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     layers_gather(entry);
 }

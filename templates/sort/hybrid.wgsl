@@ -1,6 +1,10 @@
 // Insertion sort for few fragments, Shell sort for many (K15 sec. 3.3: more than 16). The number of fragments of each
 // pixel decides.
 
+fn sort_begin() {
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     layers_gather(entry);
 }

@@ -16,6 +16,12 @@ var<private> lplus_begin: u32;
 /// The number of fragments of the pixel.
 var<private> lplus_count: u32;
 
+fn sort_begin() {
+    lplus_begin = 0u;
+    lplus_size = 0u;
+    lplus_count = 0u;
+}
+
 fn sort_gather(entry: Packed) {
     lplus_offer(entry, lplus_count);
     lplus_count += 1u;

@@ -2,6 +2,10 @@
 // fragments: sorts, then merges, sequences whose elements have decreasing distances. It needs fewer comparisons than
 // the bitonic network; as there, only the number of fragments decides which indices are compared.
 
+fn sort_begin() {
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     layers_gather(entry);
 }

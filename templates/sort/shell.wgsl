@@ -1,5 +1,9 @@
 // Shell sort after all fragments are read: fewer moves than insertion sort if there are many.
 
+fn sort_begin() {
+    layers_begin();
+}
+
 fn sort_gather(entry: Packed) {
     layers_gather(entry);
 }

@@ -11,6 +11,10 @@ var<private> walk_index: u32;
 /// The fragment before it.
 var<private> walk_previous: Packed;
 
+fn sort_begin() {
+    walk_count = 0u;
+}
+
 fn sort_gather(entry: Packed) {
     walk_count += 1u;
 }

@@ -78,6 +78,18 @@ pub(crate) fn rows() -> Vec<Row> {
             template!("pass/nearest_layer"),
             &["addressing"],
         ),
+        drawn(
+            "find_layer",
+            "draws the scene in an iteration of peeling, to find the nearest layer that is left and to write its depth",
+            template!("pass/find_layer"),
+            &["addressing"],
+        ),
+        drawn(
+            "find_in_layer",
+            "draws the scene in an iteration of peeling, to find which fragments of a layer it stores",
+            template!("pass/find_in_layer"),
+            &["addressing"],
+        ),
         row(
             "accumulate",
             "continues the effect of each pixel with the fragments that an iteration has stored",
@@ -85,9 +97,9 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
         ),
         row(
-            "accumulate_side",
-            "continues the effect of each pixel with the fragments of one side that an iteration has stored",
-            template!("pass/accumulate_side"),
+            "accumulate_slots",
+            "continues the effect of each pixel with the fragments that an iteration has stored, slot by slot",
+            template!("pass/accumulate_slots"),
             vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
         ),
         row(

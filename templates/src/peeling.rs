@@ -1,9 +1,12 @@
 //! Axis `peeling`: whether the scene is drawn again for the fragments that are not kept.
 
-use crate::conditions::{depth_key, keeps_all, keeps_one};
+mod ids;
+mod layers;
+
+use crate::conditions::{depth_key, keeps_one};
 use crate::vocabulary::{
-    Access, Blend, Capability, Edit, Element, Feature, Hazard, Parameter, Pass, Permits, Repeat, Resource, Row, Split,
-    State, Step, Until, Use,
+    Access, Blend, Capability, Edit, Element, Feature, Hazard, Parameter, Pass, Permits, Repeat, Resource, Row, State,
+    Step, Until, Use,
 };
 
 pub(crate) fn rows() -> Vec<Row> {
@@ -13,8 +16,12 @@ pub(crate) fn rows() -> Vec<Row> {
             ..Row::new("peeling", "none", "no: what is not kept is handed to the overflow", "")
         },
         k_layers(),
-        depth_layers(),
-        both_sides(),
+        layers::depth_layers(),
+        layers::both_sides(),
+        layers::bucket_layers(),
+        ids::id_pairs(),
+        ids::id_pairs_tested(),
+        ids::id_pairs_both_sides(),
         front_to_back(),
     ]
 }
@@ -50,99 +57,6 @@ fn k_layers() -> Row {
             "K15 §4.3",
         )
     }
-}
-
-/// Repeats all passes of an A-buffer, each time with the fragments of the next depth.
-fn depth_layers() -> Row {
-    let keys = |name: &str, summary: &'static str| {
-        Resource::new(name, Element::Word, summary).by("pixel", "pixels").cleared(u32::MAX).over_iterations()
-    };
-    Row {
-        template: Some(template!("peeling/depth_layers")),
-        resources: [
-            vec![
-                keys("layer_keys", "the key of the layer that this iteration stores; EMPTY: none"),
-                keys("next_keys", "the least key behind it; EMPTY: none"),
-            ],
-            accumulated("4", FROM_THE_FRONT),
-        ]
-        .concat(),
-        edits: layer_edits(),
-        ..layers(
-            "depth_layers",
-            "yes, until none is left: each iteration stores the fragments of the next depth, all of them",
-            "D13 §3.1.3, §3.2.1; Everitt 2001",
-        )
-    }
-}
-
-/// As [`depth_layers`], from the front and from the back.
-fn both_sides() -> Row {
-    let keys = |name: &str, summary: &'static str| {
-        let keys = Resource::new(name, Element::Word, summary).by("side", "2").by("pixel", "pixels");
-        keys.cleared(u32::MAX).over_iterations()
-    };
-    let colors = "the colour of the layers composited from the front, premultiplied, and the transmittance behind them; then the \
-                  same of the layers from the back";
-    let by_side = Split {
-        name: "resolve".to_owned(),
-        copies: "2".into(),
-        constants: vec![("PEELING_SIDE".to_owned(), "copy".into())],
-        before_last: Vec::new(),
-    };
-    Row {
-        template: Some(template!("peeling/both_sides")),
-        resources: [
-            vec![
-                keys(
-                    "layer_keys",
-                    "the keys of the layers that this iteration stores, the farther inverted; EMPTY: none",
-                ),
-                keys("next_keys", "the least and the greatest between them, alike"),
-            ],
-            accumulated("8", colors),
-        ]
-        .concat(),
-        edits: [
-            layer_edits(),
-            vec![Edit::SetSkeleton("resolve".to_owned(), "accumulate_side".to_owned()), Edit::Split(by_side)],
-        ]
-        .concat(),
-        ..layers(
-            "both_sides",
-            "yes, until none is left: each iteration stores the nearest and the farthest depth that are left",
-            "D13 §3.1.3, §3.2.1; Bavoil & Myers 2008",
-        )
-    }
-}
-
-/// Returns the common part of rows that peel layers of equal depth, whose store pass finds the next ones.
-fn layers(key: &str, summary: &'static str, paper: &'static str) -> Row {
-    Row {
-        uses: vec![
-            Use::new("layer_keys", Access::Read),
-            Use::new("next_keys", Access::Atomic),
-            Use::new("remaining", Access::Atomic),
-        ],
-        calls: vec!["addressing", "counters"],
-        provides: vec![Capability::KeepsLater],
-        requires: [&[Capability::KeepsAll], CONTINUES.as_slice()].concat(),
-        conditions: vec![depth_key(), keeps_all()],
-        needs: vec![Feature::FragmentAtomics],
-        parameters: vec![iterations("limit of iterations; fragments of further layers are counted")],
-        hazards: vec![not_peeled()],
-        ..Row::new("peeling", key, summary, paper)
-    }
-}
-
-/// Returns the edits that find the first layers before the loop, and exchange the keys at the end of each iteration.
-fn layer_edits() -> Vec<Edit> {
-    let first = Pass::geometry("nearest_layer", "nearest_layer").uses("layer_keys", Access::Atomic);
-    let advance = vec![
-        Step::Swap("layer_keys".to_owned(), "next_keys".to_owned()),
-        Step::Clear { resource: "next_keys".to_owned(), value: u32::MAX },
-    ];
-    [edits(&[], advance), vec![Edit::First(vec![Step::Pass(first)])]].concat()
 }
 
 /// Repeats all passes of a buffer of one fragment, each time with the fragments behind it.

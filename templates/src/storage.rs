@@ -25,6 +25,7 @@ pub(crate) fn rows() -> Vec<Row> {
         regions::exact_regions(),
         fixed_array(),
         claimed_array(),
+        layer_slots(),
         sorted_array(),
         worst_first::max_array(),
         worst_first::max_heap(),
@@ -34,6 +35,7 @@ pub(crate) fn rows() -> Vec<Row> {
         worst_first::revised_array(),
         list::ordered_list(),
         ranges::depth_ranges(),
+        ranges::adaptive_ranges(),
         regions::bounded_regions(),
         lists::paged_list(),
         lists::bucket_lists(),
@@ -179,6 +181,46 @@ fn claimed_array() -> Row {
             "n slots per pixel, each taken by an atomic exchange of its key: no counter, but a slot is searched for",
             "after D13 §3.2.1 (Alg. 3)",
         )
+    }
+}
+
+/// Returns the row that keeps one fragment for each slot of an iteration of peeling.
+fn layer_slots() -> Row {
+    let slots = |name: &str, element: Element, summary: &'static str| {
+        Resource::new(name, element, summary).by("slot", "PEELING_SLOTS").by("pixel", "pixels")
+    };
+    let row = all_in_array(
+        "layer_slots",
+        "one fragment for each slot of an iteration of peeling: of a side, of an id, of a bucket",
+        "Bavoil & Myers 2008; D13 §3.1",
+    );
+    let store = Pass::geometry("store", "store").uses("keys", Access::Atomic).uses("entries", Access::Plain);
+    Row {
+        template: Some(template!("storage/layer_slots")),
+        resources: vec![
+            slots("keys", Element::Word, "the key of the slot's fragment; EMPTY: none").cleared(u32::MAX),
+            slots("entries", Element::Value, "the value words of the fragment"),
+        ],
+        steps: vec![Step::Pass(store), resolve(&["keys", "entries"])],
+        calls: vec!["overflow", "peeling"],
+        // A slot holds one fragment.
+        provides: [row.provides.as_slice(), &[Capability::Sorted]].concat(),
+        defaults: [row.defaults.as_slice(), &[("sort".into(), "none".into())]].concat(),
+        requires: vec![Capability::DividesLayers, Capability::OneSample],
+        hazards: vec![
+            Hazard::new(
+                "equal-keys",
+                "of fragments with equal depths one per layer is kept; the others are counted",
+                Permits::ONE_OF_EQUAL_KEYS,
+            )
+            .unless(Capability::TellsIdsApart),
+            Hazard::new(
+                "equal-ids",
+                "of fragments with equal depths and equal ids one is kept; the others are counted",
+                Permits::ONE_OF_EQUAL_IDS,
+            ),
+        ],
+        ..row
     }
 }
 

@@ -1,9 +1,16 @@
 //! The techniques of the papers as points on the axes. An axis that is not listed has the default of the storage, or
 //! of the axis; `a else b` uses `b` on targets that do not support `a`.
 
+mod peeling;
+
 use crate::vocabulary::{KeepDefault, Technique};
 
 pub(crate) fn techniques() -> Vec<Technique> {
+    [first(), peeling::techniques(), further()].concat()
+}
+
+/// Buffers that most programs start from.
+fn first() -> Vec<Technique> {
     vec![
         Technique {
             key: "kb".to_owned(),
@@ -196,127 +203,12 @@ pub(crate) fn techniques() -> Vec<Technique> {
                 ("sort", "hybrid"),
             ],
         },
-        Technique {
-            key: "k_peeling".to_owned(),
-            title: "k-depth peeling",
-            paper: "K15 §4.3",
-            summary: "every fragment with the memory of k: the scene is drawn again until none is left, k layers at a time",
-            keep: KeepDefault::Best(8),
-            choices: vec![
-                ("storage", "max_array"),
-                ("sync", "spin_lock"),
-                ("cull", "early"),
-                ("peeling", "k_layers"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "f2b".to_owned(),
-            title: "F2B",
-            paper: "Everitt 2001; D13 §3.1.1",
-            summary: "one layer per draw of the scene, by the depth test; of equal depths one",
-            keep: KeepDefault::Best(1),
-            choices: vec![
-                ("storage", "depth_tested"),
-                ("sync", "fixed_function"),
-                ("peeling", "front_to_back"),
-                ("ties", "unordered"),
-                ("sort", "none"),
-            ],
-        },
-        Technique {
-            key: "f2b2".to_owned(),
-            title: "F2B2",
-            paper: "D13 §4",
-            summary: "as `f2b`, after a draw that writes only depth: hidden fragments are not shaded",
-            keep: KeepDefault::Best(1),
-            choices: vec![
-                ("storage", "depth_tested"),
-                ("sync", "fixed_function"),
-                ("cull", "depth_prepass"),
-                ("peeling", "front_to_back"),
-                ("ties", "unordered"),
-                ("sort", "none"),
-            ],
-        },
-        Technique {
-            key: "f2b_ll".to_owned(),
-            title: "F2B-LL",
-            paper: "D13 §3.1.3",
-            summary: "one layer of equal depths per draw of the scene, all its fragments in a linked list",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "linked_list"),
-                ("sync", "slot_counter"),
-                ("peeling", "depth_layers"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "f2b_fab".to_owned(),
-            title: "F2B-FAB",
-            paper: "D13 §3.2.1",
-            summary: "one layer of equal depths per draw of the scene, in an array per pixel, until it is full",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "fixed_array"),
-                ("sync", "slot_counter"),
-                ("peeling", "depth_layers"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "f2b_kb".to_owned(),
-            title: "F2B-KB",
-            paper: "D13 §3.2.1, Alg. 3, corrected",
-            summary: "as `f2b_fab`, without a counter: a fragment takes the first free slot by an exchange",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "claimed_array"),
-                ("sync", "slot_counter"),
-                ("peeling", "depth_layers"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "dual_ll".to_owned(),
-            title: "DUAL-LL",
-            paper: "D13 §3.1.3",
-            summary: "the nearest and the farthest layer per draw of the scene, all their fragments in a linked list",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "linked_list"),
-                ("sync", "slot_counter"),
-                ("peeling", "both_sides"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "dual_fab".to_owned(),
-            title: "DUAL-FAB",
-            paper: "D13 §3.2.1",
-            summary: "the nearest and the farthest layer per draw of the scene, in an array per pixel, until it is full",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "fixed_array"),
-                ("sync", "slot_counter"),
-                ("peeling", "both_sides"),
-                ("sort", "insertion"),
-            ],
-        },
-        Technique {
-            key: "dual_kb".to_owned(),
-            title: "DUAL-KB",
-            paper: "D13 §3.2.1",
-            summary: "as `dual_fab`, without a counter: a fragment takes the first free slot by an exchange",
-            keep: KeepDefault::All,
-            choices: vec![
-                ("storage", "claimed_array"),
-                ("sync", "slot_counter"),
-                ("peeling", "both_sides"),
-                ("sort", "insertion"),
-            ],
-        },
+    ]
+}
+
+/// Buffers of other structure or for other hardware.
+fn further() -> Vec<Technique> {
+    vec![
         Technique {
             key: "ab_ll_paged".to_owned(),
             title: "AB_LL-Paged",

@@ -2,9 +2,8 @@
 // and each part has a list of its own; all lists share one pool of nodes. The resolve pass reads the buckets from the
 // nearest to the farthest, so an insertion sort moves a fragment only past fragments of the same bucket.
 //
-// Invariant: the bucket of a fragment never decreases as its depth increases, whatever the range of the pixel is.
-// Depths are rounded down to multiples of 2^-24 and compared as integers, equally on every device. Only the owner of a
-// link writes it, and links are read only after the pass.
+// Invariant: the bucket of a fragment never decreases as its depth increases, whatever the range of the pixel is. Only
+// the owner of a link writes it, and links are read only after the pass.
 //
 // The paper takes the range from the bounding box of the scene, splits it into five and gives every bucket a pool of
 // its own; the pools of rare buckets stay empty. Here a pass over the scene finds the tightest range of each pixel,
@@ -63,15 +62,6 @@ fn bucket_lists_seek(pixel: u32, bucket: u32) -> u32 {
     return END;
 }
 
-/// Returns the bucket of a key. A key outside the pixel's range counts as the nearer or the farther end of it.
 fn bucket_lists_bucket(pixel: u32, key: u32) -> u32 {
-    let begin = bucket_lists_depth(~ranges_load(NEAREST, pixel));
-    let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 1u;
-    let beyond = max(bucket_lists_depth(key), begin) - begin;
-    return min(beyond, span - 1u) * BUCKETS / span;
-}
-
-/// Returns the depth of a key in units of 2^-24. A depth beyond 1 counts as 1.
-fn bucket_lists_depth(key: u32) -> u32 {
-    return u32(bitcast<f32>(min(key, 0x3f800000u)) * 16777216.0);
+    return depth_bucket(key, ~ranges_load(NEAREST, pixel), ranges_load(FARTHEST, pixel), BUCKETS);
 }

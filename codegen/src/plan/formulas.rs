@@ -4,7 +4,9 @@
 //! formulas in user files.
 
 use fragbuf_model::{Code, Diagnostic, Diagnostics, SelectedRow, Selection, SourceSpan, Variant, codes};
-use fragbuf_templates::vocabulary::{Formula, FormulaError, Parameter, ParameterType, Row, RowItem, Step, Words};
+use fragbuf_templates::vocabulary::{
+    Definition, Formula, FormulaError, Parameter, ParameterType, Row, RowItem, Step, Text, Words,
+};
 
 use super::notation::normal_form;
 use super::resource::size;
@@ -37,7 +39,38 @@ pub(super) fn symbols(
             }
         }
     }
+    for row in rows() {
+        for constant in &row.constants {
+            match add_constant(row, constant, &mut table, variant) {
+                Ok(value) => constants.push((constant.symbol.to_string(), value)),
+                Err(error) => diagnostics.push(error),
+            }
+        }
+    }
     diagnostics.into_result((table, constants))
+}
+
+/// Adds a constant that a row generates for other rows to the symbols. Returns its value.
+fn add_constant(
+    row: &Row,
+    constant: &Definition,
+    table: &mut SymbolTable,
+    variant: &Variant,
+) -> Result<u32, Diagnostic> {
+    let context = RowContext { row: Some(row), variant };
+    let text = &constant.value;
+    let value = table.compile(text).and_then(|value| table.evaluate(&value, &|_| None));
+    let value = value.map_err(|error| {
+        context.diagnostic(RowItem::Definition, &text.0, error.to_string(), error.help().to_owned())
+    })?;
+    let name = &constant.symbol;
+    let invalid = |message: String, help: &str| context.diagnostic(RowItem::Definition, &text.0, message, help.into());
+    let value = u32::try_from(value)
+        .map_err(|_| invalid(format!("`{name}` is {value} here, which is not a word"), "choose lesser options"))?;
+    table
+        .add(name, &Text::Borrowed("a constant that a row generates"), (0, u32::MAX), value)
+        .map_err(|_| invalid(format!("`{name}` already has another meaning in formulas"), "choose another name"))?;
+    Ok(value)
 }
 
 fn definition_error(error: &DefinitionError, variant: &Variant, selection: &Selection) -> Diagnostics {

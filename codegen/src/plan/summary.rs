@@ -28,8 +28,9 @@ impl Plan {
         let is_total = matches!(order, None | Some(TieBreak::Payload | TieBreak::Attribute));
         // Fragments that leave a pixel during the frame are shown in the order in which they leave.
         let keeps_best = self.selection.kept().is_some_and(|kept| kept.side == Side::Best);
-        let shows_kept_only =
-            !self.hazards.iter().any(|hazard| hazard.permits.shows()) && self.selection.merges().is_none();
+        let value_words = self.layout.value_words();
+        let shows_kept_only = self.selection.merges().is_none()
+            && !self.hazards.iter().any(|hazard| hazard.permits.depends_on_arrival(value_words));
         if keeps_best && shows_kept_only && is_total && self.soundness != Soundness::Racy {
             Arrival::Any
         } else if has(Capability::FixedFunction) || has(Capability::OrderedMutualExclusion) {

@@ -45,6 +45,8 @@ names! {
         // Of the other choices, for peeling.
         DropsDisplaced "an overflow that drops displaced fragments";
         TotalOrder "ties that are resolved by the words of fragments";
+        DividesLayers "iterations that divide the fragments of a pixel into slots of equal keys";
+        TellsIdsApart "iterations that tell fragments with equal keys apart by their ids";
         KeepsLater "iterations that keep the fragments that earlier ones displace";
         Resumes "an effect that can continue with further fragments of a pixel";
         // For the caller.

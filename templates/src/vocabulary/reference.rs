@@ -12,14 +12,17 @@ pub struct KeptFragments {
     pub side: Side,
     /// The number kept of a group, over `k`; `None`: all.
     pub most: Option<Formula>,
-    /// The index of a fragment's group, less than the number of a pixel's entries; `None`: all fragments are one
-    /// group. Over `k`, constants of rows, `key` (the word that orders fragments) and `depth_millionths` (the key as a
-    /// depth).
+    /// The index of a fragment's group, less than the number of a pixel's entries if `most_groups` sets no limit; `None`:
+    /// all fragments are one group. Over `k`, constants of rows and [`KEY_SYMBOLS`].
     pub group: Option<Formula>,
+    /// The most groups, over `k`: in the order of their indices, the last of them includes all further ones; `None`: no
+    /// limit.
+    pub most_groups: Option<Formula>,
 }
 
-/// Symbols that only the groups of fragments use.
-pub const KEY_SYMBOLS: [&str; 2] = ["key", "depth_millionths"];
+/// Symbols that only the groups of fragments use: the word that orders fragments; the key as a depth, in millionths and
+/// in units of 2^-24; the least and the greatest of the pixel's depths in these units.
+pub const KEY_SYMBOLS: [&str; 5] = ["key", "depth_millionths", "depth_steps", "nearest_steps", "farthest_steps"];
 
 /// An end of the order of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,23 +36,31 @@ pub enum Side {
 impl KeptFragments {
     /// Keeps every fragment.
     pub const fn all() -> Self {
-        KeptFragments { side: Side::Best, most: None, group: None }
+        KeptFragments { side: Side::Best, most: None, group: None, most_groups: None }
     }
 
     /// Keeps the k best.
     pub const fn best() -> Self {
-        KeptFragments { side: Side::Best, most: Some(Formula(Text::Borrowed("k"))), group: None }
+        let k = Some(Formula(Text::Borrowed("k")));
+        KeptFragments { side: Side::Best, most: k, group: None, most_groups: None }
     }
 
     /// Keeps the k worst.
     pub const fn worst() -> Self {
-        KeptFragments { side: Side::Worst, most: Some(Formula(Text::Borrowed("k"))), group: None }
+        let k = Some(Formula(Text::Borrowed("k")));
+        KeptFragments { side: Side::Worst, most: k, group: None, most_groups: None }
     }
 
     /// Keeps the best of each group.
     pub const fn best_of_each(group: &'static str) -> Self {
         let one = Some(Formula(Text::Borrowed("1")));
-        KeptFragments { side: Side::Best, most: one, group: Some(Formula(Text::Borrowed(group))) }
+        KeptFragments { side: Side::Best, most: one, group: Some(Formula(Text::Borrowed(group))), most_groups: None }
+    }
+
+    /// Keeps the best of each of k groups, the last of which includes all further ones.
+    pub const fn best_of_each_of_k(group: &'static str) -> Self {
+        let (one, k) = (Some(Formula(Text::Borrowed("1"))), Some(Formula(Text::Borrowed("k"))));
+        KeptFragments { side: Side::Best, most: one, group: Some(Formula(Text::Borrowed(group))), most_groups: k }
     }
 }
 
@@ -132,6 +143,8 @@ pub enum Equivalence {
     None,
     /// Fragments with equal words.
     Fragments,
+    /// Fragments with equal keys and equal first value words.
+    Ids,
     /// Fragments with equal keys.
     Keys,
 }
@@ -169,6 +182,8 @@ impl Permits {
     pub const ONE_OF_EQUAL_KEYS: Permits = Permits { one_of: Equivalence::Keys, ..Permits::NOTHING };
     /// One of several equal fragments is kept.
     pub const ONE_OF_EQUAL_FRAGMENTS: Permits = Permits { one_of: Equivalence::Fragments, ..Permits::NOTHING };
+    /// One of several fragments with equal keys and equal ids is kept.
+    pub const ONE_OF_EQUAL_IDS: Permits = Permits { one_of: Equivalence::Ids, ..Permits::NOTHING };
     /// A race prevents losses from being counted.
     pub const UNCOUNTED: Permits = Permits { uncounted: true, ..Permits::RACE };
     /// A race counts a loss several times.
@@ -226,6 +241,17 @@ impl Permits {
     /// Returns whether it permits anything under its conditions.
     pub fn is_something(&self) -> bool {
         Permits { needs_race: false, where_counted: None, ..self.clone() } != Permits::NOTHING
+    }
+
+    /// Returns whether the order of arrival can change an image: not by keeping one of several fragments that are equal in all
+    /// words of such a payload.
+    pub fn depends_on_arrival(&self, value_words: u32) -> bool {
+        let are_equal = match self.one_of {
+            Equivalence::None | Equivalence::Fragments => true,
+            Equivalence::Ids => value_words <= 1,
+            Equivalence::Keys => value_words == 0,
+        };
+        !are_equal || Permits { one_of: Equivalence::None, ..self.clone() }.shows()
     }
 
     /// Returns whether it affects images and not only counters, other than by fragments that are counted as missing.

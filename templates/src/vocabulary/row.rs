@@ -63,6 +63,8 @@ pub struct Row {
     pub extra_words: Vec<ImplicitAttribute>,
     /// The options of the row.
     pub parameters: Vec<Parameter>,
+    /// Constants that the row generates for other rows, over its parameters. Their names are in formulas too.
+    pub constants: Vec<Definition>,
     /// (option, formula over `k`): the least value of an option. Defaults must meet it.
     pub least: Vec<(Text, Formula)>,
     /// Symbols of formulas that the row defines.
@@ -166,7 +168,7 @@ pub struct Parameter {
     pub summary: Text,
 }
 
-/// A symbol of formulas that a row defines, over the symbols of allocation.
+/// A symbol or a constant that a row defines. Symbols are over those of allocation, constants over those of generation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
     /// The symbol.
@@ -293,6 +295,7 @@ impl Row {
             extra_words: Vec::new(),
             parameters: Vec::new(),
             least: Vec::new(),
+            constants: Vec::new(),
             defines: Vec::new(),
             keeps: None,
             merges: None,

@@ -215,7 +215,7 @@ fn most_visible() {
 /// without a bound, with the reason.
 #[test]
 fn k_buffers_cull_early() {
-    const WITHOUT: [(&str, &str); 12] = [
+    const WITHOUT: [(&str, &str); 13] = [
         ("f2b", "the depth test is the cull"),
         ("f2b2", "the depth test is the cull"),
         ("kb_stream", "every fragment is composited, none is worse than another"),
@@ -228,6 +228,7 @@ fn k_buffers_cull_early() {
         ("kb_ab_sb", "keeps every fragment until it is resolved"),
         ("kb_ll", "no word holds the k-th key of a list: finding it takes the same walk as an insertion"),
         ("depth_partition", "every range has its own bound"),
+        ("bad", "every part of the range has its own bound"),
     ];
     let registry = Registry::builtin();
     let stage = stage::device();

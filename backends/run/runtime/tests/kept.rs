@@ -96,7 +96,7 @@ impl PixelInvariants {
             most: limit.map_or(usize::MAX, |k| k as usize),
             is_sorted: storage.may_provide(Capability::Sorted),
             has_distinct_keys: alike == Equivalence::Keys || has_groups,
-            has_distinct_entries: alike == Equivalence::Fragments,
+            has_distinct_entries: matches!(alike, Equivalence::Fragments | Equivalence::Ids),
             sees_all: plan.variant.constraints.is_empty() && !["cull", "opaque"].iter().any(has_memory),
         }
     }

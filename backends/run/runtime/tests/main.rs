@@ -41,6 +41,7 @@ mod opaque_depth;
 mod overflow;
 mod parallel;
 mod peeling;
+mod peeling_slots;
 mod rasterisation;
 mod routing;
 mod sizing;

@@ -5,18 +5,19 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fragbuf_cpu::{Code, Device, Mesh};
-use fragbuf_model::Variant;
+use fragbuf_model::{AxisChoice, Variant};
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{LoopEnd, LoopReport, Output, PoolSize, Settings, Sizing};
+use fragbuf_runtime::{Counters, LoopEnd, LoopReport, Output, PoolSize, Settings, Sizing};
 use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Feature;
 
 use crate::drivers::scene::{Quad, first_difference, image, vertices};
 use crate::order::Numbers;
 use crate::stage::{BACKGROUND, FORMAT, device, read_counters, renderer, shaders, technique, vertex_buffer};
 
 /// Odd on purpose, and drawn whole and in slices.
-const SIZE: [u32; 2] = [13, 7];
-const SLICES: [Option<u32>; 2] = [None, Some(3)];
+pub(crate) const SIZE: [u32; 2] = [13, 7];
+pub(crate) const SLICES: [Option<u32>; 2] = [None, Some(3)];
 
 /// A technique, changes of it, and the greatest k.
 type Peeled = (&'static str, &'static [(&'static str, &'static str)], u32);
@@ -34,7 +35,7 @@ const STORAGES: [Peeled; 9] = [
 ];
 
 /// Returns quads of which many have the depth of others.
-fn scene(seed: u64, count: u32) -> Vec<Quad> {
+pub(crate) fn scene(seed: u64, count: u32) -> Vec<Quad> {
     let mut numbers = Numbers::seeded(seed);
     let quad = |id| Quad {
         x: [numbers.below(SIZE[0]), SIZE[0]],
@@ -77,8 +78,22 @@ fn drawn(
     quads: &[Quad],
     slice: Option<u32>,
 ) -> (Vec<[f32; 4]>, Vec<LoopReport>, [u64; 2]) {
+    let (pixels, loops, counters) = counted(stage, variant, quads, slice);
+    (pixels, loops, [u64::from(counters.get("generated")), counters.lost()])
+}
+
+/// Draws on the driver; returns the pixels, the reports of loops, and the counters.
+pub(crate) fn counted(
+    stage: &Headless,
+    variant: &Variant,
+    quads: &[Quad],
+    slice: Option<u32>,
+) -> (Vec<[f32; 4]>, Vec<LoopReport>, Counters) {
     let settings = Settings { slice, sizing: sizing(variant), ..Settings::new(FORMAT, SIZE[0], SIZE[1]) };
-    let mut renderer = renderer(stage, &shaders(variant, "wgsl"), &settings).unwrap();
+    // An early depth test is a feature of native devices.
+    let needs_native = |chosen: &AxisChoice| chosen.alternatives[0].row.needs.contains(&Feature::EarlyDepth);
+    let target = if variant.choices.iter().any(needs_native) { "wgsl-native" } else { "wgsl" };
+    let mut renderer = renderer(stage, &shaders(variant, target), &settings).unwrap();
     let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
     let buffer = vertex_buffer(stage, &vertices(quads, SIZE, &inputs));
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE[0], SIZE[1]).unwrap();
@@ -91,11 +106,11 @@ fn drawn(
     let loops = loops.unwrap();
     let counters = read_counters(stage, &renderer);
     let pixels = offscreen.colors(&stage.device, &stage.queue).unwrap();
-    (pixels, loops, [u64::from(counters.get("generated")), counters.lost()])
+    (pixels, loops, counters)
 }
 
 /// Draws on the CPU device; returns the bits of the pixels.
-fn drawn_on_cpu(variant: &Variant, quads: &[Quad]) -> Vec<[u32; 4]> {
+pub(crate) fn drawn_on_cpu(variant: &Variant, quads: &[Quad]) -> Vec<[u32; 4]> {
     let code = Arc::new(Code::of(variant, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}")));
     let settings = fragbuf_cpu::Settings { sizing: sizing(variant), ..fragbuf_cpu::Settings::new(SIZE[0], SIZE[1]) };
     let mut cpu = Device::new(code, settings).unwrap();
@@ -173,7 +188,7 @@ fn most_layers(quads: &[Quad], rows: std::ops::Range<u32>) -> u32 {
 }
 
 /// Storages that keep all fragments, with the techniques of D13 among them.
-const LAYERED: [&str; 6] = ["ab_ll", "ab_array", "f2b_kb", "ab_sb", "ab_ll_paged", "ab_ll_bun"];
+pub(crate) const LAYERED: [&str; 6] = ["ab_ll", "ab_array", "f2b_kb", "ab_sb", "ab_ll_paged", "ab_ll_bun"];
 
 /// Draws in slices and whole, and checks image, counters and iterations: `per_iteration` layers in each.
 fn assert_layers_are_peeled(variant: &Variant, per_iteration: u32, is_bit_exact: bool) {

@@ -41,11 +41,12 @@ struct NewFragments<'a> {
 }
 
 /// How the keys of new fragments compare with the initial ones.
-const PATTERNS: [(&str, [Pick; 4]); 6] = [
+const PATTERNS: [(&str, [Pick; 4]); 7] = [
     (BETWEEN, [Pick::Rank(4), Pick::Rank(2), Pick::Rank(6), Pick::Rank(1)]),
     (BETTER, [Pick::Rank(0), Pick::Rank(1), Pick::Rank(2), Pick::Rank(0)]),
     (WORSE, [Pick::Rank(20), Pick::Rank(21), Pick::Rank(22), Pick::Rank(23)]),
     ("one key, two payloads", [Pick::Rank(5), Pick::Twin(5), Pick::Rank(5), Pick::Twin(5)]),
+    (THREE_PAYLOADS, [Pick::Rank(5), Pick::Twin(5), Pick::SecondTwin(5), Pick::Rank(6)]),
     (TWO_EQUAL, [Pick::Rank(4), Pick::Rank(4), Pick::Rank(6), Pick::Rank(2)]),
     ("all equal", [Pick::Rank(5), Pick::Rank(5), Pick::Rank(5), Pick::Rank(5)]),
 ];
@@ -60,10 +61,14 @@ const WORSE: &str = "keys worse than all kept";
 /// Of two fragments this is the same as all equal.
 const TWO_EQUAL: &str = "two equal and others";
 
+/// Checked where ids tell fragments of equal keys apart. Of two fragments this is the same as two payloads.
+const THREE_PAYLOADS: &str = "one key, three payloads";
+
 #[derive(Clone, Copy)]
 enum Pick {
     Rank(usize),
     Twin(usize),
+    SecondTwin(usize),
 }
 
 /// The ranks of the initial fragments.
@@ -81,12 +86,15 @@ pub(crate) fn cases(
     for (prior, arrival) in priors(k) {
         for (pattern, picks) in &PATTERNS {
             let is_repeated = prior.is_empty() && [BETTER, WORSE].contains(pattern);
-            if is_repeated || *pattern == TWO_EQUAL && count < 3 {
+            let needs_three = [TWO_EQUAL, THREE_PAYLOADS].contains(pattern) && count < 3;
+            let needs_ids = *pattern == THREE_PAYLOADS && !subject.tells_ids_apart();
+            if is_repeated || needs_three || needs_ids {
                 continue;
             }
             let picked = picks.iter().cycle().take(count as usize).map(|pick| match pick {
                 Pick::Rank(rank) => candidates.ranked[*rank].clone(),
                 Pick::Twin(rank) => candidates.twins[*rank].clone(),
+                Pick::SecondTwin(rank) => candidates.second_twins[*rank].clone(),
             });
             let new: Vec<Fragment> = picked.collect();
             let prior: Vec<Fragment> = prior.iter().map(|rank| candidates.ranked[*rank].clone()).collect();

@@ -3,6 +3,8 @@
 //! Input: a subject. Output: candidates, best first, each with the rasteriser's output and the words that are stored for it.
 //! The program under test computes the words. Their order is computed here, independently of the templates.
 
+use std::ops::Range;
+
 use fragbuf_interpreter::{Bytecode, Exit, InterfaceVariable, Machine};
 use naga::{Binding, BuiltIn, ScalarKind};
 
@@ -43,11 +45,12 @@ impl AttributeValues {
         [AttributeValues::Unit, AttributeValues::Thousand, AttributeValues::OneObject];
 }
 
-/// Admitted fragments of different keys, best first; and for each a twin, which has the same key and, if possible, another
-/// payload.
+/// Admitted fragments of different keys, best first; and for each two twins, which have the same key and, if possible, other
+/// payloads.
 pub(crate) struct Candidates {
     pub(crate) ranked: Vec<Fragment>,
     pub(crate) twins: Vec<Fragment>,
+    pub(crate) second_twins: Vec<Fragment>,
 }
 
 impl Candidates {
@@ -66,16 +69,19 @@ impl Candidates {
         // Candidates are spread over the whole range, so that there are keys between any two.
         let step = ranked.len() / RANKS;
         let ranked: Vec<Fragment> = ranked.into_iter().step_by(step).take(RANKS).collect();
-        let twins = ranked.iter().map(|fragment| twin(subject, memory, fragment)).collect::<Result<_, _>>()?;
-        Ok(Ok(Candidates { ranked, twins }))
+        let mut twins = |seeds: Range<u32>| -> Result<Vec<Fragment>, String> {
+            ranked.iter().map(|fragment| twin(subject, memory, fragment, seeds.clone())).collect()
+        };
+        let (twins, second_twins) = (twins(200..232)?, twins(232..264)?);
+        Ok(Ok(Candidates { ranked, twins, second_twins }))
     }
 }
 
 /// Returns the same fragment with other attributes, if it keeps its key. If there are several words, some are less and some
 /// greater, so that mixed-up words are detected.
-fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment) -> Result<Fragment, String> {
+fn twin(subject: &Subject, memory: &mut Memory, fragment: &Fragment, seeds: Range<u32>) -> Result<Fragment, String> {
     let (same, mut found) = (fragment.clone(), None);
-    for seed in 200..232 {
+    for seed in seeds {
         let mut other = same.clone();
         let (program, _) = geometry(subject)?;
         for (number, input) in program.inputs.iter().enumerate() {

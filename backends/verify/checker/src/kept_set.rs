@@ -3,6 +3,8 @@
 //! Input: a subject. Output: which of any fragments are kept, and in which order they are read. Nothing is taken from the
 //! templates: the row's declaration is evaluated here.
 
+use std::collections::BTreeSet;
+
 use fragbuf_templates::vocabulary::{Capability, Expression, Formula, KeptFragments, Side, TieBreak};
 
 use crate::merging::Merging;
@@ -29,6 +31,8 @@ struct KeepRule {
     most: Option<usize>,
     /// The number of a group, over a fragment's key, k and constants of rows.
     group: Option<Expression>,
+    /// The most groups; further ones are one with the last.
+    most_groups: Option<usize>,
     k: Option<u32>,
     constants: Vec<(String, u32)>,
 }
@@ -120,19 +124,21 @@ impl KeepRule {
     fn new(kept: &KeptFragments, k: Option<u32>, subject: &Subject) -> Option<Self> {
         let group = kept.group.as_ref().map(Formula::read).transpose().ok()?;
         let constants = subject.plan.constants.clone();
-        let mut rule = KeepRule { side: kept.side, most: None, group, k: Some(k.unwrap_or(1)), constants };
-        rule.most = match &kept.most {
-            Some(most) => Some(most.evaluate(&|symbol| rule.value(symbol, 0)).ok()? as usize),
-            None => None,
+        let mut rule =
+            KeepRule { side: kept.side, most: None, group, most_groups: None, k: Some(k.unwrap_or(1)), constants };
+        let number = |formula: &Option<Formula>| match formula {
+            Some(formula) => formula.evaluate(&|symbol| rule.value(symbol, 0, &[0])).map(|value| Some(value as usize)),
+            None => Ok(None),
         };
-        rule.group_of(0)?;
+        (rule.most, rule.most_groups) = (number(&kept.most).ok()?, number(&kept.most_groups).ok()?);
+        rule.group_of(0, &[0])?;
         Some(KeepRule { k, ..rule })
     }
 
     /// Returns which of the fragments, given best first, are kept.
     fn kept_of(&self, mut fragments: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
         let Some(most) = self.most else { return fragments };
-        let groups: Vec<Option<u64>> = fragments.iter().map(|fragment| self.group_of(fragment[0])).collect();
+        let groups = self.groups(&fragments);
         let is_kept = |at: usize| {
             let ahead = match self.side {
                 Side::Best => &groups[..at],
@@ -145,13 +151,29 @@ impl KeepRule {
         fragments
     }
 
-    fn group_of(&self, key: u32) -> Option<u64> {
-        let Some(group) = &self.group else { return Some(0) };
-        group.evaluate(&|symbol| self.value(symbol, key)).ok()
+    /// Returns the group of each fragment. Where their number is limited, those with fragments are numbered in order.
+    fn groups(&self, fragments: &[Vec<u32>]) -> Vec<Option<u64>> {
+        let keys: Vec<u32> = fragments.iter().map(|fragment| fragment[0]).collect();
+        let groups: Vec<Option<u64>> = keys.iter().map(|key| self.group_of(*key, &keys)).collect();
+        let Some(most) = self.most_groups else { return groups };
+        let occupied: BTreeSet<Option<u64>> = groups.iter().copied().collect();
+        let number = |group: &Option<u64>| occupied.range(..*group).count().min(most.saturating_sub(1));
+        groups.iter().map(|group| Some(number(group) as u64)).collect()
     }
 
-    fn value(&self, symbol: &str, key: u32) -> Option<u64> {
+    /// Returns the group of a key among those of its pixel.
+    fn group_of(&self, key: u32, keys: &[u32]) -> Option<u64> {
+        let Some(group) = &self.group else { return Some(0) };
+        group.evaluate(&|symbol| self.value(symbol, key, keys)).ok()
+    }
+
+    fn value(&self, symbol: &str, key: u32, keys: &[u32]) -> Option<u64> {
+        // Depths are rounded down to multiples of 2^-24.
+        let steps = |key: u32| (f32::from_bits(key).min(1.0) * 16_777_216.0) as u64;
         match symbol {
+            "depth_steps" => Some(steps(key)),
+            "nearest_steps" => keys.iter().min().map(|key| steps(*key)),
+            "farthest_steps" => keys.iter().max().map(|key| steps(*key)),
             "k" => self.k.map(u64::from),
             "key" => Some(u64::from(key)),
             // Depths are rounded down to whole millionths.
@@ -175,9 +197,13 @@ fn tie_break(subject: &Subject) -> Option<TieBreak> {
     subject.plan.selection.rows.iter().find_map(|selected| selected.row.order)
 }
 
-/// Returns whether the storage row, and not a later sort, provides the order of depth.
+/// Returns whether the storage row, and not a later sort, provides the order of depth. Iterations that divide the fragments
+/// into slots composite each slot apart, so their order is that of slots.
 fn is_sorted(subject: &Subject) -> bool {
     let plan = &subject.plan;
+    if plan.selection.provides().contains(&Capability::DividesLayers) {
+        return false;
+    }
     let given = plan.variant.description_values(&plan.selection);
     let mut storages = plan.selection.rows.iter().filter(|selected| !selected.row.steps.is_empty());
     storages.any(|selected| selected.row.provides_to(&given, Capability::Sorted))

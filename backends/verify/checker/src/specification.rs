@@ -14,6 +14,9 @@ use crate::kept_set::KeptSet;
 use crate::memory::STALE;
 use crate::search::StateVerdict;
 
+/// The words that tell ids apart: the key, and the first value word.
+const ID_WORDS: usize = 2;
+
 /// The specification of one pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Specification {
@@ -256,8 +259,7 @@ impl Specification {
     /// Returns whether the pixel holds all of the kept set of these fragments and, unless duplicates are permitted, nothing
     /// else.
     fn is_complete(&self, kept: &[Vec<u32>], surviving: Vec<Vec<u32>>, permits: &Permits) -> bool {
-        let compares_keys = permits.torn > Tearing::No || permits.one_of == Equivalence::Keys;
-        let deciding = if compares_keys { 1 } else { self.kept_set.deciding };
+        let deciding = if permits.torn > Tearing::No { 1 } else { self.compared(permits.one_of) };
         let expected = self.kept_of(surviving, permits);
         let (kept, expected) = (prefixes(kept, deciding), prefixes(&expected, deciding));
         match permits.duplicate {
@@ -269,9 +271,17 @@ impl Specification {
     /// Returns which fragments are kept, where the hazards permit that only one of equal fragments is.
     fn kept_of(&self, fragments: Vec<Vec<u32>>, permits: &Permits) -> Vec<Vec<u32>> {
         match permits.one_of {
-            Equivalence::Keys => self.kept_set.kept_of_distinct(fragments, 1),
-            Equivalence::Fragments => self.kept_set.kept_of_distinct(fragments, self.kept_set.deciding),
             Equivalence::None => self.kept_set.kept_of(fragments),
+            one_of => self.kept_set.kept_of_distinct(fragments, self.compared(one_of)),
+        }
+    }
+
+    /// Returns how many words tell fragments apart, from the first on.
+    fn compared(&self, one_of: Equivalence) -> usize {
+        match one_of {
+            Equivalence::Keys => 1,
+            Equivalence::Ids => ID_WORDS,
+            Equivalence::None | Equivalence::Fragments => self.kept_set.deciding,
         }
     }
 
@@ -304,9 +314,9 @@ impl Specification {
         let words = if permits.torn == Tearing::EqualKeys { 1 } else { usize::MAX };
         let (stored, arrived) = (prefixes(whole, words), prefixes(&self.fragments, words));
         let most = |entry: &Vec<u32>| if permits.one_of > Equivalence::None { 1 } else { times(&arrived, entry) };
-        let keys = prefixes(kept, 1);
+        let ids = prefixes(kept, self.compared(permits.one_of));
         stored.iter().all(|entry| times(&stored, entry) <= most(entry))
-            && (permits.one_of != Equivalence::Keys || keys.iter().all(|key| times(&keys, key) == 1))
+            && (permits.one_of < Equivalence::Ids || ids.iter().all(|id| times(&ids, id) == 1))
     }
 
     /// Returns whether the counters are possible. A fragment that a race has lost is not counted, and an entry that is kept

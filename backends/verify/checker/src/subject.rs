@@ -113,6 +113,11 @@ impl Subject {
         self.plan.selection.provides().contains(&Capability::KeepsLater)
     }
 
+    /// Returns whether iterations tell fragments with equal keys apart.
+    pub(crate) fn tells_ids_apart(&self) -> bool {
+        self.plan.selection.provides().contains(&Capability::TellsIdsApart)
+    }
+
     /// Returns the program of a fullscreen pass that reads the storage in every iteration of a loop, and what it reads is kept.
     pub(crate) fn accumulating(&self, id: PassId) -> Option<&FullscreenProgram> {
         let writes = |one: &&FullscreenProgram| one.program.buffers.iter().any(|buffer| buffer.is_written);

@@ -29,5 +29,6 @@ mod subjects;
 mod survivors;
 mod survivors_of_peeling;
 mod survivors_of_races;
+mod survivors_of_slots;
 mod threads;
 mod verdicts;

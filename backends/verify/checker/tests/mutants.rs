@@ -3,6 +3,8 @@
 
 /// One mutant.
 pub(crate) struct Mutant {
+    /// The function of the line; empty outside of functions.
+    pub(crate) function: String,
     pub(crate) text: String,
     /// The line before and after the mutation.
     pub(crate) before: String,
@@ -19,7 +21,8 @@ pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
             let preceding = lines[..at].iter().map(|line| (*line).to_owned());
             let following = lines[at + 1..].iter().map(|line| (*line).to_owned());
             let all: Vec<String> = preceding.chain(new).chain(following).collect();
-            found.push(Mutant { text: format!("{}\n{extra}", all.join("\n")), before: line.trim().to_owned(), after });
+            let (text, function) = (format!("{}\n{extra}", all.join("\n")), function_of(&lines[..=at]));
+            found.push(Mutant { function, text, before: line.trim().to_owned(), after });
         };
         if is_statement(line) {
             change(Vec::new(), "");
@@ -35,10 +38,17 @@ pub(crate) fn mutants(text: &str) -> Vec<Mutant> {
             swapped.swap(at, at + 1);
             let text = format!("{}\n", swapped.join("\n"));
             let after = format!("{} {}", next.trim(), line.trim());
-            found.push(Mutant { text, before: format!("{} {}", line.trim(), next.trim()), after });
+            let before = format!("{} {}", line.trim(), next.trim());
+            found.push(Mutant { function: function_of(&lines[..=at]), text, before, after });
         }
     }
     found
+}
+
+/// Returns the name of the function that the last of these lines is in.
+fn function_of(lines: &[&str]) -> String {
+    let begin = lines.iter().rev().take_while(|line| **line != "}").find_map(|line| line.strip_prefix("fn "));
+    begin.map_or(String::new(), |rest| rest.split('(').next().unwrap_or_default().to_owned())
 }
 
 fn is_statement(line: &str) -> bool {

@@ -250,30 +250,6 @@ pub(crate) const SURVIVORS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "storage/bucket_lists",
-        "let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 1u;",
-        "let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 0u;",
-        "an edge moves by one part of 2^24 at most, and a fragment at the edge is still found",
-    ),
-    (
-        "storage/bucket_lists",
-        "let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 1u;",
-        "let span = max(bucket_lists_depth(ranges_load(FARTHEST, pixel)), begin) - begin + 2u;",
-        "an edge moves by one part of 2^24 at most, and a fragment at the edge is still found",
-    ),
-    (
-        "storage/bucket_lists",
-        "return min(beyond, span - 1u) * BUCKETS / span;",
-        "return min(beyond, span - 2u) * BUCKETS / span;",
-        "an edge moves by one part of 2^24 at most, and a fragment at the edge is still found",
-    ),
-    (
-        "storage/bucket_lists",
-        "return min(beyond, span - 1u) * BUCKETS / span;",
-        "return min(beyond, span - 0u) * BUCKETS / span;",
-        "no fragment that both passes draw is beyond the range of its pixel",
-    ),
-    (
-        "storage/bucket_lists",
         "ranges_atomic_max(NEAREST, pixel, ~entry.key); ranges_atomic_max(FARTHEST, pixel, entry.key);",
         "ranges_atomic_max(FARTHEST, pixel, entry.key); ranges_atomic_max(NEAREST, pixel, ~entry.key);",
         "no fragment reads these two words before the end of the pass",

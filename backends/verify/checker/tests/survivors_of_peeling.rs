@@ -3,6 +3,11 @@
 /// The reason of mutants that change only colours.
 const COLORS: &str = "colours are none of the checker's: test `peeling` of the runtime";
 
+/// Functions of peeling that compute nothing but colours, which are none of the checker's: their mutants are not judged here.
+/// Tests `peeling` and `peeling_slots` of the runtime compare images.
+pub(crate) const OF_COLORS: [&str; 5] =
+    ["peeling_color", "peeling_transmittance", "peeling_suspend", "peeling_result", "peeling_continues"];
+
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     (
@@ -50,51 +55,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "boundary_store(pixel, last); count_losses(NOT_CONVERGED, met - peeling_copies);",
         "one invocation per pixel, and no other reads them",
     ),
-    ("peeling/both_sides", "accumulated_load(4u, pixel),", "accumulated_load(5u, pixel),", COLORS),
-    ("peeling/both_sides", "accumulated_load(5u, pixel),", "accumulated_load(4u, pixel),", COLORS),
-    ("peeling/both_sides", "accumulated_load(5u, pixel),", "accumulated_load(6u, pixel),", COLORS),
-    ("peeling/both_sides", "accumulated_load(6u, pixel),", "accumulated_load(5u, pixel),", COLORS),
-    ("peeling/both_sides", "accumulated_load(6u, pixel),", "accumulated_load(7u, pixel),", COLORS),
-    (
-        "peeling/both_sides",
-        "accumulated_load(7u, pixel) ^ ACCUMULATED_TRANSPARENT,",
-        "accumulated_load(6u, pixel) ^ ACCUMULATED_TRANSPARENT,",
-        COLORS,
-    ),
-    (
-        "peeling/both_sides",
-        "accumulated_store(4u, pixel, words.x); accumulated_store(5u, pixel, words.y);",
-        "accumulated_store(5u, pixel, words.y); accumulated_store(4u, pixel, words.x);",
-        COLORS,
-    ),
-    ("peeling/both_sides", "accumulated_store(4u, pixel, words.x);", "", COLORS),
-    ("peeling/both_sides", "accumulated_store(4u, pixel, words.x);", "accumulated_store(5u, pixel, words.x);", COLORS),
-    (
-        "peeling/both_sides",
-        "accumulated_store(5u, pixel, words.y); accumulated_store(6u, pixel, words.z);",
-        "accumulated_store(6u, pixel, words.z); accumulated_store(5u, pixel, words.y);",
-        COLORS,
-    ),
-    ("peeling/both_sides", "accumulated_store(5u, pixel, words.y);", "", COLORS),
-    ("peeling/both_sides", "accumulated_store(5u, pixel, words.y);", "accumulated_store(4u, pixel, words.y);", COLORS),
-    ("peeling/both_sides", "accumulated_store(5u, pixel, words.y);", "accumulated_store(6u, pixel, words.y);", COLORS),
-    (
-        "peeling/both_sides",
-        "accumulated_store(6u, pixel, words.z); accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);",
-        "accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT); accumulated_store(6u, pixel, words.z);",
-        COLORS,
-    ),
-    ("peeling/both_sides", "accumulated_store(6u, pixel, words.z);", "", COLORS),
-    ("peeling/both_sides", "accumulated_store(6u, pixel, words.z);", "accumulated_store(5u, pixel, words.z);", COLORS),
-    ("peeling/both_sides", "accumulated_store(6u, pixel, words.z);", "accumulated_store(7u, pixel, words.z);", COLORS),
-    ("peeling/both_sides", "accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);", "", COLORS),
-    (
-        "peeling/both_sides",
-        "accumulated_store(7u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);",
-        "accumulated_store(6u, pixel, words.w ^ ACCUMULATED_TRANSPARENT);",
-        COLORS,
-    ),
-    ("peeling/both_sides", "accumulated_save(peeling_pixel, color, transmittance);", "", COLORS),
     (
         "peeling/both_sides",
         "const PEELING_BACK = 1u;",
@@ -131,15 +91,7 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "if ~key <= next_keys_load(PEELING_BACK, pixel) {",
         "a minimum that changes nothing",
     ),
-    (
-        "peeling/both_sides",
-        "peeling_save_behind(peeling_pixel, vec4<f32>(color + transmittance * behind.rgb, transmittance * behind.a));",
-        "",
-        COLORS,
-    ),
     ("peeling/both_sides", "remaining_store(1u);", "remaining_store(2u);", "any number but zero"),
-    ("peeling/both_sides", "return accumulated_color(peeling_pixel);", "", COLORS),
-    ("peeling/both_sides", "return accumulated_transmittance(peeling_pixel);", "", COLORS),
     (
         "peeling/both_sides",
         "return key == front || (key > front && ~key == layer_keys_load(PEELING_BACK, pixel));",
@@ -147,8 +99,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "an equal key has been compared before",
     ),
     ("peeling/both_sides", "return;", "", "no iteration follows that reads what is found"),
-    ("peeling/both_sides", "return;", "", COLORS),
-    ("peeling/depth_layers", "accumulated_save(peeling_pixel, color, transmittance);", "", COLORS),
     (
         "peeling/depth_layers",
         "if frame.iteration + 1u == PEELING_ITERATIONS {",
@@ -169,7 +119,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
     ),
     ("peeling/depth_layers", "remaining_store(1u);", "remaining_store(2u);", "any number but zero"),
     ("peeling/depth_layers", "return;", "", "no iteration follows that reads what is found"),
-    ("peeling/k_layers", "accumulated_save(peeling_pixel, color, transmittance);", "", COLORS),
     (
         "storage/claimed_array",
         "for (var attempt = 0u; attempt < CLAIM_TRIES; attempt++) {",
@@ -182,7 +131,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "",
         "what a helper invocation writes has no effect: it would use all attempts",
     ),
-    ("peeling/front_to_back", "accumulated_save(peeling_pixel, color, transmittance);", "", COLORS),
     (
         "peeling/front_to_back",
         "last_keys_store(peeling_pixel, resolve_read(cursor).key); remaining_store(1u);",
@@ -202,6 +150,4 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "",
         "copies are counted as lost instead of composited: test `peeling` of the runtime",
     ),
-    ("peeling/both_sides", "accumulated_load(4u, pixel),", "accumulated_load(3u, pixel),", COLORS),
-    ("peeling/both_sides", "accumulated_store(4u, pixel, words.x);", "accumulated_store(3u, pixel, words.x);", COLORS),
 ];

@@ -54,7 +54,7 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 114] = [
+pub(crate) const VERDICTS: [Verdict; 126] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -106,6 +106,18 @@ pub(crate) const VERDICTS: [Verdict; 114] = [
     ("dual_fab", &[], "wgsl", Model::Relaxed, Holds),
     ("dual_kb", &[], "wgsl", Model::Sequential, Holds),
     ("dual_kb", &[], "wgsl", Model::Relaxed, Holds),
+    ("f2b_2p", &[], "wgsl", Model::Sequential, Hazard),
+    ("f2b_2p", &[], "wgsl", Model::Relaxed, Hazard),
+    ("f2b_3p", &[], "glsl", Model::Sequential, Hazard),
+    ("f2b_3p", &[], "spirv", Model::Relaxed, Hazard),
+    ("dual", &[], "wgsl", Model::Sequential, Hazard),
+    ("dual", &[], "wgsl", Model::Relaxed, Hazard),
+    ("dual_2p", &[], "wgsl", Model::Sequential, Hazard),
+    ("dual_2p", &[], "wgsl", Model::Relaxed, Hazard),
+    ("bun", &[], "wgsl", Model::Sequential, Hazard),
+    ("bun", &[], "wgsl", Model::Relaxed, Hazard),
+    ("bad", &[], "wgsl", Model::Sequential, Holds),
+    ("bad", &[], "wgsl", Model::Relaxed, Holds),
     ("ab_sb", LAYERS, "wgsl", Model::Relaxed, Holds),
     ("ab_ll_bun", SIDES, "wgsl", Model::Sequential, Holds),
     ("kplus_array", FRONT_TO_BACK, "wgsl", Model::Sequential, Hazard),

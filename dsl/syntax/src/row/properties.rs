@@ -31,9 +31,9 @@ impl Statements {
         Ok(())
     }
 
-    /// Parses `keeps best 1 of each key / 1000`.
+    /// Parses `keeps best 1 of each key / 1000 at most k`.
     pub(super) fn keeps(&mut self, line: &mut Line<'_>) -> Read<()> {
-        const SHAPE: &str = "`keeps best k`, `keeps best 1 of each key / 1000`";
+        const SHAPE: &str = "`keeps best k`, `keeps best 1 of each key / 1000`, `… at most k`";
         let side = self.reader.name(line, "`best` or `worst`", SHAPE)?;
         let side = self.reader.one_of(&side, &[("best", Side::Best), ("worst", Side::Worst)], "`best` or `worst`")?;
         let kept = line.formula(&[]);
@@ -41,8 +41,14 @@ impl Statements {
             Some((most, group)) => (most.trim(), Some(group.trim())),
             None => (kept.value.as_str(), None),
         };
+        let (group, most_groups) = match group.and_then(|group| group.split_once(" at most ")) {
+            Some((group, most)) => (Some(group.trim()), Some(most.trim())),
+            None => (group, None),
+        };
         let at = |part: &str| Spanned::new(part.to_owned(), kept.span.clone());
-        self.reader.formula(&at(most), &["k"])?;
+        for most in std::iter::once(most).chain(most_groups) {
+            self.reader.formula(&at(most), &["k"])?;
+        }
         if let Some(group) = group {
             let constants = self.user_row.row.parameters.iter().map(|parameter| parameter.constant.to_string());
             let symbols = ["k"].into_iter().chain(KEY_SYMBOLS).map(str::to_owned);
@@ -50,8 +56,9 @@ impl Statements {
             let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
             self.reader.formula(&at(group), &symbols)?;
         }
-        let (most, group) = (Some(most.to_owned().into()), group.map(|group| group.to_owned().into()));
-        self.user_row.row.keeps = Some(KeptFragments { side, most, group });
+        let formula = |text: Option<&str>| text.map(|text| text.to_owned().into());
+        let (most, group, most_groups) = (formula(Some(most)), formula(group), formula(most_groups));
+        self.user_row.row.keeps = Some(KeptFragments { side, most, group, most_groups });
         Ok(())
     }
 

@@ -1,7 +1,10 @@
-// Goes on with the effect of each pixel, as `accumulate`, for the fragments that the pass reads: those of one side.
+// Goes on with the effect of each pixel, as `accumulate`, slot by slot: the fragments of each slot continue what the
+// peeling has accumulated for it.
 
 /// The index of the pixel.
 var<private> resolved: u32;
+/// The slot whose fragments are read.
+var<private> resolved_slot: u32;
 
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) {
@@ -11,6 +14,16 @@ fn resolve(@builtin(position) position: vec4<f32>) {
     }
     resolved = pixel_index(position.xy);
     peeling_resume(resolved);
+    for (var slot = 0u; slot < peeling_slots(); slot++) {
+        accumulate_slots_continue(slot);
+    }
+    peeling_advance();
+}
+
+fn accumulate_slots_continue(slot: u32) {
+    resolved_slot = slot;
+    peeling_begin(slot);
+    sort_begin();
     for (var cursor = resolve_first(); cursor != END; cursor = resolve_next(cursor)) {
         sort_gather(resolve_read(cursor));
     }
@@ -18,26 +31,25 @@ fn resolve(@builtin(position) position: vec4<f32>) {
     if peeling_layer_count(sorted_count()) > 0u {
         samples_resolve();
     }
-    peeling_advance();
 }
 
 fn resolve_first() -> u32 {
-    return accumulate_side_seek(storage_first(resolved));
+    return accumulate_slots_seek(storage_first(resolved));
 }
 
 fn resolve_next(cursor: u32) -> u32 {
-    return accumulate_side_seek(storage_next(resolved, cursor));
+    return accumulate_slots_seek(storage_next(resolved, cursor));
 }
 
 fn resolve_read(cursor: u32) -> Packed {
     return storage_read(resolved, cursor);
 }
 
-/// Returns the first cursor from `start` on whose fragment the pass reads.
-fn accumulate_side_seek(start: u32) -> u32 {
+/// Returns the first cursor from `start` on whose fragment is in the slot.
+fn accumulate_slots_seek(start: u32) -> u32 {
     var cursor = start;
     while cursor != END {
-        if peeling_reads(resolved, storage_read(resolved, cursor)) {
+        if peeling_slot(resolved, storage_read(resolved, cursor)) == resolved_slot {
             return cursor;
         }
         cursor = storage_next(resolved, cursor);
