@@ -15,6 +15,8 @@ mod check;
 mod compare;
 mod completions;
 #[cfg(feature = "pictures")]
+mod coplanarity;
+#[cfg(feature = "pictures")]
 mod device;
 #[cfg(feature = "pictures")]
 mod devices;

@@ -208,15 +208,20 @@ impl View {
                 "`--out -` and `--json` both write to stdout: give a file for one of them".to_owned(),
             ));
         }
-        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            let text = format!("{}: its folder {} does not exist", self.out.display(), folder.display());
-            return Err(Failure::Files(text));
-        }
-        if self.out.is_dir() {
-            return Err(Failure::Files(format!("{} is a folder: give a file to `--out`", self.out.display())));
-        }
+        check_picture(&self.out)?;
         std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
+    }
+}
+
+/// Checks that an image can be written to a path, before it is rendered.
+pub(crate) fn check_picture(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => {
+            Err(Failure::Files(format!("{}: its folder {} does not exist", path.display(), folder.display())))
+        }
+        None if path.is_dir() => Err(Failure::Files(format!("{} is a folder: give a file", path.display()))),
+        None => Ok(()),
     }
 }
 
@@ -242,7 +247,7 @@ fn check(scene: &str) -> Result<(), Failure> {
 }
 
 /// Parses the path of a PNG.
-fn picture_path(text: &str) -> Result<PathBuf, String> {
+pub(crate) fn picture_path(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_png = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("png");
     match path.extension() {

@@ -32,8 +32,49 @@ pub(super) enum Kind {
     Steps(Steps),
     /// Predicted k for views of a scene.
     Predictions(Predictions),
+    /// Fragments of equal depths in scenes, and what a technique keeps of them.
+    Coplanarity(CoplanarScenes),
     /// Times of frames beside those of other projects, on OpenGL.
     Peers(Peers),
+}
+
+/// Scenes with fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarScenes {
+    pub(super) scenes: &'static [CoplanarScene],
+    pub(super) camera: &'static str,
+    /// The pixels along a side of the images.
+    pub(super) side: u32,
+    /// The technique whose hit ratio is measured. It blends the fragments that it keeps with `over`.
+    pub(super) technique: &'static str,
+    pub(super) claims: &'static [CoplanarClaim],
+}
+
+/// One scene with fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarScene {
+    pub(super) label: &'static str,
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+}
+
+/// A statement of a paper about fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarClaim {
+    /// What the paper states, as a clause.
+    pub(super) statement: &'static str,
+    pub(super) check: CoplanarCheck,
+}
+
+/// How a statement about fragments of equal depths is checked.
+#[derive(Clone, Copy)]
+pub(super) enum CoplanarCheck {
+    /// The technique keeps as many fragments as there are depths, in every scene.
+    KeepsOnePerDepth,
+    /// Over these scenes, the hit ratio falls as C_p rises.
+    FallsWithCoplanarity(&'static [&'static str]),
+    /// In this scene every pixel has C_p 1 and this total coplanarity.
+    EveryPixelHas(&'static str, u32),
 }
 
 /// Predicted k for views of a scene, by goals.

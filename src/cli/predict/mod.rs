@@ -7,8 +7,7 @@
 mod plot;
 mod predictor;
 
-#[cfg(feature = "figures")]
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fragbuf::Registry;
 use fragbuf_templates::{Histogram, HitRatio, Prediction};
@@ -18,11 +17,14 @@ pub(crate) use predictor::{Predictor, count};
 
 use super::assignment::{assignment, attribute, uniform};
 use super::camera::CameraRequest;
+use super::coplanarity::Coplanarity;
 use super::device::DeviceRequest;
 use super::input::Input;
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
-use super::view::{self, View, scenes};
+use super::picture;
+use super::progress::Progress;
+use super::view::{self, SceneView, View, picture_path, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -63,6 +65,9 @@ pub(crate) struct Predict {
     #[cfg(feature = "figures")]
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
+    /// Measure how many fragments of a pixel have equal depths, too (D13, Fig. 13). With a file, write its heat map in the paper's colours
+    #[arg(long, value_name = "PNG", num_args = 0..=1, require_equals = true, value_parser = picture_path)]
+    coplanarity: Option<Option<PathBuf>>,
     /// Print JSON on stdout
     #[arg(long)]
     json: bool,
@@ -82,7 +87,10 @@ impl Predict {
         let mut view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
         view.attributes.clone_from(&self.attributes);
         let changed = (self.description.as_str(), self.set.as_slice());
-        let histogram = count(changed, &view, &mut input, &registry, &self.uniforms)?;
+        if let Some(Some(path)) = &self.coplanarity {
+            check_map(path)?;
+        }
+        let (histogram, scene) = count(changed, &view, &mut input, &registry, &self.uniforms)?;
         if histogram.fragments() == 0 {
             output::warn(
                 "no fragment is in the image: check the camera, and the constraints with their uniforms (`--uniform`)",
@@ -90,15 +98,28 @@ impl Predict {
         }
         let predictor = Predictor::new(changed, self.size, &mut input, &registry)?;
         let prediction = predictor.predict(&histogram, self.budget.whole(), self.hit_ratio)?;
+        let coplanarity = self.coplanarity.as_ref().map(|map| self.coplanarity(&view, &scene, map.as_deref()));
+        let coplanarity = coplanarity.transpose()?;
         #[cfg(feature = "figures")]
         if let Some(path) = &self.plot {
             let svg = plot::svg(&self.title(), &histogram, &prediction)?;
             std::fs::write(path, svg).map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
         }
         output::print(&match self.json {
-            true => output::json(&self.statistics(&histogram, &prediction)),
-            false => self.sentence(&histogram, &prediction),
+            true => output::json(&self.statistics(&histogram, &prediction, coplanarity.as_ref())),
+            false => {
+                let equal = coplanarity.as_ref().map(equal_depths);
+                format!("{}{}", self.sentence(&histogram, &prediction), equal.unwrap_or_default())
+            }
         })
+    }
+
+    /// Measures the coplanarity of the scene, and writes its heat map.
+    fn coplanarity(&self, view: &View, scene: &SceneView, map: Option<&Path>) -> Result<Coplanarity, Failure> {
+        let progress = Progress::new();
+        let found = Coplanarity::measure(view, scene, &progress)?;
+        map.map_or(Ok(()), |path| picture::write(path, self.size, &mut found.heat(), false))?;
+        Ok(found)
     }
 
     fn title(&self) -> String {
@@ -116,7 +137,12 @@ impl Predict {
         )
     }
 
-    fn statistics(&self, histogram: &Histogram, prediction: &Prediction) -> serde_json::Value {
+    fn statistics(
+        &self,
+        histogram: &Histogram,
+        prediction: &Prediction,
+        coplanarity: Option<&Coplanarity>,
+    ) -> serde_json::Value {
         let Prediction { k, k_budget, goal_met, kept, bytes } = *prediction;
         json!({
             "description": self.description,
@@ -132,6 +158,8 @@ impl Predict {
             "fragments": histogram.fragments(),
             "kept": kept,
             "histogram": histogram.bins(),
+            "coplanarity": coplanarity.map(Coplanarity::probability),
+            "coplanar_histogram": coplanarity.map(Coplanarity::histogram),
         })
     }
 }
@@ -139,6 +167,24 @@ impl Predict {
 /// Whether a change is one that this command makes itself.
 fn is_chosen_here(name: &str) -> bool {
     name == "k" || name.split('.').next() == Some("allocation")
+}
+
+/// Checks the path of a heat map, before anything is counted.
+fn check_map(path: &Path) -> Result<(), Failure> {
+    match picture::is_stdout(path) {
+        true => Err(Failure::Usage("`predict` prints on stdout: give a file to `--coplanarity=`".to_owned())),
+        false => view::check_picture(path),
+    }
+}
+
+/// Returns the line about fragments of equal depths.
+fn equal_depths(found: &Coplanarity) -> String {
+    format!(
+        "coplanarity: C_p = {:.4}, {} of {} covered pixels have fragments of equal depths\n",
+        found.probability(),
+        found.coplanar(),
+        found.covered()
+    )
 }
 
 /// Returns the kept part of the fragments; 1 without fragments.

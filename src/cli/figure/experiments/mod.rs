@@ -3,6 +3,7 @@
 mod b06_fig_3;
 mod c15_fig_1;
 mod d13_fig_11;
+mod d13_fig_13;
 mod d13_fig_7;
 mod d13_fig_8;
 mod d13_fig_9;
@@ -23,7 +24,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 19] = [
+pub(super) const EXPERIMENTS: [Experiment; 20] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -40,6 +41,7 @@ pub(super) const EXPERIMENTS: [Experiment; 19] = [
     d13_fig_8::ROW,
     d13_fig_9::ROW,
     d13_fig_11::ROW,
+    d13_fig_13::ROW,
     b06_fig_3::ROW,
     growth::ROW,
     peers::ROW,
