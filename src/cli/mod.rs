@@ -5,6 +5,8 @@
 #[cfg(feature = "pictures")]
 mod animated_image;
 mod animation;
+#[cfg(feature = "pictures")]
+mod arrangement;
 mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;

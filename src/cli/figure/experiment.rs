@@ -34,8 +34,22 @@ pub(super) enum Kind {
     Predictions(Predictions),
     /// Fragments of equal depths in scenes, and what a technique keeps of them.
     Coplanarity(CoplanarScenes),
+    /// The disorder of sorted triangles after subdivisions.
+    Disorder(Disorder),
     /// Times of frames beside those of other projects, on OpenGL.
     Peers(Peers),
+}
+
+/// The disorder of a scene whose triangles are divided, and sorted by their centroids.
+#[derive(Clone, Copy)]
+pub(super) struct Disorder {
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
+    /// The pixels along a side of the image.
+    pub(super) side: u32,
+    /// Triangles over those of the model in per cent, ascending, and the disorder that the paper has for it.
+    pub(super) budgets: &'static [(u32, Option<u32>)],
 }
 
 /// Scenes with fragments of equal depths.

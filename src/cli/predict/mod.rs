@@ -15,6 +15,7 @@ use serde_json::json;
 
 pub(crate) use predictor::{Predictor, count};
 
+use super::arrangement::{self, Arrangement, Disorder};
 use super::assignment::{assignment, attribute, uniform};
 use super::camera::CameraRequest;
 use super::coplanarity::Coplanarity;
@@ -49,6 +50,8 @@ pub(crate) struct Predict {
     /// Set an attribute of fragments to a value for every vertex, as for `render`
     #[arg(long = "attribute", value_name = "NAME=VALUE[,VALUE]", value_parser = attribute)]
     attributes: Vec<(String, String)>,
+    #[command(flatten)]
+    arrangement: Arrangement,
     /// Memory for the buffers of the description: bytes, or a number of KiB, MiB, GiB or TiB
     #[arg(long, value_name = "SIZE", default_value = "200MiB", value_parser = memory::budget)]
     budget: Budget,
@@ -86,11 +89,15 @@ impl Predict {
         let measured = (self.device.clone(), None);
         let mut view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
         view.attributes.clone_from(&self.attributes);
+        view.arrangement = self.arrangement;
         let changed = (self.description.as_str(), self.set.as_slice());
         if let Some(Some(path)) = &self.coplanarity {
             check_map(path)?;
         }
         let (histogram, scene) = count(changed, &view, &mut input, &registry, &self.uniforms)?;
+        if !self.json {
+            arrangement::print(&scene);
+        }
         if histogram.fragments() == 0 {
             output::warn(
                 "no fragment is in the image: check the camera, and the constraints with their uniforms (`--uniform`)",
@@ -106,7 +113,7 @@ impl Predict {
             std::fs::write(path, svg).map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
         }
         output::print(&match self.json {
-            true => output::json(&self.statistics(&histogram, &prediction, coplanarity.as_ref())),
+            true => output::json(&self.statistics((&histogram, &scene), &prediction, coplanarity.as_ref())),
             false => {
                 let equal = coplanarity.as_ref().map(equal_depths);
                 format!("{}{}", self.sentence(&histogram, &prediction), equal.unwrap_or_default())
@@ -139,7 +146,7 @@ impl Predict {
 
     fn statistics(
         &self,
-        histogram: &Histogram,
+        (histogram, scene): (&Histogram, &SceneView),
         prediction: &Prediction,
         coplanarity: Option<&Coplanarity>,
     ) -> serde_json::Value {
@@ -158,6 +165,7 @@ impl Predict {
             "fragments": histogram.fragments(),
             "kept": kept,
             "histogram": histogram.bins(),
+            "disorder": scene.disorder.map(Disorder::json),
             "coplanarity": coplanarity.map(Coplanarity::probability),
             "coplanar_histogram": coplanarity.map(Coplanarity::histogram),
         })

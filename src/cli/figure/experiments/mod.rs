@@ -1,6 +1,7 @@
 //! The experiments: one file per row. A row names techniques and scenes as data; nothing here is code.
 
 mod b06_fig_3;
+mod b06_table_2;
 mod c15_fig_1;
 mod d13_fig_11;
 mod d13_fig_13;
@@ -24,7 +25,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 20] = [
+pub(super) const EXPERIMENTS: [Experiment; 21] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -43,6 +44,7 @@ pub(super) const EXPERIMENTS: [Experiment; 20] = [
     d13_fig_11::ROW,
     d13_fig_13::ROW,
     b06_fig_3::ROW,
+    b06_table_2::ROW,
     growth::ROW,
     peers::ROW,
 ];
