@@ -38,6 +38,25 @@ fn the_image_does_not_depend_on_the_arrangement() {
     assert!(differ <= one.len() / 100, "{differ} pixels");
 }
 
+/// On an adapter every batch is a draw: together they draw every triangle once. Colours are equal up to the rounding of the driver.
+#[test]
+fn batches_draw_every_triangle_once() {
+    let out = folder("arrangement-batches");
+    let render = |name: &str, options: &[&str]| {
+        let path = out.join(name);
+        let command = ["render", "ab_sb", "--device", "llvmpipe", "--json", "--out", path.to_str().unwrap()];
+        let output = fragbuf(&[command.as_slice(), &SCENE, options].concat());
+        assert!(output.status.success(), "{options:?}: {}", stderr(&output));
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (found["fragments"]["generated"].clone(), read(&path).2)
+    };
+    let modelled = render("modelled.png", &[]);
+    assert!(modelled.0.as_u64() > Some(1000), "{}", modelled.0);
+    for batch in ["1", "7", "4294967295"] {
+        assert_eq!(render("batches.png", &["--presort", "--batch", batch]), modelled, "{batch}");
+    }
+}
+
 /// Layers over the whole frame that do not intersect: sorting leaves nothing to move, and the reverse of it everything.
 #[test]
 fn the_disorder_is_that_of_the_scene() {

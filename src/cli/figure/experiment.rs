@@ -1,6 +1,6 @@
 //! The rows of experiments: plain data. The runners of [`super::sweep`] and its siblings read them.
 //!
-//! `{x}` in a text stands for the value of the sweep.
+//! `{x}` in a text stands for the value of the sweep, `{x+1}` for the next number.
 
 use fragbuf_cpu::FragmentOrder;
 use fragbuf_templates::PaperRow;
@@ -323,7 +323,17 @@ pub(super) struct Steps {
     pub(super) row: u32,
 }
 
-/// Replaces `{x}` by the value of a sweep.
+/// Replaces `{x}` by the value of a sweep, and `{x+1}` by the next number.
 pub(super) fn at(text: &str, x: u32) -> String {
-    text.replace("{x}", &x.to_string())
+    text.replace("{x}", &x.to_string()).replace("{x+1}", &x.saturating_add(1).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_value_of_a_sweep_replaces_its_name() {
+        assert_eq!(at("n={x},k={x+1},x", 4), "n=4,k=5,x");
+    }
 }
