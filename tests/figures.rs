@@ -171,6 +171,28 @@ fn a_point_beyond_the_budget_is_reported_and_no_failure() {
     assert!(missing.len() == 12 && missing.iter().all(|(_, reason)| reason.contains("memory")), "{missing:?}");
 }
 
+/// F2B keeps one of n equal fragments, and every pixel of these scenes has n of them: the numbers follow from the scenes.
+#[test]
+fn d13_fig_13_has_the_numbers_of_its_scenes() {
+    let out = folder("figure-coplanarity");
+    quick("d13-fig-13", "cpu", &out, &[]);
+    let (columns, rows) = table(&read(out.join("d13-fig-13.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    let of = |label: &str, name: &str| -> f64 {
+        rows.iter().find(|row| row[0] == label).unwrap()[column(name)].parse().unwrap()
+    };
+    let pixels = f64::from(SIDE * SIDE);
+    for count in [2, 5, 9] {
+        let label = format!("{count} coplanar");
+        let n = f64::from(count);
+        assert_eq!(["covered", "coplanar", "c_p"].map(|name| of(&label, name)), [pixels, pixels, 1.0], "{label}");
+        assert_eq!(of(&label, "fragments"), n * pixels, "{label}");
+        assert!((of(&label, "r_h") - 1.0 / n).abs() < 0.5e-4, "{label}");
+    }
+    let mixed = ["few", "more", "many"].map(|name| format!("\"mixed, {name}\""));
+    assert!(mixed.iter().all(|label| (0.01..0.99).contains(&of(label, "c_p"))), "{rows:?}");
+}
+
 #[test]
 fn an_unknown_name_suggests_the_nearest() {
     let output = fragbuf(&["figure", "k15-fig7"]);

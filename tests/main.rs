@@ -8,6 +8,7 @@
     reason = "a test fails by panicking, and prints its counts"
 )]
 
+mod arrangement;
 mod attributes;
 mod bindings;
 mod blocks;

@@ -258,7 +258,7 @@ fn the_readme_has_every_option() {
     ] {
         let help = stdout(&fragbuf(&[command, "--help"], root));
         let options = help.lines().filter_map(|line| line.trim_start().trim_start_matches("-h, ").strip_prefix("--"));
-        for option in options.map(|line| line.split([' ', '=']).next().unwrap()) {
+        for option in options.map(|line| line.split([' ', '=', '[']).next().unwrap()) {
             let is_of_every_command = ["help", "message-format", "message-color"].contains(&option);
             // `compare` has the options of `render`.
             let text = if command == "compare" { of("compare") + &of("render") } else { of(command) };

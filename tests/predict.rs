@@ -282,3 +282,60 @@ fn a_capability_without_its_pass_is_an_error_of_the_row() {
     let message = stderr(&fragbuf(&["show", file.to_str().unwrap()]));
     assert!(message.contains("error[invalid-row]") && message.contains("the pass `count`"), "{message}");
 }
+
+/// Fragments of equal depths are those of the scene: every layer is drawn `coplanar` times over the whole frame.
+#[test]
+fn coplanarity_is_that_of_the_scene() {
+    let measured = |scene: &str, options: &[&str]| -> serde_json::Value {
+        let common = ["predict", "kplus_array", "--size", "32x24", "--device", "cpu", "--json", "--scene", scene];
+        let output = fragbuf(&[common.as_slice(), &["--camera", "clip"], options].concat());
+        assert!(output.status.success(), "{scene}: {}", stderr(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    for (layers, coplanar) in [(1, 1), (3, 1), (1, 2), (2, 5), (3, 9), (2, 200)] {
+        let found = measured(&format!("builtin:layers,n={layers},coplanar={coplanar}"), &["--coplanarity"]);
+        // Every pixel has the same: all of its fragments, unless each has a depth of its own.
+        let bin = if coplanar > 1 { layers * coplanar } else { 0 };
+        let mut expected = vec![0; bin + 1];
+        expected[bin] = 32 * 24;
+        assert_eq!(found["coplanar_histogram"], serde_json::json!(expected), "{layers}, {coplanar}");
+        assert_eq!(found["coplanarity"], if coplanar > 1 { 1.0 } else { 0.0 }, "{layers}, {coplanar}");
+    }
+    // Pixels with fewer fragments, and without any: the counts are over covered pixels alone.
+    let found = measured("builtin:layers,n=1,coplanar=3,pixels=50,fragments=30", &["--coplanarity"]);
+    let of =
+        |name: &str| -> Vec<u64> { found[name].as_array().unwrap().iter().map(|bin| bin.as_u64().unwrap()).collect() };
+    let (by_fragments, by_shared) = (of("histogram"), of("coplanar_histogram"));
+    assert_eq!(by_shared, [by_fragments[0], 0, by_fragments[1], by_fragments[2]]);
+    let (covered, coplanar) = (by_shared.iter().sum::<u64>() as f64, (by_shared[2] + by_shared[3]) as f64);
+    assert!(by_shared[0] > 0 && coplanar > 0.0 && covered < 32.0 * 24.0, "{by_shared:?}");
+    assert!((found["coplanarity"].as_f64().unwrap() - coplanar / covered).abs() < 1.0e-12, "{found}");
+    let without = measured("builtin:layers,n=1,coplanar=3", &[]);
+    assert!(without["coplanarity"].is_null() && without["coplanar_histogram"].is_null());
+}
+
+/// The heat map has the paper's colours; a path that cannot be written is an error before anything is counted.
+#[test]
+fn the_coplanarity_has_a_heat_map() {
+    let folder = empty_folder("coplanarity");
+    let run = |map: &str| {
+        let scene = "builtin:layers,n=1,coplanar=3";
+        let size = ["--size", "8x8", "--camera", "clip", "--device", "cpu"];
+        fragbuf(
+            &[&["predict", "kplus_array", "--scene", scene, &format!("--coplanarity={map}")], size.as_slice()].concat(),
+        )
+    };
+    let map = folder.join("map.png");
+    let output = run(map.to_str().unwrap());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.ends_with("coplanarity: C_p = 1.0000, 64 of 64 covered pixels have fragments of equal depths\n"));
+    assert_eq!(read(&map), (8, 8, vec![[0, 0, 255, 255]; 64]));
+    for (wrong, help) in
+        [("-", "give a file"), ("map.jpg", "map.png"), ("none/map.png", "its folder none does not exist")]
+    {
+        let output = run(wrong);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{wrong}");
+        assert!(stderr(&output).contains(help), "{wrong}: {}", stderr(&output));
+    }
+}

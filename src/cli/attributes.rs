@@ -11,7 +11,7 @@ use fragbuf_scene::{AttributeRequest, AvailableAttribute, FilePosition, Object, 
 use super::memory::Budget;
 use super::output::Failure;
 
-/// The words of the vertices, three indices per triangle, and the range of indices of each object.
+/// The words of the vertices, three indices per triangle, and the range of indices of each object; none if the scene has an order of its own.
 pub(crate) struct Geometry {
     pub(crate) vertices: Vec<u32>,
     pub(crate) indices: Vec<u32>,
@@ -176,8 +176,10 @@ pub(crate) fn geometry(
         return Err(Failure::Input("the scene has too many vertices or triangles".to_owned()));
     }
     let (mut vertices, mut indices) = (Vec::with_capacity(words), Vec::with_capacity(3 * scene.triangles()));
-    let (mut first, mut objects) = (0, Vec::with_capacity(scene.objects.len()));
+    let (mut first, mut objects) = (vec![0], Vec::new());
     for (id, object) in (0..).zip(&scene.objects) {
+        let begin = first.last().copied().unwrap_or(0);
+        first.push(begin + object.positions.len() as u32);
         for vertex in 0..object.positions.len() {
             vertices.extend(bits(&object.positions, vertex).iter().take(3));
             for (words, source) in &columns {
@@ -189,10 +191,16 @@ pub(crate) fn geometry(
                 vertices.extend(values.iter().take(*words));
             }
         }
-        let begin = indices.len() as u32;
-        indices.extend(object.triangles.iter().flatten().map(|index| first + index));
-        objects.push(begin..indices.len() as u32);
-        first += object.positions.len() as u32;
+        if scene.order.is_empty() {
+            let from = indices.len() as u32;
+            indices.extend(object.triangles.iter().flatten().map(|index| begin + index));
+            objects.push(from..indices.len() as u32);
+        }
+    }
+    // Sorted triangles of one object are not one range: all of them count as one object.
+    for id in &scene.order {
+        let begin = first.get(id.object as usize).copied().unwrap_or(0);
+        indices.extend(scene.corners(*id).into_iter().flatten().map(|index| begin + index));
     }
     Ok(Geometry { vertices, indices, objects, memory })
 }

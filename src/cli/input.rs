@@ -45,6 +45,12 @@ impl Input {
         is_file && registry.technique(argument).is_none()
     }
 
+    /// Returns a description of this program.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn text(name: &str, text: &str) -> Self {
+        Input::of(Description::Text { file: name.to_owned(), text: text.to_owned() })
+    }
+
     fn of(description: Description) -> Self {
         Input {
             description,

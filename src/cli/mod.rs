@@ -5,6 +5,8 @@
 #[cfg(feature = "pictures")]
 mod animated_image;
 mod animation;
+#[cfg(feature = "pictures")]
+mod arrangement;
 mod assignment;
 #[cfg(feature = "pictures")]
 mod attributes;
@@ -14,6 +16,8 @@ mod check;
 #[cfg(feature = "pictures")]
 mod compare;
 mod completions;
+#[cfg(feature = "pictures")]
+mod coplanarity;
 #[cfg(feature = "pictures")]
 mod device;
 #[cfg(feature = "pictures")]

@@ -4,6 +4,7 @@ use fragbuf::vocabulary::Capability;
 use fragbuf_frame::{LoopEnd, LoopReport, PassTime};
 use serde_json::{Map, Value, json};
 
+use super::arrangement::Disorder;
 use super::rendering::{DeviceSelection, RenderResult};
 use super::view::SceneView;
 
@@ -25,6 +26,7 @@ pub(crate) fn statistics(
         "backend": result.backend,
         "target": result.target,
         "triangles": scene.scene.triangles(),
+        "disorder": scene.disorder.map(Disorder::json),
         "k": stats.k,
         "k_lagged": stats.is_lagged,
         "fragment": payload(result),

@@ -1,5 +1,6 @@
 //! The arguments that `render` and `compare` share: the scene, the camera, the device and the output file.
 
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use fragbuf_cpu::FragmentOrder;
@@ -7,6 +8,7 @@ use fragbuf_frame::Decisions;
 use fragbuf_model::nearest_name;
 use fragbuf_scene::{AttributeRequest, BUILTIN_SCENES, Camera, Error, Limits, Scene};
 
+use super::arrangement::{self, Arrangement, Disorder};
 use super::assignment::attribute;
 use super::attributes::{self, ModelAttribute};
 use super::camera::CameraRequest;
@@ -62,6 +64,8 @@ pub(crate) struct View {
     /// keep the order of submission
     #[arg(long, value_name = "submission|shuffle:SEED|window:SEED,TRIANGLES", value_parser = device::order)]
     pub(crate) order: Option<FragmentOrder>,
+    #[command(flatten)]
+    pub(crate) arrangement: Arrangement,
     /// Memory budget for scenes, images and frames: bytes, or a number of KiB, MiB, GiB or TiB. A frame that needs more is drawn in
     /// slices of rows
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = memory::budget)]
@@ -93,6 +97,17 @@ pub(crate) struct SceneView {
     pub(crate) camera: Camera,
     /// Whether colours are unlit, so that the image must equal exact arithmetic over the scene's own colours.
     pub(crate) is_unlit: bool,
+    /// The triangles of a draw; `None`: all.
+    pub(crate) batch: Option<NonZeroU32>,
+    /// The disorder of its fragments, if the arrangement of triangles is not that of the model and their memory suffices.
+    pub(crate) disorder: Option<Disorder>,
+}
+
+impl SceneView {
+    /// Returns the view of a scene as it is modelled.
+    pub(crate) fn new(scene: Scene, camera: Camera) -> Self {
+        SceneView { scene, camera, is_unlit: true, batch: None, disorder: None }
+    }
 }
 
 impl View {
@@ -118,6 +133,7 @@ impl View {
             linear: false,
             device,
             order,
+            arrangement: Arrangement::default(),
             memory,
             strict: false,
             json: true,
@@ -131,7 +147,7 @@ impl View {
         let mut scene = self.open(&self.scene, attributes, self.memory)?;
         let Some(opaque) = &self.opaque else {
             let camera = self.camera(&[&scene])?;
-            return Ok((self.scene_view(scene, camera), None));
+            return Ok((self.arranged(self.scene_view(scene, camera), self.memory)?, None));
         };
         let rest = self.memory.without(scene.bytes(), "the scene")?;
         let mut opaque = self.open(opaque, &[], rest)?;
@@ -139,7 +155,18 @@ impl View {
         let colors = opaque.objects.iter_mut().flat_map(|object| &mut object.colors);
         colors.for_each(|[_, _, _, alpha]| *alpha = 1.0);
         let camera = self.camera(&[&scene, &opaque])?;
-        Ok((self.scene_view(scene, camera), Some(self.scene_view(opaque, camera))))
+        let opaque = self.scene_view(opaque, camera);
+        let rest = self.memory.without(opaque.scene.bytes(), "the opaque scene")?;
+        Ok((self.arranged(self.scene_view(scene, camera), rest)?, Some(opaque)))
+    }
+
+    /// Arranges the triangles of a scene, and prints the disorder of its fragments.
+    fn arranged(&self, mut view: SceneView, memory: Budget) -> Result<SceneView, Failure> {
+        self.arrangement.apply(&mut view, self.size, memory)?;
+        if !self.json && !self.is_later_frame {
+            arrangement::print(&view);
+        }
+        Ok(view)
     }
 
     /// Loads or generates a scene within the rest of a budget, and prints its warnings. An error has the whole budget as its limit.
@@ -191,14 +218,11 @@ impl View {
     }
 
     fn scene_view(&self, mut scene: Scene, camera: Camera) -> SceneView {
-        let is_unlit = match self.shading {
-            Shading::Unlit => true,
-            Shading::Lit => {
-                fragbuf_scene::light(&mut scene, camera.eye);
-                false
-            }
-        };
-        SceneView { scene, camera, is_unlit }
+        let is_unlit = matches!(self.shading, Shading::Unlit);
+        if !is_unlit {
+            fragbuf_scene::light(&mut scene, camera.eye);
+        }
+        SceneView { is_unlit, ..SceneView::new(scene, camera) }
     }
 
     /// Checks the names of generated scenes and the output, before any scene is loaded.
@@ -208,15 +232,20 @@ impl View {
                 "`--out -` and `--json` both write to stdout: give a file for one of them".to_owned(),
             ));
         }
-        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            let text = format!("{}: its folder {} does not exist", self.out.display(), folder.display());
-            return Err(Failure::Files(text));
-        }
-        if self.out.is_dir() {
-            return Err(Failure::Files(format!("{} is a folder: give a file to `--out`", self.out.display())));
-        }
+        check_picture(&self.out)?;
         std::iter::once(&self.scene).chain(&self.opaque).try_for_each(|scene| check(scene))
+    }
+}
+
+/// Checks that an image can be written to a path, before it is rendered.
+pub(crate) fn check_picture(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => {
+            Err(Failure::Files(format!("{}: its folder {} does not exist", path.display(), folder.display())))
+        }
+        None if path.is_dir() => Err(Failure::Files(format!("{} is a folder: give a file", path.display()))),
+        None => Ok(()),
     }
 }
 
@@ -242,7 +271,7 @@ fn check(scene: &str) -> Result<(), Failure> {
 }
 
 /// Parses the path of a PNG.
-fn picture_path(text: &str) -> Result<PathBuf, String> {
+pub(crate) fn picture_path(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_png = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("png");
     match path.extension() {

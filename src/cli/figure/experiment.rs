@@ -1,6 +1,6 @@
 //! The rows of experiments: plain data. The runners of [`super::sweep`] and its siblings read them.
 //!
-//! `{x}` in a text stands for the value of the sweep.
+//! `{x}` in a text stands for the value of the sweep, `{x+1}` for the next number.
 
 use fragbuf_cpu::FragmentOrder;
 use fragbuf_templates::PaperRow;
@@ -32,8 +32,63 @@ pub(super) enum Kind {
     Steps(Steps),
     /// Predicted k for views of a scene.
     Predictions(Predictions),
+    /// Fragments of equal depths in scenes, and what a technique keeps of them.
+    Coplanarity(CoplanarScenes),
+    /// The disorder of sorted triangles after subdivisions.
+    Disorder(Disorder),
     /// Times of frames beside those of other projects, on OpenGL.
     Peers(Peers),
+}
+
+/// The disorder of a scene whose triangles are divided, and sorted by their centroids.
+#[derive(Clone, Copy)]
+pub(super) struct Disorder {
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+    pub(super) camera: &'static str,
+    /// The pixels along a side of the image.
+    pub(super) side: u32,
+    /// Triangles over those of the model in per cent, ascending, and the disorder that the paper has for it.
+    pub(super) budgets: &'static [(u32, Option<u32>)],
+}
+
+/// Scenes with fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarScenes {
+    pub(super) scenes: &'static [CoplanarScene],
+    pub(super) camera: &'static str,
+    /// The pixels along a side of the images.
+    pub(super) side: u32,
+    /// The technique whose hit ratio is measured. It blends the fragments that it keeps with `over`.
+    pub(super) technique: &'static str,
+    pub(super) claims: &'static [CoplanarClaim],
+}
+
+/// One scene with fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarScene {
+    pub(super) label: &'static str,
+    /// The scene, and a smaller one for `--quick`.
+    pub(super) scene: [&'static str; 2],
+}
+
+/// A statement of a paper about fragments of equal depths.
+#[derive(Clone, Copy)]
+pub(super) struct CoplanarClaim {
+    /// What the paper states, as a clause.
+    pub(super) statement: &'static str,
+    pub(super) check: CoplanarCheck,
+}
+
+/// How a statement about fragments of equal depths is checked.
+#[derive(Clone, Copy)]
+pub(super) enum CoplanarCheck {
+    /// The technique keeps as many fragments as there are depths, in every scene.
+    KeepsOnePerDepth,
+    /// Over these scenes, the hit ratio falls as C_p rises.
+    FallsWithCoplanarity(&'static [&'static str]),
+    /// In this scene every pixel has C_p 1 and this total coplanarity.
+    EveryPixelHas(&'static str, u32),
 }
 
 /// Predicted k for views of a scene, by goals.
@@ -268,7 +323,17 @@ pub(super) struct Steps {
     pub(super) row: u32,
 }
 
-/// Replaces `{x}` by the value of a sweep.
+/// Replaces `{x}` by the value of a sweep, and `{x+1}` by the next number.
 pub(super) fn at(text: &str, x: u32) -> String {
-    text.replace("{x}", &x.to_string())
+    text.replace("{x}", &x.to_string()).replace("{x+1}", &x.saturating_add(1).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_value_of_a_sweep_replaces_its_name() {
+        assert_eq!(at("n={x},k={x+1},x", 4), "n=4,k=5,x");
+    }
 }

@@ -5,6 +5,7 @@
 //! a GPU has its own.
 
 use fragbuf::Registry;
+use fragbuf_scene::DepthOrder;
 
 use super::Figure;
 use super::claim::{Finding, sentence};
@@ -87,11 +88,7 @@ pub(super) fn run(images: &Images, options: &Figure, experiment: &Experiment) ->
 /// Returns the scene with its triangles from front to back.
 fn sorted(view: &View) -> Result<SceneView, Failure> {
     let (mut scene, _) = view.scene_views(&[])?;
-    let matrix = scene.camera.view_projection;
-    scene.scene.sort_triangles(|[x, y, z]| {
-        let row = |row: usize| matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
-        row(2) / row(3)
-    });
+    scene.scene.presort(&scene.camera, DepthOrder::NearestFirst);
     Ok(scene)
 }
 

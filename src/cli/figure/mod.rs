@@ -2,11 +2,14 @@
 //!
 //! Input: the name of an experiment, which is a row of data in [`experiments`]. Output: a CSV file, a chart or image, and one sentence that
 //! compares the trend with the paper's. [`experiment`] has the types of the rows, [`run`] what all kinds share. Each kind of
-//! experiment has a runner: [`sweep`], [`images`], [`properties`], [`steps`] and [`peers`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
+//! experiment has a runner: [`sweep`], [`images`], [`properties`], [`steps`], [`predictions`], [`coplanar`],
+//! [`disorder`] and [`peers`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
 
 mod chart;
 mod claim;
+mod coplanar;
 mod csv;
+mod disorder;
 mod experiment;
 mod experiments;
 pub(crate) mod histogram;
@@ -76,6 +79,8 @@ impl Figure {
             Kind::Properties(properties) => properties::run(properties, self, experiment)?,
             Kind::Steps(steps) => steps::run(steps, self, experiment)?,
             Kind::Predictions(row) => predictions::run(row, self, experiment)?,
+            Kind::Coplanarity(row) => coplanar::run(row, self, experiment)?,
+            Kind::Disorder(row) => disorder::run(row, self, experiment)?,
             Kind::Peers(peers) => peers::run(peers, self, experiment)?,
         };
         output::print(&format!("{text}\n"))

@@ -58,7 +58,7 @@ pub(super) fn run(row: &Predictions, options: &Figure, experiment: &Experiment) 
     for (number, (label, camera)) in row.views.iter().enumerate() {
         run.show(number as f64 / row.views.len() as f64, label);
         let view = run.view(scene.to_owned(), camera, (side, side), options.memory)?;
-        let histogram = count((row.technique, &[]), &view, &mut input, &registry, &[])?;
+        let (histogram, _) = count((row.technique, &[]), &view, &mut input, &registry, &[])?;
         let predict = |goal: &Goal| {
             let budget = goal.bytes_per_pixel * u64::from(side) * u64::from(side);
             Ok((*goal, predictor.predict(&histogram, budget, HitRatio(goal.percent.into(), 100))?))

@@ -7,8 +7,7 @@
 mod plot;
 mod predictor;
 
-#[cfg(feature = "figures")]
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fragbuf::Registry;
 use fragbuf_templates::{Histogram, HitRatio, Prediction};
@@ -16,13 +15,17 @@ use serde_json::json;
 
 pub(crate) use predictor::{Predictor, count};
 
+use super::arrangement::{self, Arrangement, Disorder};
 use super::assignment::{assignment, attribute, uniform};
 use super::camera::CameraRequest;
+use super::coplanarity::Coplanarity;
 use super::device::DeviceRequest;
 use super::input::Input;
 use super::memory::{self, Budget};
 use super::output::{self, Failure};
-use super::view::{self, View, scenes};
+use super::picture;
+use super::progress::Progress;
+use super::view::{self, SceneView, View, picture_path, scenes};
 
 #[derive(clap::Args)]
 #[command(after_help = scenes())]
@@ -47,6 +50,8 @@ pub(crate) struct Predict {
     /// Set an attribute of fragments to a value for every vertex, as for `render`
     #[arg(long = "attribute", value_name = "NAME=VALUE[,VALUE]", value_parser = attribute)]
     attributes: Vec<(String, String)>,
+    #[command(flatten)]
+    arrangement: Arrangement,
     /// Memory for the buffers of the description: bytes, or a number of KiB, MiB, GiB or TiB
     #[arg(long, value_name = "SIZE", default_value = "200MiB", value_parser = memory::budget)]
     budget: Budget,
@@ -63,6 +68,9 @@ pub(crate) struct Predict {
     #[cfg(feature = "figures")]
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
+    /// Measure how many fragments of a pixel have equal depths, too (D13, Fig. 13). With a file, write its heat map in the paper's colours
+    #[arg(long, value_name = "PNG", num_args = 0..=1, require_equals = true, value_parser = picture_path)]
+    coplanarity: Option<Option<PathBuf>>,
     /// Print JSON on stdout
     #[arg(long)]
     json: bool,
@@ -81,8 +89,15 @@ impl Predict {
         let measured = (self.device.clone(), None);
         let mut view = View::measured(self.scene.clone(), self.camera, self.size, measured, self.memory);
         view.attributes.clone_from(&self.attributes);
+        view.arrangement = self.arrangement;
         let changed = (self.description.as_str(), self.set.as_slice());
-        let histogram = count(changed, &view, &mut input, &registry, &self.uniforms)?;
+        if let Some(Some(path)) = &self.coplanarity {
+            check_map(path)?;
+        }
+        let (histogram, scene) = count(changed, &view, &mut input, &registry, &self.uniforms)?;
+        if !self.json {
+            arrangement::print(&scene);
+        }
         if histogram.fragments() == 0 {
             output::warn(
                 "no fragment is in the image: check the camera, and the constraints with their uniforms (`--uniform`)",
@@ -90,15 +105,28 @@ impl Predict {
         }
         let predictor = Predictor::new(changed, self.size, &mut input, &registry)?;
         let prediction = predictor.predict(&histogram, self.budget.whole(), self.hit_ratio)?;
+        let coplanarity = self.coplanarity.as_ref().map(|map| self.coplanarity(&view, &scene, map.as_deref()));
+        let coplanarity = coplanarity.transpose()?;
         #[cfg(feature = "figures")]
         if let Some(path) = &self.plot {
             let svg = plot::svg(&self.title(), &histogram, &prediction)?;
             std::fs::write(path, svg).map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
         }
         output::print(&match self.json {
-            true => output::json(&self.statistics(&histogram, &prediction)),
-            false => self.sentence(&histogram, &prediction),
+            true => output::json(&self.statistics((&histogram, &scene), &prediction, coplanarity.as_ref())),
+            false => {
+                let equal = coplanarity.as_ref().map(equal_depths);
+                format!("{}{}", self.sentence(&histogram, &prediction), equal.unwrap_or_default())
+            }
         })
+    }
+
+    /// Measures the coplanarity of the scene, and writes its heat map.
+    fn coplanarity(&self, view: &View, scene: &SceneView, map: Option<&Path>) -> Result<Coplanarity, Failure> {
+        let progress = Progress::new();
+        let found = Coplanarity::measure(view, scene, &progress)?;
+        map.map_or(Ok(()), |path| picture::write(path, self.size, &mut found.heat(), false))?;
+        Ok(found)
     }
 
     fn title(&self) -> String {
@@ -116,7 +144,12 @@ impl Predict {
         )
     }
 
-    fn statistics(&self, histogram: &Histogram, prediction: &Prediction) -> serde_json::Value {
+    fn statistics(
+        &self,
+        (histogram, scene): (&Histogram, &SceneView),
+        prediction: &Prediction,
+        coplanarity: Option<&Coplanarity>,
+    ) -> serde_json::Value {
         let Prediction { k, k_budget, goal_met, kept, bytes } = *prediction;
         json!({
             "description": self.description,
@@ -132,6 +165,9 @@ impl Predict {
             "fragments": histogram.fragments(),
             "kept": kept,
             "histogram": histogram.bins(),
+            "disorder": scene.disorder.map(Disorder::json),
+            "coplanarity": coplanarity.map(Coplanarity::probability),
+            "coplanar_histogram": coplanarity.map(Coplanarity::histogram),
         })
     }
 }
@@ -139,6 +175,24 @@ impl Predict {
 /// Whether a change is one that this command makes itself.
 fn is_chosen_here(name: &str) -> bool {
     name == "k" || name.split('.').next() == Some("allocation")
+}
+
+/// Checks the path of a heat map, before anything is counted.
+fn check_map(path: &Path) -> Result<(), Failure> {
+    match picture::is_stdout(path) {
+        true => Err(Failure::Usage("`predict` prints on stdout: give a file to `--coplanarity=`".to_owned())),
+        false => view::check_picture(path),
+    }
+}
+
+/// Returns the line about fragments of equal depths.
+fn equal_depths(found: &Coplanarity) -> String {
+    format!(
+        "coplanarity: C_p = {:.4}, {} of {} covered pixels have fragments of equal depths\n",
+        found.probability(),
+        found.coplanar(),
+        found.covered()
+    )
 }
 
 /// Returns the kept part of the fragments; 1 without fragments.

@@ -13,7 +13,7 @@ use crate::cli::output::Failure;
 use crate::cli::progress::Progress;
 use crate::cli::rendering::{RenderRequest, render_quietly, select};
 use crate::cli::uniforms;
-use crate::cli::view::View;
+use crate::cli::view::{SceneView, View};
 
 /// A description and its changes.
 type Changed<'a> = (&'a str, &'a [(String, String)]);
@@ -68,14 +68,14 @@ impl Predictor {
     }
 }
 
-/// Counts the fragments of the scene of a view: a frame that keeps one fragment per pixel.
+/// Counts the fragments of the scene of a view: a frame that keeps one fragment per pixel. Returns the scene, too.
 pub(crate) fn count(
     (description, set): Changed<'_>,
     view: &View,
     input: &mut Input,
     registry: &Registry,
     uniforms: &[(String, String)],
-) -> Result<Histogram, Failure> {
+) -> Result<(Histogram, SceneView), Failure> {
     let (set, variant) = with_histogram((description, &with_k(set, 1)), input, registry)?;
     let progress = Progress::new();
     progress.set_message(format!("loading {}", view.scene));
@@ -101,7 +101,7 @@ pub(crate) fn count(
             result.stats.slices
         )));
     }
-    Ok(Histogram::of_words(result.stats.words.first().map_or(&[], Vec::as_slice)))
+    Ok((Histogram::of_words(result.stats.words.first().map_or(&[], Vec::as_slice)), scene))
 }
 
 fn with_k(set: &[(String, String)], k: u32) -> Vec<(String, String)> {

@@ -98,7 +98,7 @@ mod tests {
         let triangles =
             (0..positions.len() as u32 / 3).map(|index| [0, 1, 2].map(|corner| 3 * index + corner)).collect();
         let scene = Scene { objects: vec![Object { positions, triangles, ..Object::default() }], ..Scene::default() };
-        SceneView { scene, camera: Camera::clip(), is_unlit: true }
+        SceneView::new(scene, Camera::clip())
     }
 
     #[test]

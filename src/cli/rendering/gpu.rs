@@ -158,7 +158,7 @@ impl GpuRenderer {
         let Headless { device, queue, .. } = &self.headless;
         progress.set_message(format!("{}: creating pipelines", request.description));
         let geometry = geometry((&scene.scene, &view.attributes), &self.shaders.plan, *memory)?;
-        let mesh = Mesh::upload(device, queue, &geometry)?;
+        let mesh = Mesh::upload(device, queue, &geometry, scene.batch)?;
         let opaque_bytes = if opaque.is_some() { view.image_bytes(OPAQUE_IMAGE) } else { 0 };
         let memory = geometry.memory.without(opaque_bytes, "the image of the opaque scene")?;
         let memory = memory.without(view.image_bytes(IMAGE), "the image")?;
@@ -239,7 +239,7 @@ impl GpuRenderer {
             generate(&opaque.variant, &request, registry).map_err(|errors| opaque.input.failure(errors))?;
         let shaders = Shaders::from_generation(&generation, TARGETS[0].name, 0)?;
         let geometry = geometry((&opaque.scene.scene, &[]), &shaders.plan, task.memory)?;
-        let mesh = Mesh::upload(device, queue, &geometry)?;
+        let mesh = Mesh::upload(device, queue, &geometry, None)?;
         let memory = geometry.memory.without(task.view.image_bytes(IMAGE), "the image of the opaque scene")?.left();
         // In one slice: the next slice would clear the depth buffer of the former one.
         let settings = Settings { memory, slice: Some(height), ..Settings::new(BLENDED, width, height) };

@@ -2,6 +2,8 @@
 //!
 //! Input: the words of vertices and indices. Output: two buffers, and the commands that draw them.
 
+use std::num::NonZeroU32;
+
 use fragbuf_runtime::wgpu;
 
 use crate::cli::attributes::Geometry;
@@ -12,10 +14,18 @@ pub(super) struct Mesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     count: u32,
+    /// The indices of a draw.
+    batch: u32,
 }
 
 impl Mesh {
-    pub(super) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, geometry: &Geometry) -> Result<Self, Failure> {
+    /// Uploads the triangles. `batch` is the number of those that one draw has; `None`: all.
+    pub(super) fn upload(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        geometry: &Geometry,
+        batch: Option<NonZeroU32>,
+    ) -> Result<Self, Failure> {
         let buffer = |label: &str, words: &[u32], usage: wgpu::BufferUsages| {
             let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
             let (size, limit) = (bytes.len() as u64, device.limits().max_buffer_size);
@@ -38,12 +48,18 @@ impl Mesh {
             vertices: buffer("vertices", &geometry.vertices, wgpu::BufferUsages::VERTEX)?,
             indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
             count: geometry.indices.len() as u32,
+            batch: batch.map_or(u32::MAX, |triangles| triangles.get().saturating_mul(3)),
         })
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.count, 0, 0..1);
+        let mut begin = 0;
+        while begin < self.count {
+            let end = begin.saturating_add(self.batch).min(self.count);
+            pass.draw_indexed(begin..end, 0, 0..1);
+            begin = end;
+        }
     }
 }

@@ -44,6 +44,18 @@ pub(crate) fn select(
     scene: &SceneView,
     sides: &mut [(&RenderRequest<'_>, &mut Input)],
 ) -> Result<DeviceSelection, Failure> {
+    let selection = select_device(view, scene, sides)?;
+    if scene.batch.is_some() && matches!(selection.device, SelectedDevice::Cpu(_)) && !view.is_later_frame {
+        output::note("the CPU device draws all triangles in one draw, in their order: `--batch` changes nothing");
+    }
+    Ok(selection)
+}
+
+fn select_device(
+    view: &View,
+    scene: &SceneView,
+    sides: &mut [(&RenderRequest<'_>, &mut Input)],
+) -> Result<DeviceSelection, Failure> {
     let cpu = |reason: String| DeviceSelection::cpu(view.order.unwrap_or_default(), reason);
     let selection = match &view.device {
         DeviceRequest::Cpu => return Ok(cpu("selected with `--device`".to_owned())),

@@ -17,6 +17,17 @@ pub struct Scene {
     pub warnings: Vec<Warning>,
     /// The files that the scene was read from, the model first.
     pub files: Vec<PathBuf>,
+    /// The order in which triangles are drawn, each once; empty: object after object.
+    pub order: Vec<TriangleId>,
+}
+
+/// A triangle of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TriangleId {
+    /// The index of its object.
+    pub object: u32,
+    /// Its index in the object.
+    pub triangle: u32,
 }
 
 /// A named part of a scene. Its three vertex lists have equal lengths.
@@ -63,30 +74,21 @@ impl Scene {
                 + size_of_val(&object.colors[..])
                 + size_of_val(&object.triangles[..])
         };
-        self.objects.iter().map(|object| bytes(object) as u64).sum()
+        let objects: u64 = self.objects.iter().map(|object| bytes(object) as u64).sum();
+        objects + size_of_val(&self.order[..]) as u64
     }
-}
 
-impl Scene {
-    /// Merges all objects into one, with the triangles in ascending order of the key of their centroids. Triangles of equal keys keep their
-    /// order. The ids and names of objects are lost.
-    pub fn sort_triangles(&mut self, key: impl Fn([f32; 3]) -> f32) {
-        let mut merged = Object { attributes: vec![Vec::new(); self.attributes.len()], ..Object::default() };
-        for object in std::mem::take(&mut self.objects) {
-            let first = merged.positions.len() as u32;
-            merged.triangles.extend(object.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
-            merged.positions.extend(object.positions);
-            merged.normals.extend(object.normals);
-            merged.colors.extend(object.colors);
-            merged.attributes.iter_mut().zip(object.attributes).for_each(|(all, words)| all.extend(words));
-        }
-        let Object { positions, triangles, .. } = &mut merged;
-        let centroid = |triangle: &[u32; 3]| {
-            let corners = triangle.map(|corner| positions.get(corner as usize).copied().unwrap_or_default());
-            std::array::from_fn(|axis| corners.iter().map(|corner| corner[axis]).sum::<f32>() / 3.0)
+    /// Returns the triangles object after object, whatever the order in which they are drawn.
+    pub(crate) fn triangle_ids(&self) -> impl Iterator<Item = TriangleId> {
+        let of = |(object, one): (u32, &Object)| {
+            (0..one.triangles.len() as u32).map(move |triangle| TriangleId { object, triangle })
         };
-        triangles.sort_by(|a, b| key(centroid(a)).total_cmp(&key(centroid(b))));
-        self.objects = vec![merged];
+        (0..).zip(&self.objects).flat_map(of)
+    }
+
+    /// Returns the three vertices of a triangle; `None`: there is no such triangle.
+    pub fn corners(&self, TriangleId { object, triangle }: TriangleId) -> Option<[u32; 3]> {
+        self.objects.get(object as usize)?.triangles.get(triangle as usize).copied()
     }
 }
 

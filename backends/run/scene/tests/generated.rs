@@ -52,29 +52,32 @@ fn layers_are_planes_over_the_frame() {
     assert_ne!(order(0), order(2));
 }
 
-/// Sorting keeps the triangles with their vertices, and orders them by the centroid.
+/// About so many per cent of the strips are two triangles; the others have cells as wide as a row. Layers are parallel planes in their order.
 #[test]
-fn sorted_triangles_are_the_same_triangles() {
-    let made = scene("cubes");
-    let mut sorted = made.clone();
-    sorted.sort_triangles(|[_, y, z]| z - 2.0 * y);
-    let corners = |scene: &Scene| -> Vec<[([f32; 3], [f32; 4]); 3]> {
-        let of = |object: &fragbuf_scene::Object| {
-            let vertex = |corner: u32| (object.positions[corner as usize], object.colors[corner as usize]);
-            object.triangles.iter().map(|triangle| triangle.map(vertex)).collect::<Vec<_>>()
+fn slivers_are_long_and_do_not_intersect() {
+    let made = scene("slivers,n=20,rows=10,long=30");
+    assert_eq!(made.objects.len(), 20);
+    let long = |object: &fragbuf_scene::Object| {
+        let width = |triangle: &&[u32; 3]| {
+            let x = triangle.map(|corner| object.positions[corner as usize][0]);
+            x.iter().fold(-1.0_f32, |a, b| a.max(*b)) - x.iter().fold(1.0_f32, |a, b| a.min(*b))
         };
-        scene.objects.iter().flat_map(of).collect()
+        assert!(
+            object.triangles.iter().all(|triangle| [0.2, 2.0].iter().any(|w| (width(&triangle) - w).abs() < 1.0e-5))
+        );
+        object.triangles.iter().filter(|triangle| width(triangle) > 1.0).count() / 2
     };
-    let (before, after) = (corners(&made), corners(&sorted));
-    assert!(made.objects.len() > 1 && sorted.objects.len() == 1 && before != after);
-    let text = |mut all: Vec<[([f32; 3], [f32; 4]); 3]>| {
-        all.sort_by_key(|triangle| format!("{triangle:?}"));
-        all
+    let longs: usize = made.objects.iter().map(long).sum();
+    assert!((40..80).contains(&longs), "{longs} of 200");
+    assert_eq!(made.triangles(), 2 * longs + 20 * (200 - longs));
+    let offset = |object: &fragbuf_scene::Object| {
+        let offsets: Vec<f32> = object.positions.iter().map(|[x, _, z]| z - x).collect();
+        assert!(offsets.iter().all(|offset| (offset - offsets[0]).abs() < 1.0e-5));
+        offsets[0]
     };
-    let keys: Vec<f32> =
-        after.iter().map(|corners| corners.iter().map(|([_, y, z], _)| z - 2.0 * y).sum::<f32>()).collect();
-    assert!(keys.windows(2).all(|pair| pair[0] <= pair[1] + 1.0e-4), "{keys:?}");
-    assert_eq!(text(before), text(after));
+    let offsets: Vec<f32> = made.objects.iter().map(offset).collect();
+    assert!(offsets.windows(2).all(|pair| pair[0] < pair[1] - 0.01), "{offsets:?}");
+    assert_eq!(scene("slivers,n=3,rows=4,long=0").triangles(), 3 * 4 * 8);
 }
 
 /// Every needle spans most of the depth of the scene, and their directions differ by a few degrees.
@@ -106,7 +109,7 @@ fn unknown_names_list_the_known_ones() {
     };
     assert_eq!(
         error("builtin:bunny"),
-        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles"
+        "no scene `builtin:bunny`: the scenes are cubes, slabs, layers, marbles, hairball, needles, slivers"
     );
     assert_eq!(error("builtin:slabs,k=3"), "`builtin:slabs` has no `k`: its parameters are n (16), seed (1)");
     let advice = "write a whole number from 1 to 65536, as `n=16`";

@@ -1,8 +1,11 @@
 //! The experiments: one file per row. A row names techniques and scenes as data; nothing here is code.
 
 mod b06_fig_3;
+mod b06_table_1;
+mod b06_table_2;
 mod c15_fig_1;
 mod d13_fig_11;
+mod d13_fig_13;
 mod d13_fig_7;
 mod d13_fig_8;
 mod d13_fig_9;
@@ -23,7 +26,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 19] = [
+pub(super) const EXPERIMENTS: [Experiment; 22] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -40,7 +43,10 @@ pub(super) const EXPERIMENTS: [Experiment; 19] = [
     d13_fig_8::ROW,
     d13_fig_9::ROW,
     d13_fig_11::ROW,
+    d13_fig_13::ROW,
     b06_fig_3::ROW,
+    b06_table_1::ROW,
+    b06_table_2::ROW,
     growth::ROW,
     peers::ROW,
 ];

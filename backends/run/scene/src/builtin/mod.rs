@@ -8,6 +8,7 @@ mod needles;
 mod random;
 mod row;
 mod slabs;
+mod slivers;
 
 use std::str::FromStr;
 
@@ -24,7 +25,8 @@ pub struct BuiltinScene {
 }
 
 /// The registry rows of all generated scenes.
-pub const BUILTIN_SCENES: [Row; 6] = [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW];
+pub const BUILTIN_SCENES: [Row; 7] =
+    [cubes::ROW, slabs::ROW, layers::ROW, marbles::ROW, hairball::ROW, needles::ROW, slivers::ROW];
 
 impl BuiltinScene {
     /// Generates the scene. `Err`: it is larger than the limits.
@@ -43,7 +45,7 @@ impl FromStr for BuiltinScene {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        static ROWS: [Row; 6] = BUILTIN_SCENES;
+        static ROWS: [Row; 7] = BUILTIN_SCENES;
         let mut parts = text.split(',');
         let name = parts.next().unwrap_or("");
         let Some(row) = ROWS.iter().find(|row| row.name == name) else {
