@@ -195,6 +195,12 @@ pub const CONTRACTS: &[Contract] = &[
     ),
     row(
         "peeling",
+        "peeling_reached",
+        "(pixel: u32) -> u32",
+        "returns, after an iteration, a key that no fragment is less than which no iteration has stored; EMPTY if none is left",
+    ),
+    row(
+        "peeling",
         "peeling_layer_count",
         "(sorted: u32) -> u32",
         "returns the number of fragments that an effect reads, from the number of sorted ones",

@@ -16,6 +16,8 @@ pub(crate) struct Geometry {
     pub(crate) vertices: Vec<u32>,
     pub(crate) indices: Vec<u32>,
     pub(crate) objects: Vec<Range<u32>>,
+    /// The words of a vertex; the first three are its position.
+    pub(crate) stride: usize,
     /// The memory that is left beside them.
     pub(crate) memory: Budget,
 }
@@ -202,7 +204,7 @@ pub(crate) fn geometry(
         let begin = first.get(id.object as usize).copied().unwrap_or(0);
         indices.extend(scene.corners(*id).into_iter().flatten().map(|index| begin + index));
     }
-    Ok(Geometry { vertices, indices, objects, memory })
+    Ok(Geometry { vertices, indices, objects, stride, memory })
 }
 
 /// Checks that every attribute of the descriptions has a source.

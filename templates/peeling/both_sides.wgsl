@@ -122,6 +122,10 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
 /// The pass that stores layers finds the next ones.
 fn peeling_advance() {}
 
+fn peeling_reached(pixel: u32) -> u32 {
+    return next_keys_load(PEELING_FRONT, pixel);
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     let all = accumulated_over(accumulated_part(PEELING_FRONT, pixel), accumulated_part(PEELING_BACK, pixel));
     return vec4<f32>(all.rgb, 1.0 - all.a);

@@ -142,6 +142,16 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
 /// The pass that stores layers finds the next ones.
 fn peeling_advance() {}
 
+fn peeling_reached(pixel: u32) -> u32 {
+    for (var bucket = 0u; bucket < PEELING_BUCKETS; bucket++) {
+        let key = next_keys_load(PEELING_FRONT, bucket, pixel);
+        if key != EMPTY {
+            return key;
+        }
+    }
+    return EMPTY;
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     var all = accumulated_part(0u, pixel);
     for (var part = 1u; part < PEELING_SLOTS; part++) {

@@ -90,6 +90,10 @@ fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
 /// The pass that stores a layer finds the next one.
 fn peeling_advance() {}
 
+fn peeling_reached(pixel: u32) -> u32 {
+    return next_keys_load(pixel);
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     return accumulated_result(pixel);
 }

@@ -71,6 +71,10 @@ fn peeling_advance() {
     }
 }
 
+fn peeling_reached(pixel: u32) -> u32 {
+    return last_keys_load(pixel);
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     return accumulated_result(pixel);
 }

@@ -145,6 +145,10 @@ fn peeling_advance() {
     }
 }
 
+fn peeling_reached(pixel: u32) -> u32 {
+    return window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     let all = accumulated_over(accumulated_part(PEELING_LEAST, pixel), accumulated_part(PEELING_GREATEST, pixel));
     return vec4<f32>(all.rgb, 1.0 - all.a);

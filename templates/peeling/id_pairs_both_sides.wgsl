@@ -167,6 +167,13 @@ fn peeling_advance() {
     }
 }
 
+fn peeling_reached(pixel: u32) -> u32 {
+    let front = window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);
+    let back = window_load(ID_PAIRS_KEY, PEELING_BACK, pixel);
+    // The side without a layer is EMPTY.
+    return min(front, select(~back, EMPTY, back == EMPTY));
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     let before = accumulated_over(accumulated_part(0u, pixel), accumulated_part(1u, pixel));
     let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));

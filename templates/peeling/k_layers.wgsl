@@ -128,6 +128,13 @@ fn peeling_advance() {
     }
 }
 
+fn peeling_reached(pixel: u32) -> u32 {
+    if unpeeled_load(PEELING_LEFT, pixel) == 0u {
+        return EMPTY;
+    }
+    return boundary_load(pixel).key;
+}
+
 fn peeling_result(pixel: u32) -> vec4<f32> {
     return accumulated_result(pixel);
 }

@@ -25,6 +25,7 @@ mod counters;
 mod cull;
 mod host;
 mod importance;
+mod objects;
 mod opaque;
 mod overflow;
 mod pass;

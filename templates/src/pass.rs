@@ -103,6 +103,13 @@ pub(crate) fn rows() -> Vec<Row> {
             vec!["addressing", "storage", "peeling", "samples", "sort", "resolve"],
         ),
         row(
+            "reached_depth",
+            "writes the depth that all fragments reach which no iteration has stored",
+            template!("pass/reached_depth"),
+            vec!["addressing", "peeling"],
+        ),
+        row("boxes", "draws the boxes of objects, and writes nothing", template!("pass/boxes"), vec![]),
+        row(
             "composite",
             "writes the colour that iterations have accumulated",
             template!("pass/composite"),

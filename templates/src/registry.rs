@@ -3,8 +3,8 @@
 
 use crate::vocabulary::{Axis, Capability, Row, Technique, Template};
 use crate::{
-    addressing, allocation, counters, cull, host, opaque, overflow, pass, peeling, resolve, samples, select, shared,
-    sort, storage, sync, technique, ties,
+    addressing, allocation, counters, cull, host, objects, opaque, overflow, pass, peeling, resolve, samples, select,
+    shared, sort, storage, sync, technique, ties,
 };
 
 /// The registry: axes, rows, techniques and shared templates.
@@ -17,13 +17,14 @@ pub struct Registry {
 }
 
 /// The axes, in the order in which their edits apply.
-const AXES: [Axis; 16] = [
+const AXES: [Axis; 17] = [
     axis("storage", "where the fragments of a pixel are stored", None),
     axis("sync", "how concurrent fragments of the same pixel are synchronised", Some("none")),
     axis("cull", "which fragments are rejected before they reach the storage", Some("none")),
     axis("opaque", "how opaque surfaces occlude fragments", Some("none")),
     axis("select", "when the k best are selected", Some("on_store")),
     axis("peeling", "whether the scene is drawn again for the fragments that are not kept", Some("none")),
+    axis("objects", "which objects of the scene are drawn", Some("all")),
     axis("allocation", "how many fragments per pixel memory is allocated for", Some("described")),
     axis("overflow", "what happens to a fragment that is not kept", Some("drop")),
     axis("ties", "which of two fragments with equal keys is better", Some("payload")),
@@ -56,6 +57,7 @@ impl Registry {
             opaque::rows(),
             select::rows(),
             peeling::rows(),
+            objects::rows(),
             allocation::rows(),
             overflow::rows(),
             ties::rows(),

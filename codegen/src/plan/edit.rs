@@ -1,7 +1,7 @@
 //! Applies the edits of rows to the steps of a plan.
 
 use fragbuf_templates::vocabulary::{
-    Access, DepthState, Edit, Formula, Kind, Pass, Repeat, Resource, Split, Step, Use,
+    Access, DepthState, Edit, Formula, Kind, Objects, Pass, Repeat, Resource, Split, Step, Use,
 };
 
 /// Applies one edit. Fails if it names a pass that the steps do not have, or if a formula has no value.
@@ -30,6 +30,7 @@ pub(super) fn apply(
             Ok(())
         }
         Edit::AddUse(name, usage) => change(steps, name, &|pass| pass.uses.push(usage.clone())),
+        Edit::DrawVisible(query) => draw_visible(steps, query),
         Edit::Repeat(last, repeat) => repeat_to(steps, last, repeat),
         Edit::Samples(samples) => {
             for_each_pass(steps, &mut |pass| {
@@ -41,6 +42,19 @@ pub(super) fn apply(
         }
         Edit::Split(one) => split(steps, one, constants),
     }
+}
+
+/// Restricts the passes over the scene around a query to the objects that are visible in it.
+fn draw_visible(steps: &mut Vec<Step>, query: &str) -> Result<(), String> {
+    if position(steps, query).is_none() {
+        return in_any_loop(steps, query, &mut |body| draw_visible(body, query));
+    }
+    for_each_pass(steps, &mut |pass| {
+        if pass.kind == Kind::Geometry && pass.objects == Objects::All {
+            pass.objects = Objects::Visible(query.to_owned());
+        }
+    });
+    Ok(())
 }
 
 /// Moves all steps up to a pass into a loop.

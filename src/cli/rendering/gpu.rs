@@ -3,6 +3,7 @@
 //! Input: a task and the selected adapter. Output: the result, redrawn with a larger pool until no fragment is lost to
 //! overflow, in slices as high as the device's limits and the memory budget allow.
 
+use fragbuf::vocabulary::Objects;
 use fragbuf::{Diagnostics, Form, Registry, Request, TARGETS, Target, Variant, generate, tier};
 use fragbuf_frame::{POOL_EXHAUSTED, PoolSize, Sizing};
 use fragbuf_runtime::headless::{BLENDED, Headless, Offscreen, supported_interlock};
@@ -115,7 +116,7 @@ impl GpuFrame {
         };
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         FrameTime::measure(|| {
-            renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+            renderer.render(&output, &mut |pass, call| mesh.draw(pass, call.objects))?;
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let times = renderer.pass_times(&mut encoder);
             queue.submit([encoder.finish()]);
@@ -200,6 +201,9 @@ impl GpuRenderer {
             for (name, importance) in external.importance.iter().zip(importance.iter().cycle()) {
                 block_on(device, renderer.set_texture(name, importance))??;
             }
+            if renderer.plan().passes.iter().any(|pass| pass.objects == Objects::Boxes) {
+                block_on(device, renderer.set_objects(mesh.boxes()))??;
+            }
             redraw.frames += 1;
             let (frame, slices) = (redraw.frames, renderer.slices());
             progress.set_message(format!("{}: frame {frame}, slices: {slices}", request.description));
@@ -270,7 +274,7 @@ impl GpuRenderer {
         let offscreen = Offscreen::new(device, BLENDED, width, height)?;
         let output = Output { view: offscreen.view(), load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         let is_lagged = renderer.is_lagged();
-        let loops = renderer.render(&output, &mut |pass, _| mesh.draw(pass))?;
+        let loops = renderer.render(&output, &mut |pass, call| mesh.draw(pass, call.objects))?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (counters, by_slice) = (renderer.counters(&mut encoder), renderer.slice_counters(&mut encoder));
         let times = renderer.pass_times(&mut encoder);

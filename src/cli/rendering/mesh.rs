@@ -3,8 +3,9 @@
 //! Input: the words of vertices and indices. Output: two buffers, and the commands that draw them.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
-use fragbuf_runtime::wgpu;
+use fragbuf_runtime::{ObjectBox, wgpu};
 
 use crate::cli::attributes::Geometry;
 use crate::cli::output::Failure;
@@ -16,6 +17,9 @@ pub(super) struct Mesh {
     count: u32,
     /// The indices of a draw.
     batch: u32,
+    /// The indices of each object, and the box around it.
+    objects: Vec<Range<u32>>,
+    boxes: Vec<ObjectBox>,
 }
 
 impl Mesh {
@@ -49,17 +53,49 @@ impl Mesh {
             indices: buffer("indices", &geometry.indices, wgpu::BufferUsages::INDEX)?,
             count: geometry.indices.len() as u32,
             batch: batch.map_or(u32::MAX, |triangles| triangles.get().saturating_mul(3)),
+            boxes: geometry.objects.iter().map(|object| box_of(geometry, object)).collect(),
+            objects: geometry.objects.clone(),
         })
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// Draws the objects of these numbers; `None`: all.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, objects: Option<&[u32]>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        let mut begin = 0;
-        while begin < self.count {
-            let end = begin.saturating_add(self.batch).min(self.count);
+        let visible = objects.filter(|_| !self.objects.is_empty());
+        let Some(visible) = visible else { return self.draw_range(pass, 0..self.count) };
+        for range in visible.iter().filter_map(|number| self.objects.get(*number as usize)) {
+            self.draw_range(pass, range.clone());
+        }
+    }
+
+    fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
+        let mut begin = range.start;
+        while begin < range.end {
+            let end = begin.saturating_add(self.batch).min(range.end);
             pass.draw_indexed(begin..end, 0, 0..1);
             begin = end;
         }
     }
+
+    /// Returns the boxes of the objects, in the order of their numbers.
+    pub(super) fn boxes(&self) -> &[ObjectBox] {
+        &self.boxes
+    }
+}
+
+/// Returns the box around the vertices that these indices name; all zeros if there are none.
+fn box_of(geometry: &Geometry, indices: &Range<u32>) -> ObjectBox {
+    let indices = geometry.indices.get(indices.start as usize..indices.end as usize).unwrap_or_default();
+    let positions = indices.iter().filter_map(|index| {
+        let words: &[u32; 3] = geometry.vertices.get(*index as usize * geometry.stride..)?.first_chunk()?;
+        Some(words.map(f32::from_bits))
+    });
+    let grown = |one: Option<ObjectBox>, at: [f32; 3]| {
+        let ObjectBox { least, greatest } = one.unwrap_or(ObjectBox { least: at, greatest: at });
+        let pick =
+            |choose: fn(f32, f32) -> f32, from: [f32; 3]| std::array::from_fn(|axis| choose(from[axis], at[axis]));
+        Some(ObjectBox { least: pick(f32::min, least), greatest: pick(f32::max, greatest) })
+    };
+    positions.fold(None, grown).unwrap_or(ObjectBox { least: [0.0; 3], greatest: [0.0; 3] })
 }

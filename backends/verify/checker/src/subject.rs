@@ -8,7 +8,7 @@ use fragbuf_interpreter::{Bytecode, LEAST_RETRY_LIMIT};
 use fragbuf_model::{Diagnostic, Diagnostics, Selection, SourceSpan, Variant, codes};
 use fragbuf_targets::{Checked, Target, check};
 use fragbuf_templates::Registry;
-use fragbuf_templates::vocabulary::{Access, Capability, Feature, Kind, Parameter, Permits, Row, Soundness};
+use fragbuf_templates::vocabulary::{Access, Capability, Feature, Kind, Objects, Parameter, Permits, Row, Soundness};
 
 use crate::dispatches::Dispatches;
 use crate::fragments::AttributeValues;
@@ -178,6 +178,10 @@ fn compiled(plan: &Plan, target: &Target, registry: &Registry) -> Result<Compile
     for (number, source) in link(&probed, &linking, registry)?.passes.into_iter().enumerate() {
         let (pass, id) = (&probed.passes[number], PassId(number));
         let checked = check(source, target.profile, span)?;
+        if pass.objects == Objects::Boxes {
+            // It writes nothing, and what it drops has no fragment left.
+            continue;
+        }
         if pass.name == READ_STREAM {
             stream = Some(stream_programs(&checked, span)?);
         } else if pass.kind == Kind::Fullscreen {

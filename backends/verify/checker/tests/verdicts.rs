@@ -54,7 +54,9 @@ const CLOSEST: &[(&str, &str)] = &[("overflow", "merge_closest"), ("sync", "spin
 const LAST_OF_FLOATS: &[(&str, &str)] =
     &[("overflow", "merge_last"), ("cull", "none"), ("fragment.color", "vec4"), ("ties", "unordered")];
 
-pub(crate) const VERDICTS: [Verdict; 126] = [
+const UNPEELED: &[(&str, &str)] = &[("objects", "unpeeled")];
+
+pub(crate) const VERDICTS: [Verdict; 128] = [
     ("kb", &[], "wgsl", Model::Sequential, Hazard),
     ("kb", &[], "spirv", Model::Relaxed, Hazard),
     ("kb", LOCKED, "wgsl", Model::Sequential, Holds),
@@ -110,6 +112,8 @@ pub(crate) const VERDICTS: [Verdict; 126] = [
     ("f2b_2p", &[], "wgsl", Model::Relaxed, Hazard),
     ("f2b_3p", &[], "glsl", Model::Sequential, Hazard),
     ("f2b_3p", &[], "spirv", Model::Relaxed, Hazard),
+    ("f2b_ll", UNPEELED, "wgsl", Model::Sequential, Holds),
+    ("k_peeling", UNPEELED, "spirv", Model::Relaxed, Holds),
     ("dual", &[], "wgsl", Model::Sequential, Hazard),
     ("dual", &[], "wgsl", Model::Relaxed, Hazard),
     ("dual_2p", &[], "wgsl", Model::Sequential, Hazard),

@@ -4,6 +4,7 @@ mod b06_fig_3;
 mod b06_table_1;
 mod b06_table_2;
 mod c15_fig_1;
+mod d13_fig_10;
 mod d13_fig_11;
 mod d13_fig_13;
 mod d13_fig_7;
@@ -26,7 +27,7 @@ mod peers;
 use super::experiment::Experiment;
 
 /// All experiments, in the order of `figure --list`.
-pub(super) const EXPERIMENTS: [Experiment; 22] = [
+pub(super) const EXPERIMENTS: [Experiment; 23] = [
     k15_table_1::ROW,
     k15_fig_1::ROW,
     k15_fig_3::ROW,
@@ -42,6 +43,7 @@ pub(super) const EXPERIMENTS: [Experiment; 22] = [
     d13_fig_7::ROW,
     d13_fig_8::ROW,
     d13_fig_9::ROW,
+    d13_fig_10::ROW,
     d13_fig_11::ROW,
     d13_fig_13::ROW,
     b06_fig_3::ROW,

@@ -1,11 +1,11 @@
 //! Object culling by occlusion queries of bounding boxes (D13 §3.3).
 //!
-//! An object whose box failed once stays dropped until the frame ends: peeled layers do not return. A box is drawn without a
-//! margin, as on a GPU, so an object that is behind by less than the rounding of depths may be dropped too.
+//! An object whose box failed once stays dropped until the frame ends: peeled layers do not return. Boxes have a margin, so that no
+//! object is dropped because of rounding.
 
 use std::ops::Range;
 
-use fragbuf_frame::box_vertices;
+use fragbuf_frame::{box_vertices, grown_box};
 
 use super::Frame;
 
@@ -27,7 +27,7 @@ impl Frame<'_> {
         if objects.is_empty() { std::iter::once(0..end).collect() } else { objects.iter().map(clipped).collect() }
     }
 
-    /// Returns the corners of the bounding box of an object as vertices; `None`: the object is empty.
+    /// Returns the corners of the box around an object as vertices; `None`: the object is empty.
     pub(super) fn corners(&self, object: &Range<u32>, stride: usize) -> Option<Vec<u32>> {
         let indices = self.mesh.indices.get(object.start as usize..object.end as usize)?;
         let positions =
@@ -40,6 +40,7 @@ impl Frame<'_> {
             };
             (pick(f32::min, least), pick(f32::max, greatest))
         });
+        let (least, greatest) = grown_box(least, greatest);
         Some(box_vertices(least, greatest, stride))
     }
 }

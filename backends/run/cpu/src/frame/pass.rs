@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use fragbuf_codegen::{PassId, PlannedPass};
-use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, PassRun, Values, is_cut_by_near_plane, unsupported};
+use fragbuf_frame::{BOX_CORNERS, BOX_TRIANGLES, PassRun, Values, is_below_a_pixel, is_cut_by_near_plane, unsupported};
 use fragbuf_interpreter::{Bytecode, Space};
 use fragbuf_templates::vocabulary::{Access, Coverage, Kind, Objects, Pass};
 
@@ -124,10 +124,10 @@ impl Frame<'_> {
             let Some(corners) = self.corners(object, stride).filter(|_| is_queried) else { continue };
             let transformed = vertices::run((stages.0, &empty.vertex.1), &corners, (BOX_CORNERS, 0), empty.lanes);
             let transformed = transformed.map_err(|error| self.draw_error(query, stages, 0, 0, error))?;
-            let crosses = transformed.chunks(layout.stride).any(|vertex| {
-                let [_, _, z, w] = layout.position_in(vertex);
-                is_cut_by_near_plane(z, w)
-            });
+            let positions: Vec<[f32; 4]> =
+                transformed.chunks(layout.stride).map(|vertex| layout.position_in(vertex)).collect();
+            let is_undecided = positions.iter().any(|[_, _, z, w]| is_cut_by_near_plane(*z, *w))
+                || is_below_a_pixel(&positions, (self.device.settings.width, self.device.settings.height));
             let call = DrawCall {
                 vertices: &corners,
                 indices: Some(&BOX_TRIANGLES),
@@ -143,7 +143,7 @@ impl Frame<'_> {
                 drawn.map_err(|error| self.draw_error(query, stages, call.triangle_count(), call.memory, error))?;
             all.samples += drawn.samples;
             all.out_of_bounds = all.out_of_bounds.or(drawn.out_of_bounds);
-            visible[number] = u32::from(drawn.samples > 0 || crosses);
+            visible[number] = u32::from(drawn.samples > 0 || is_undecided);
         }
         self.objects = visible;
         Ok(all)
