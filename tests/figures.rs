@@ -215,7 +215,7 @@ fn the_examples_have_every_figure() {
         assert!(readme.contains(&command) && readme.contains(&format!("({name}.csv)")), "README.md has no {name}");
         assert!(readme.contains(&format!("src=\"{name}.svg\"")), "README.md does not show {name}");
     }
-    for name in ["k15-table-1", "k15-fig-1"] {
+    for name in ["k15-table-1", "d13-table-1", "k15-fig-1"] {
         let output = fragbuf(&["figure", name, "--out", out.to_str().unwrap()]);
         let sentence = String::from_utf8(output.stdout).unwrap();
         assert!(readme.contains(sentence.trim_end()), "README.md should have: {sentence}");
@@ -223,6 +223,20 @@ fn the_examples_have_every_figure() {
             let file = format!("{name}.{extension}");
             assert!(read(examples.join(&file)) == read(out.join(&file)), "examples/figures/{file} is out of date");
         }
+    }
+}
+
+/// Where a plan has another value than D13, the table has a reason, and nowhere else.
+#[test]
+fn every_difference_from_d13_table_1_has_a_reason() {
+    let out = folder("figure-reasons");
+    quick("d13-table-1", "cpu", &out, &[]);
+    let (columns, rows) = table(&read(out.join("d13-table-1.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    let of = |verdict: &str| rows.iter().filter(|row| row[column("agrees")] == verdict).count();
+    assert!(of("yes") > 0 && of("no") > 0, "{rows:?}");
+    for row in &rows {
+        assert_eq!(row[column("agrees")] == "no", !row[column("reason")].is_empty(), "{row:?}");
     }
 }
 
