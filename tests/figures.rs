@@ -240,6 +240,58 @@ fn every_difference_from_d13_table_1_has_a_reason() {
     }
 }
 
+/// In scenes of nine depths, each of c fragments, iterations follow from depths and ids. D13's robust techniques keep every fragment, and the others one
+/// of each depth.
+#[test]
+fn d13_table_1_measures_the_iterations_and_hit_ratios_of_its_scenes() {
+    let out = folder("figure-peeling");
+    quick("d13-table-1", "cpu", &out, &[]);
+    let (columns, rows) = table(&read(out.join("d13-table-1.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    let of = |key: &str, property: &str, coplanar: usize| -> f64 {
+        let property = format!("\"{property}, c = {coplanar}\"");
+        let row = rows.iter().find(|row| row[column("key")] == key && row[column("property")] == property);
+        row.unwrap_or_else(|| panic!("{key}, {property}"))[column("fragbuf")].parse().unwrap()
+    };
+    for coplanar in [1_usize, 2, 5, 9] {
+        let halves = coplanar.div_ceil(2);
+        let iterations = [
+            // An iteration that keeps nothing, or that finds nothing, ends these three.
+            ("f2b", 10),
+            ("f2b2", 10),
+            ("f2b_3p", 9 * halves + 1),
+            ("f2b_2p", 9 * halves),
+            ("f2b_ll", 9),
+            ("f2b_kb", 9),
+            ("f2b_fab", 9),
+            ("dual", 5),
+            ("dual_2p", 5 * halves),
+            ("dual_ll", 5),
+            ("dual_kb", 5),
+            ("dual_fab", 5),
+        ];
+        for (key, iterations) in iterations {
+            assert_eq!(of(key, "iterations", coplanar), iterations as f64, "{key}, {coplanar}");
+        }
+        let draws =
+            [("f2b2", 20), ("f2b_2p", 18 * halves + 1), ("f2b_3p", 27 * halves + 3), ("dual_2p", 10 * halves + 1)];
+        let draws = draws.into_iter().chain([("f2b_ll", 10), ("dual_ll", 6), ("bad", 4), ("ab_ll_bun", 2)]);
+        for (key, draws) in draws {
+            assert_eq!(of(key, "draws", coplanar), draws as f64, "{key}, {coplanar}");
+        }
+        let robust = ["f2b_2p", "f2b_3p", "f2b_ll", "f2b_kb", "f2b_fab"];
+        let robust = robust.iter().chain(&["dual_2p", "dual_ll", "dual_kb", "dual_fab", "ab_ll_bun"]);
+        robust.for_each(|key| assert_eq!(of(key, "R_h", coplanar), 1.0, "{key}, {coplanar}"));
+        for key in ["f2b", "f2b2", "dual", "bun"] {
+            assert!((of(key, "R_h", coplanar) - 1.0 / coplanar as f64).abs() < 0.5e-4, "{key}, {coplanar}");
+        }
+        // Depths that share a part of the range lose more than those that do not.
+        assert!(of("bad", "R_h", coplanar) <= 1.0 / coplanar as f64 + 0.5e-4);
+        // Four buckets: at least three depths are in the fullest, at most all nine.
+        assert!((3.0..=6.0).contains(&of("bun", "iterations", coplanar)));
+    }
+}
+
 /// The bytes that are measured are those of the papers' formulas for the histogram of the scene.
 #[test]
 fn the_memory_of_k15_fig_8_is_that_of_the_formulas() {

@@ -152,7 +152,7 @@ fn hit_ratio(plan: &Plan) -> &'static str {
         (false, true) => "1",
         (true, true) => "D / f",
         (false, false) => "k / f to 1",
-        (true, false) => "min(k, D) / f",
+        (true, false) => "0 to min(k, D) / f",
     }
 }
 

@@ -1,8 +1,9 @@
-//! D13, Table 1: properties of peeling and of buffers, with those of the plans.
+//! D13, Table 1: properties of peeling and of buffers, with those of the plans, and the draws and hit ratios of small frames: in
+//! the paper's Fig. 8 the number of fragments of a depth varies, here it is 1, 2, 5 and 9.
 
 use fragbuf_templates::D13_TABLE_1;
 
-use crate::cli::figure::experiment::{Experiment, Kind, Properties};
+use crate::cli::figure::experiment::{Experiment, Kind, MeasuredScenes, Properties};
 
 pub(super) const ROW: Experiment = Experiment {
     name: "d13-table-1",
@@ -11,8 +12,9 @@ pub(super) const ROW: Experiment = Experiment {
     kind: Kind::Properties(Properties {
         table: &D13_TABLE_1,
         has_others: false,
-        widths: &[140, 130, 340, 190, 110, 200, 100, 100],
+        widths: &[140, 130, 380, 190, 110, 210, 100, 100],
         compared: &COMPARED,
+        measured: Some(MeasuredScenes { depths: 9, coplanar: &[1, 2, 5, 9], camera: "clip", side: 8 }),
     }),
 };
 

@@ -13,6 +13,7 @@ pub(super) const ROW: Experiment = Experiment {
         has_others: true,
         widths: &[110, 110, 110, 90, 480, 110, 50],
         compared: &COMPARED,
+        measured: None,
     }),
 };
 
