@@ -215,7 +215,7 @@ fn the_examples_have_every_figure() {
         assert!(readme.contains(&command) && readme.contains(&format!("({name}.csv)")), "README.md has no {name}");
         assert!(readme.contains(&format!("src=\"{name}.svg\"")), "README.md does not show {name}");
     }
-    for name in ["k15-table-1", "k15-fig-1"] {
+    for name in ["k15-table-1", "d13-table-1", "k15-fig-1"] {
         let output = fragbuf(&["figure", name, "--out", out.to_str().unwrap()]);
         let sentence = String::from_utf8(output.stdout).unwrap();
         assert!(readme.contains(sentence.trim_end()), "README.md should have: {sentence}");
@@ -223,6 +223,72 @@ fn the_examples_have_every_figure() {
             let file = format!("{name}.{extension}");
             assert!(read(examples.join(&file)) == read(out.join(&file)), "examples/figures/{file} is out of date");
         }
+    }
+}
+
+/// Where a plan has another value than D13, the table has a reason, and nowhere else.
+#[test]
+fn every_difference_from_d13_table_1_has_a_reason() {
+    let out = folder("figure-reasons");
+    quick("d13-table-1", "cpu", &out, &[]);
+    let (columns, rows) = table(&read(out.join("d13-table-1.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    let of = |verdict: &str| rows.iter().filter(|row| row[column("agrees")] == verdict).count();
+    assert!(of("yes") > 0 && of("no") > 0, "{rows:?}");
+    for row in &rows {
+        assert_eq!(row[column("agrees")] == "no", !row[column("reason")].is_empty(), "{row:?}");
+    }
+}
+
+/// In scenes of nine depths, each of c fragments, iterations follow from depths and ids. D13's robust techniques keep every fragment, and the others one
+/// of each depth.
+#[test]
+fn d13_table_1_measures_the_iterations_and_hit_ratios_of_its_scenes() {
+    let out = folder("figure-peeling");
+    quick("d13-table-1", "cpu", &out, &[]);
+    let (columns, rows) = table(&read(out.join("d13-table-1.csv")));
+    let column = |name: &str| columns.iter().position(|column| column == name).unwrap();
+    let of = |key: &str, property: &str, coplanar: usize| -> f64 {
+        let property = format!("\"{property}, c = {coplanar}\"");
+        let row = rows.iter().find(|row| row[column("key")] == key && row[column("property")] == property);
+        row.unwrap_or_else(|| panic!("{key}, {property}"))[column("fragbuf")].parse().unwrap()
+    };
+    for coplanar in [1_usize, 2, 5, 9] {
+        let halves = coplanar.div_ceil(2);
+        let iterations = [
+            // An iteration that keeps nothing, or that finds nothing, ends these three.
+            ("f2b", 10),
+            ("f2b2", 10),
+            ("f2b_3p", 9 * halves + 1),
+            ("f2b_2p", 9 * halves),
+            ("f2b_ll", 9),
+            ("f2b_kb", 9),
+            ("f2b_fab", 9),
+            ("dual", 5),
+            ("dual_2p", 5 * halves),
+            ("dual_ll", 5),
+            ("dual_kb", 5),
+            ("dual_fab", 5),
+        ];
+        for (key, iterations) in iterations {
+            assert_eq!(of(key, "iterations", coplanar), iterations as f64, "{key}, {coplanar}");
+        }
+        let draws =
+            [("f2b2", 20), ("f2b_2p", 18 * halves + 1), ("f2b_3p", 27 * halves + 3), ("dual_2p", 10 * halves + 1)];
+        let draws = draws.into_iter().chain([("f2b_ll", 10), ("dual_ll", 6), ("bad", 4), ("ab_ll_bun", 2)]);
+        for (key, draws) in draws {
+            assert_eq!(of(key, "draws", coplanar), draws as f64, "{key}, {coplanar}");
+        }
+        let robust = ["f2b_2p", "f2b_3p", "f2b_ll", "f2b_kb", "f2b_fab"];
+        let robust = robust.iter().chain(&["dual_2p", "dual_ll", "dual_kb", "dual_fab", "ab_ll_bun"]);
+        robust.for_each(|key| assert_eq!(of(key, "R_h", coplanar), 1.0, "{key}, {coplanar}"));
+        for key in ["f2b", "f2b2", "dual", "bun"] {
+            assert!((of(key, "R_h", coplanar) - 1.0 / coplanar as f64).abs() < 0.5e-4, "{key}, {coplanar}");
+        }
+        // Depths that share a part of the range lose more than those that do not.
+        assert!(of("bad", "R_h", coplanar) <= 1.0 / coplanar as f64 + 0.5e-4);
+        // Four buckets: at least three depths are in the fullest, at most all nine.
+        assert!((3.0..=6.0).contains(&of("bun", "iterations", coplanar)));
     }
 }
 

@@ -37,6 +37,7 @@ mod memory;
 mod new;
 mod output;
 mod page;
+mod paper_table;
 #[cfg(feature = "pictures")]
 mod picture;
 #[cfg(feature = "pictures")]

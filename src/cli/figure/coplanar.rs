@@ -53,10 +53,9 @@ pub(super) fn run(row: &CoplanarScenes, options: &Figure, experiment: &Experimen
         run.show(number as f64 / row.scenes.len() as f64, coplanar.label);
         let [full, quick] = coplanar.scene;
         let scene = if options.quick { quick } else { full };
-        let mut view = run.view(scene.to_owned(), row.camera, (side, side), options.memory)?;
+        let view = run.view(scene.to_owned(), row.camera, (side, side), options.memory)?;
         let (scene_view, _) = view.scene_views(&[])?;
         let coplanarity = Coplanarity::measure_on((&view, &mut run.selection), &scene_view, &run.silent)?;
-        view.attributes = vec![("color".to_owned(), format!("1,1,1,{ALPHA}"))];
         let kept = kept(row.technique, (&view, &scene_view), &mut run)?;
         all.push(Measured { label: coplanar.label, scene, coplanarity, kept });
     }
@@ -68,8 +67,10 @@ pub(super) fn run(row: &CoplanarScenes, options: &Figure, experiment: &Experimen
     Ok(sentence(experiment.paper, &run.selection.name(), &findings))
 }
 
-/// Returns the fragments that a technique blends. All of them have [`ALPHA`].
-fn kept(technique: &str, (view, scene): (&View, &SceneView), run: &mut Run<'_>) -> Result<u64, Failure> {
+/// Returns the fragments that a technique blends, for payloads with a `color`. All of them get [`ALPHA`].
+pub(super) fn kept(technique: &str, (view, scene): (&View, &SceneView), run: &mut Run<'_>) -> Result<u64, Failure> {
+    let mut view = view.clone();
+    view.attributes = vec![("color".to_owned(), format!("1,1,1,{ALPHA}"))];
     let mut input = Input::read(technique, &Registry::builtin())?;
     let request = RenderRequest {
         description: technique,
@@ -81,7 +82,7 @@ fn kept(technique: &str, (view, scene): (&View, &SceneView), run: &mut Run<'_>) 
         lagged: None,
         words: &[],
     };
-    let result = render_quietly(&request, &mut input, (view, &mut run.selection), scene, &run.silent)?;
+    let result = render_quietly(&request, &mut input, (&view, &mut run.selection), scene, &run.silent)?;
     Ok(result.stats.pixels.iter().map(|[_, _, _, alpha]| blended(f64::from(*alpha))).sum())
 }
 

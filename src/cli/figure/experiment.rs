@@ -3,7 +3,7 @@
 //! `{x}` in a text stands for the value of the sweep, `{x+1}` for the next number.
 
 use fragbuf_cpu::FragmentOrder;
-use fragbuf_templates::PaperRow;
+use fragbuf_templates::PaperTable;
 
 use super::claim::Claim;
 
@@ -305,9 +305,27 @@ pub(super) enum Expected {
 /// Properties of techniques.
 #[derive(Clone, Copy)]
 pub(super) struct Properties {
-    pub(super) rows: &'static [PaperRow],
+    pub(super) table: &'static PaperTable,
+    /// Whether techniques that the table does not have follow.
+    pub(super) has_others: bool,
+    /// The widths of the columns in the SVG, after that of the technique.
+    pub(super) widths: &'static [u32],
     /// The columns that are compared, each with what it states.
     pub(super) compared: &'static [(&'static str, &'static str)],
+    /// The scenes on which draws and hit ratios are measured, if they are.
+    pub(super) measured: Option<MeasuredScenes>,
+}
+
+/// Scenes of `builtin:layers` in which every pixel has the same number of depths, and each depth the same number of fragments.
+#[derive(Clone, Copy)]
+pub(super) struct MeasuredScenes {
+    /// The depths of a pixel.
+    pub(super) depths: u32,
+    /// The fragments of each depth, a scene per number.
+    pub(super) coplanar: &'static [u32],
+    pub(super) camera: &'static str,
+    /// The pixels along a side.
+    pub(super) side: u32,
 }
 
 /// The states of a row of pixels while a scene is drawn.

@@ -3,7 +3,8 @@
 //! Input: the name of an experiment, which is a row of data in [`experiments`]. Output: a CSV file, a chart or image, and one sentence that
 //! compares the trend with the paper's. [`experiment`] has the types of the rows, [`run`] what all kinds share. Each kind of
 //! experiment has a runner: [`sweep`], [`images`], [`properties`], [`steps`], [`predictions`], [`coplanar`],
-//! [`disorder`] and [`peers`]. [`claim`] compares with the paper, [`chart`] and [`svg`] draw.
+//! [`disorder`] and [`peers`]. [`claim`] compares with the paper, [`measured`] evaluates the formulas of tables,
+//! [`chart`] and [`svg`] draw.
 
 mod chart;
 mod claim;
@@ -14,6 +15,7 @@ mod experiment;
 mod experiments;
 pub(crate) mod histogram;
 mod images;
+mod measured;
 mod peers;
 mod point;
 mod predictions;

@@ -8,7 +8,13 @@ pub(super) const ROW: Experiment = Experiment {
     name: "k15-table-1",
     paper: "K15, Table 1",
     title: "properties of k-buffer variants",
-    kind: Kind::Properties(Properties { rows: &TABLE_1, compared: &COMPARED }),
+    kind: Kind::Properties(Properties {
+        table: &TABLE_1,
+        has_others: true,
+        widths: &[110, 110, 110, 90, 480, 110, 50],
+        compared: &COMPARED,
+        measured: None,
+    }),
 };
 
 const COMPARED: [(&str, &str); 4] = [

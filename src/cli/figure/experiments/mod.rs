@@ -10,6 +10,7 @@ mod d13_fig_13;
 mod d13_fig_7;
 mod d13_fig_8;
 mod d13_fig_9;
+mod d13_table_1;
 mod growth;
 mod k15_fig_1;
 mod k15_fig_10;
@@ -40,6 +41,7 @@ pub(super) const EXPERIMENTS: [Experiment; 23] = [
     k15_fig_10::ROW,
     k15_sec_5_1_2::ROW,
     c15_fig_1::ROW,
+    d13_table_1::ROW,
     d13_fig_7::ROW,
     d13_fig_8::ROW,
     d13_fig_9::ROW,
