@@ -240,8 +240,8 @@ fn every_difference_from_d13_table_1_has_a_reason() {
     }
 }
 
-/// In scenes of nine depths, each of c fragments, iterations follow from depths and ids. D13's robust techniques keep every fragment, and the others one
-/// of each depth.
+/// In scenes of nine depths, each of c fragments, iterations follow from depths and ids. D13's robust techniques keep
+/// every fragment, and the others one of each depth.
 #[test]
 fn d13_table_1_measures_the_iterations_and_hit_ratios_of_its_scenes() {
     let out = folder("figure-peeling");

@@ -1,7 +1,8 @@
 //! Computes the properties of techniques that tables of papers state.
 //!
-//! Input: a table of a paper and the registry. Output: for each technique the paper's values beside those of its plan. All of the latter
-//! follow from passes, resources, capabilities and hazards of the plan, apart from the number of iterations, which is that of the row.
+//! Input: a table of a paper and the registry. Output: for each technique the paper's values beside those of its plan.
+//! All of the latter follow from passes, resources, capabilities and hazards of the plan, apart from the number of
+//! iterations, which is that of the row.
 
 use fragbuf::vocabulary::{Capability, Element, Equivalence, FormulaError, Kind, Permits, Polynomial, Side, Soundness};
 use fragbuf::{Arrival, Form, Plan, Registry, Request, TARGETS, Target, generate};
@@ -31,7 +32,8 @@ pub(super) struct Cell {
     pub(super) reason: Option<&'static str>,
 }
 
-/// Returns the properties of a technique, with those of its row in the table if it has one. `None`: no target supports it.
+/// Returns the properties of a technique, with those of its row in the table if it has one. `None`: no target supports
+/// it.
 pub(super) fn properties(
     (key, name): (&str, &str),
     table: &PaperTable,

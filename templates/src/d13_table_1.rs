@@ -1,9 +1,10 @@
-//! Table 1 of the paper on depth fighting (Vasilakis & Fudos 2013, D13), as far as the available copy is legible: a merged cell
-//! counts for each of its rows.
+//! Table 1 of the paper on depth fighting (Vasilakis & Fudos 2013, D13), as far as the available copy is legible: a
+//! merged cell counts for each of its rows.
 //!
-//! In the notation of the plans: f is the number of fragments of a pixel, in the paper C(Z_all); k the paper's K. Where an iteration stores the
-//! fragments of one depth, f (of lists) and n (slots per pixel) are those of that depth, in the paper C(Z) and K. BUN has K = 4 buckets, and k of
-//! BAD is the paper's 4K. D is the number of depths, c that of the fragments of each.
+//! In the notation of the plans: f is the number of fragments of a pixel, in the paper C(Z_all); k the paper's K. Where
+//! an iteration stores the fragments of one depth, f (of lists) and n (slots per pixel) are those of that depth, in the
+//! paper C(Z) and K. BUN has K = 4 buckets, and k of BAD is the paper's 4K. D is the number of depths, c that of the
+//! fragments of each.
 
 use crate::paper_table::{Column, PaperRow, PaperTable, Property};
 

@@ -58,11 +58,11 @@ pub struct PaperRow {
     pub key: &'static str,
     /// The paper's name for it.
     pub name: &'static str,
-    /// The values, in the order of the columns. Columns past the last have no value of the paper; `?` and `–`: illegible. Several values are
-    /// separated by `; `: those of a technique without and with attributes packed.
+    /// The values, in the order of the columns. Columns past the last have no value of the paper; `?` and `–`:
+    /// illegible. Several values are separated by `; `: those of a technique without and with attributes packed.
     pub cells: &'static [&'static str],
-    /// How many iterations a frame takes, as a formula: D depths in the deepest pixel, each of c fragments; empty: the plan has no
-    /// loop that a condition ends.
+    /// How many iterations a frame takes, as a formula: D depths in the deepest pixel, each of c fragments; empty: the
+    /// plan has no loop that a condition ends.
     pub iterations: &'static str,
     /// Why the plan has another value, by property.
     pub reasons: &'static [(Property, &'static str)],

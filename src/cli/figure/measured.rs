@@ -1,7 +1,8 @@
-//! Measures what a table of a paper states by formulas: draws of the scene and the hit ratio R_h, on scenes of known depths.
+//! Measures what a table of a paper states by formulas: draws of the scene and the hit ratio R_h, on scenes of known
+//! depths.
 //!
-//! Input: the table and scenes. Output: a value per technique, scene and property, beside that of the paper's formula. On the CPU device, so
-//! that a run gives the same values again.
+//! Input: the table and scenes. Output: a value per technique, scene and property, beside that of the paper's formula.
+//! On the CPU device, so that a run gives the same values again.
 
 use fragbuf::Registry;
 use fragbuf::vocabulary::Formula;
@@ -183,8 +184,8 @@ fn number(value: f64) -> String {
     format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns the least and the greatest value of `formula`, `formula to formula`, where a formula may be a quotient of two. `None`: it has
-/// a symbol without a value, or is none.
+/// Returns the least and the greatest value of `formula`, `formula to formula`, where a formula may be a quotient of
+/// two. `None`: it has a symbol without a value, or is none.
 fn range(text: &str, symbol: &dyn Fn(&str) -> Option<u64>) -> Option<[f64; 2]> {
     let (least, most) = text.split_once(" to ").unwrap_or((text, text));
     let value = |text: &str| Formula::from(text.to_owned()).evaluate(symbol).ok().map(|value| value as f64);

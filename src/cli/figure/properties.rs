@@ -1,7 +1,8 @@
 //! Compares properties of techniques that a paper states with those of the plans.
 //!
-//! Input: the paper's rows and the registry. Output: a CSV file with one line per property, and an SVG table. Techniques that the paper does
-//! not have may follow, with the values of their plans alone. Draws and hit ratios are measured if the row has scenes; nothing is timed.
+//! Input: the paper's rows and the registry. Output: a CSV file with one line per property, and an SVG table.
+//! Techniques that the paper does not have may follow, with the values of their plans alone. Draws and hit ratios are
+//! measured if the row has scenes; nothing is timed.
 
 use fragbuf::Registry;
 
@@ -67,7 +68,8 @@ pub(super) fn run(row: &experiment::Properties, options: &Figure, experiment: &E
     Ok(sentence(experiment.paper, "every target", &findings))
 }
 
-/// Returns whether a plan agrees with the paper; `None`: the paper has no legible value. A paper's second value is that of packed attributes.
+/// Returns whether a plan agrees with the paper; `None`: the paper has no legible value. A paper's second value is that
+/// of packed attributes.
 fn agrees(cell: &Cell) -> Option<bool> {
     let paper = cell.paper.filter(|paper| !["?", "–"].contains(paper))?;
     Some(paper.split("; ").any(|value| value == cell.plan))

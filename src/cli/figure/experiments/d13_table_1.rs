@@ -1,5 +1,5 @@
-//! D13, Table 1: properties of peeling and of buffers, with those of the plans, and the draws and hit ratios of small frames: in
-//! the paper's Fig. 8 the number of fragments of a depth varies, here it is 1, 2, 5 and 9.
+//! D13, Table 1: properties of peeling and of buffers, with those of the plans, and the draws and hit ratios of small
+//! frames: in the paper's Fig. 8 the number of fragments of a depth varies, here it is 1, 2, 5 and 9.
 
 use fragbuf_templates::D13_TABLE_1;
 
