@@ -66,12 +66,7 @@ const CATALOGUE: [Entry; 40] = [
     ("dual", "6", "1025", Some(("16", STORED_KEYS))),
     ("dual_2p", "20", "2049", Some(("38", BY_IDS))),
     ("bun", "18", "1025", Some(("66", "as `dual`, for each of four buckets, and the range"))),
-    (
-        "bad",
-        "3k/2+3",
-        "4",
-        Some(("ceil_div(k, 32)+2k+6", "keys are whole words, and a bit per part orders fragments of equal depth")),
-    ),
+    ("bad", "3k/2+3", "4", Some(("2k+10", "keys are whole words, and a bit per part orders fragments of equal depth"))),
     (
         "kb_stream",
         "2k+1",

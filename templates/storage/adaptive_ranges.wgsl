@@ -7,7 +7,7 @@
 // Invariant: parts are in the order of depth, and every draw finds the same part for a key. What a draw finds is read
 // in later draws, so the order of fragments only decides which of several equal keys is kept. The others are counted.
 //
-// Memory: k * entry_words + ceil(k / 32) + OCCUPANCY_WORDS + 2 words per pixel.
+// Memory: k * entry_words + 2 * OCCUPANCY_WORDS + 2 words per pixel.
 
 /// The ends of the range. The key of the nearest is inverted, so that both words grow from 0, the empty range.
 const NEAREST = 0u;

@@ -80,7 +80,7 @@ pub(super) fn adaptive_ranges() -> Row {
         resources: [
             by_pixel("ranges", ("end", "2"), ends),
             by_pixel("occupancy", ("word", "OCCUPANCY_WORDS"), "a bit per bucket of the range that holds a fragment"),
-            by_pixel("claims", ("word", "ceil_div(k, 32)"), "a bit per part whose fragment is stored"),
+            by_pixel("claims", ("word", "OCCUPANCY_WORDS"), "a bit per part whose fragment is stored"),
         ]
         .into_iter()
         .chain(slots)
