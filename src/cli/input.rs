@@ -63,6 +63,7 @@ impl Input {
     }
 
     /// Names the option of the changes after the first `count` in messages.
+    #[cfg(feature = "pictures")]
     pub(crate) fn with_option_after(self, count: usize, option: &'static str) -> Self {
         Input { other_option: Some((count, option)), ..self }
     }

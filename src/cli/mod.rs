@@ -4,6 +4,7 @@
 
 #[cfg(feature = "pictures")]
 mod animated_image;
+#[cfg(feature = "pictures")]
 mod animation;
 #[cfg(feature = "pictures")]
 mod arrangement;
