@@ -7,6 +7,7 @@ use fragbuf_model::{Choice, Diagnostics, Draft, MissingFeature, SourceSpan, Span
 use fragbuf_syntax::{Parsed, parse};
 use fragbuf_targets::{Request, Target, select};
 use fragbuf_templates::Registry;
+use fragbuf_templates::vocabulary::Row;
 
 use crate::{source_file, user_file};
 
@@ -119,12 +120,18 @@ pub fn alternatives(
         }
         let current = chosen_values(description, set, registry, &missing.axis);
         let others = registry.rows_of(&missing.axis).filter(|row| row.key != Registry::CLOSURE);
-        let mut values = others.map(|row| format!("{current} else {}", row.key));
-        let supported = values.find(|value| {
-            let more = [set, &[(missing.axis.clone(), value.clone())]].concat();
+        let supported = others.filter(|row| {
+            let more = [set, &[(missing.axis.clone(), format!("{current} else {}", row.key))]].concat();
             variant(description, &more, registry).is_ok_and(|variant| select(&variant, target, request).is_ok())
         });
-        found.extend(supported.map(|value| (missing.axis.clone(), value)));
+        // The one that provides most of what the first choice does: the others may lose what it keeps.
+        let first = current.split(" else ").next().and_then(|key| registry.row(&missing.axis, key));
+        let lacking = |row: &&Row| {
+            let wanted = first.iter().flat_map(|first| &first.provides);
+            wanted.filter(|capability| !row.provides.contains(capability)).count()
+        };
+        let closest = supported.min_by_key(lacking);
+        found.extend(closest.map(|row| (missing.axis.clone(), format!("{current} else {}", row.key))));
     }
     found
 }

@@ -42,8 +42,9 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
 
 fn peeling_find_next(pixel: u32, key: u32) {
     if frame.iteration + 1u == PEELING_ITERATIONS {
-        // No iteration follows.
+        // No iteration follows, and the loop ends at its limit.
         count_loss(NOT_CONVERGED);
+        remaining_store(1u);
         return;
     }
     if key < next_keys_load(pixel) && next_keys_atomic_min(pixel, key) == EMPTY {

@@ -26,6 +26,7 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
     }
     if frame.iteration + 1u == PEELING_ITERATIONS {
         count_loss(NOT_CONVERGED);
+        remaining_store(1u);
         return false;
     }
     return true;

@@ -85,8 +85,9 @@ fn peeling_find_next(pixel: u32, key: u32) {
         return;
     }
     if frame.iteration + 1u == PEELING_ITERATIONS {
-        // No iteration follows.
+        // No iteration follows, and the loop ends at its limit.
         count_loss(NOT_CONVERGED);
+        remaining_store(1u);
         return;
     }
     id_pairs_find_next(PEELING_FRONT, pixel, key);

@@ -34,8 +34,9 @@ fn peeling_find(pixel: u32, entry: Packed) {
 /// Finds the key of the nearest fragments that are left.
 fn peeling_find_layer(pixel: u32, key: u32) {
     if frame.iteration + 1u == PEELING_ITERATIONS {
-        // No iteration follows.
+        // No iteration follows, and the loop ends at its limit.
         count_loss(NOT_CONVERGED);
+        remaining_store(1u);
         return;
     }
     id_pairs_find_next(PEELING_FRONT, pixel, key);
@@ -62,8 +63,9 @@ fn peeling_takes(pixel: u32, entry: Packed) -> bool {
     return peeling_is_in_layer(pixel, entry) && id_pairs_takes(PEELING_FRONT, pixel, id_pairs_id(entry));
 }
 
+/// The draw that finds the layer counts fragments.
 fn peeling_is_first(position: vec2<f32>) -> bool {
-    return frame.iteration == 0u;
+    return false;
 }
 
 fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {

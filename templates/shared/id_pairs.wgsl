@@ -40,8 +40,9 @@ fn id_pairs_takes(side: u32, pixel: u32, id: u32) -> bool {
 /// Records a fragment that is left in the side's layer and that this iteration does not store.
 fn id_pairs_leave(side: u32, pixel: u32) {
     if frame.iteration + 1u == PEELING_ITERATIONS {
-        // No iteration follows.
+        // No iteration follows, and the loop ends at its limit.
         count_loss(NOT_CONVERGED);
+        remaining_store(1u);
         return;
     }
     if found_load(ID_PAIRS_BETWEEN, side, pixel) != 0u {

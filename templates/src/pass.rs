@@ -82,7 +82,7 @@ pub(crate) fn rows() -> Vec<Row> {
             "find_layer",
             "draws the scene in an iteration of peeling, to find the nearest layer that is left and to write its depth",
             template!("pass/find_layer"),
-            &["addressing"],
+            &["addressing", "counters"],
         ),
         drawn(
             "find_in_layer",

@@ -68,7 +68,7 @@ fn front_to_back() -> Row {
     Row {
         template: Some(template!("peeling/front_to_back")),
         resources: [vec![last], accumulated("4", FROM_THE_FRONT)].concat(),
-        uses: vec![Use::new("last_keys", Access::Read)],
+        uses: vec![Use::new("last_keys", Access::Read), Use::new("remaining", Access::Atomic)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
         requires: [&[Capability::KeepsBest], CONTINUES.as_slice()].concat(),

@@ -45,9 +45,9 @@ names! {
         // Of the other choices, for peeling.
         DropsDisplaced "an overflow that drops displaced fragments";
         TotalOrder "ties that are resolved by the words of fragments";
-        DividesLayers "iterations that divide the fragments of a pixel into slots of equal keys";
+        DividesLayers "peeling that divides the fragments of an iteration into slots: by depth, side, bucket or id";
         TellsIdsApart "iterations that tell fragments with equal keys apart by their ids";
-        KeepsLater "iterations that keep the fragments that earlier ones displace";
+        KeepsLater "peeling, whose iterations keep what earlier ones leave";
         Resumes "an effect that can continue with further fragments of a pixel";
         // For the caller.
         CountsEvents "counters of every event of a frame, not only of losses";

@@ -310,8 +310,8 @@ fn layers_beyond_the_last_iteration_are_counted() {
         (limited(&single, "kplus_array"), sum(&|layer, _| layer >= 1)),
     ];
     for (variant, expected) in cases {
-        let (_, _, [_, lost]) = drawn(&stage, &variant, &quads, None);
-        assert_eq!(lost, expected, "{}", variant.name.value);
+        let (_, loops, [_, lost]) = drawn(&stage, &variant, &quads, None);
+        assert_eq!((lost, loops[0].end), (expected, LoopEnd::LimitReached), "{}", variant.name.value);
     }
 }
 

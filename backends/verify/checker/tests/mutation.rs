@@ -12,7 +12,7 @@ use crate::mutants::{Mutant, mutants};
 use crate::repeated::{is_repeated, with_iterations};
 use crate::subjects::{limits, report};
 use crate::survivors::SURVIVORS;
-use crate::survivors_of_peeling::{OF_COLORS, OF_PEELING};
+use crate::survivors_of_peeling::{JUDGED_ELSEWHERE, OF_PEELING};
 use crate::survivors_of_races::OF_RACES;
 use crate::survivors_of_slots::OF_SLOTS;
 
@@ -267,7 +267,7 @@ fn every_mutant_is_killed() {
         .into_iter()
         .flat_map(|(axis, key, checks)| {
             let text = Registry::builtin().row(axis, &key).unwrap().template.clone().unwrap().source;
-            let is_judged = |mutant: &Mutant| !OF_COLORS.contains(&mutant.function.as_str());
+            let is_judged = |mutant: &Mutant| !JUDGED_ELSEWHERE.contains(&mutant.function.as_str());
             let judged: Vec<Mutant> = mutants(&text).into_iter().filter(is_judged).collect();
             judged.into_iter().map(move |mutant| (axis, key.clone(), checks, mutant))
         })

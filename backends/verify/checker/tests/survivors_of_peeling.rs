@@ -3,10 +3,16 @@
 /// The reason of mutants that change only colours.
 const COLORS: &str = "colours are none of the checker's: test `peeling` of the runtime";
 
-/// Functions of peeling that compute nothing but colours, which are none of the checker's: their mutants are not judged here.
-/// Tests `peeling` and `peeling_slots` of the runtime compare images.
-pub(crate) const OF_COLORS: [&str; 5] =
-    ["peeling_color", "peeling_transmittance", "peeling_suspend", "peeling_result", "peeling_continues"];
+/// Functions of peeling that are none of the checker's, so their mutants are not judged here: colours, which tests `peeling` and
+/// `peeling_slots` of the runtime compare, and the depth that objects are culled by, which `culled_objects` tests there.
+pub(crate) const JUDGED_ELSEWHERE: [&str; 6] = [
+    "peeling_color",
+    "peeling_transmittance",
+    "peeling_suspend",
+    "peeling_result",
+    "peeling_continues",
+    "peeling_reached",
+];
 
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[

@@ -3,6 +3,9 @@
 /// The reason of mutants that change only colours.
 const COLORS: &str = "colours are none of the checker's: test `peeling_slots` of the runtime";
 
+/// The reason of mutants of what a loop reports when it ends at its limit.
+const LIMIT: &str = "only the report of the loop's end: tests `peeling` and `peeling_slots` of the runtime";
+
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/both_sides", "peeling_side = slot;", "", COLORS),
@@ -216,12 +219,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/id_pairs_tested", "peeling_part = slot;", "", COLORS),
     (
         "peeling/id_pairs_tested",
-        "return frame.iteration == 0u;",
-        "return frame.iteration == 1u;",
-        "every iteration draws the same fragments, and there are at least two",
-    ),
-    (
-        "peeling/id_pairs_tested",
         "return;",
         "",
         "no iteration follows that reads what is found; a pixel without a layer finds none",
@@ -315,5 +312,68 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "var part = countOneBits(occupancy_load(bucket / 32u, pixel) & ((1u << (bucket % 32u)) - 1u));",
         "var part = countOneBits(occupancy_load(bucket / 33u, pixel) & ((1u << (bucket % 32u)) - 1u));",
         "another division into buckets: test `peeling_slots` of the runtime has depths close together",
+    ),
+    (
+        "peeling/both_sides",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/both_sides", "remaining_store(1u);", "", LIMIT),
+    ("peeling/both_sides", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/both_sides", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/bucket_layers",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/bucket_layers", "remaining_store(1u);", "", LIMIT),
+    ("peeling/bucket_layers", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/bucket_layers", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/depth_layers",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/depth_layers", "remaining_store(1u);", "", LIMIT),
+    ("peeling/depth_layers", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/depth_layers", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    ("peeling/front_to_back", "remaining_store(1u);", "", LIMIT),
+    (
+        "peeling/id_pairs",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/id_pairs", "remaining_store(1u);", "", LIMIT),
+    ("peeling/id_pairs", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/id_pairs", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/id_pairs_both_sides",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/id_pairs_both_sides", "remaining_store(1u);", "", LIMIT),
+    ("peeling/id_pairs_both_sides", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/id_pairs_both_sides", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/id_pairs_tested",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
+    ),
+    ("peeling/id_pairs_tested", "remaining_store(1u);", "", LIMIT),
+    ("peeling/id_pairs_tested", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/id_pairs_tested", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    ("peeling/front_to_back", "remaining_store(1u);", "remaining_store(0u);", LIMIT),
+    ("peeling/front_to_back", "remaining_store(1u);", "remaining_store(2u);", LIMIT),
+    (
+        "peeling/front_to_back",
+        "count_loss(NOT_CONVERGED); remaining_store(1u);",
+        "remaining_store(1u); count_loss(NOT_CONVERGED);",
+        LIMIT,
     ),
 ];
