@@ -45,7 +45,7 @@ pub(super) fn apply(
 }
 
 /// Restricts the passes over the scene around a query to the objects that are visible in it.
-fn draw_visible(steps: &mut Vec<Step>, query: &str) -> Result<(), String> {
+fn draw_visible(steps: &mut [Step], query: &str) -> Result<(), String> {
     if position(steps, query).is_none() {
         return in_any_loop(steps, query, &mut |body| draw_visible(body, query));
     }

@@ -43,7 +43,7 @@ pub(super) fn symbols(
         for constant in &row.constants {
             match add_constant(row, constant, &mut table, variant) {
                 Ok(value) => constants.push((constant.symbol.to_string(), value)),
-                Err(error) => diagnostics.push(error),
+                Err(errors) => diagnostics.extend(errors),
             }
         }
     }
@@ -56,15 +56,15 @@ fn add_constant(
     constant: &Definition,
     table: &mut SymbolTable,
     variant: &Variant,
-) -> Result<u32, Diagnostic> {
+) -> Result<u32, Diagnostics> {
     let context = RowContext { row: Some(row), variant };
     let text = &constant.value;
     let value = table.compile(text).and_then(|value| table.evaluate(&value, &|_| None));
-    let value = value.map_err(|error| {
-        context.diagnostic(RowItem::Definition, &text.0, error.to_string(), error.help().to_owned())
-    })?;
+    let invalid = |message: String, help: &str| -> Diagnostics {
+        context.diagnostic(RowItem::Definition, &text.0, message, help.to_owned()).into()
+    };
+    let value = value.map_err(|error| invalid(error.to_string(), error.help()))?;
     let name = &constant.symbol;
-    let invalid = |message: String, help: &str| context.diagnostic(RowItem::Definition, &text.0, message, help.into());
     let value = u32::try_from(value)
         .map_err(|_| invalid(format!("`{name}` is {value} here, which is not a word"), "choose lesser options"))?;
     table

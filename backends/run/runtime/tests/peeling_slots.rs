@@ -66,13 +66,16 @@ fn iterations_from_both_sides(fragments: &[Quad]) -> u32 {
     iterations
 }
 
+/// A number of iterations, from the fragments of a pixel.
+type OfPixel = fn(&[Quad]) -> u32;
+
 /// Returns the most of a pixel in these rows, at least one: every loop runs once.
-fn most(quads: &[Quad], rows: std::ops::Range<u32>, of_pixel: fn(&[Quad]) -> u32) -> u32 {
+fn most(quads: &[Quad], rows: std::ops::Range<u32>, of_pixel: OfPixel) -> u32 {
     pixels(rows).map(|pixel| of_pixel(&at(quads, pixel))).max().unwrap_or(0).max(1)
 }
 
 /// Draws in slices, whole, and in another order, and checks image, counters and iterations; `further` iterations find nothing.
-fn assert_ids_are_peeled(variant: &Variant, of_pixel: fn(&[Quad]) -> u32, further: u32) {
+fn assert_ids_are_peeled(variant: &Variant, of_pixel: OfPixel, further: u32) {
     let stage = device();
     let mut numbers = Numbers::seeded(4);
     for (seed, count) in [(3, 1), (5, 17), (7, 40), (8, 0)] {
@@ -184,7 +187,7 @@ fn many_depths(seed: u64, count: u32) -> Vec<Quad> {
 fn slots_of_layers_keep_all_different_depths() {
     let stage = device();
     let half = |fragments: &[Quad]| (depths(fragments).len() as u32).div_ceil(2);
-    let cases: [(&str, fn(&[Quad]) -> u32); 2] = [("dual", half), ("bun", iterations_of_buckets)];
+    let cases: [(&str, OfPixel); 2] = [("dual", half), ("bun", iterations_of_buckets)];
     for (key, of_pixel) in cases {
         let variant = technique(key, &[EVERY_EVENT]);
         for (seed, count) in [(1, 1), (2, 30), (3, 41)] {
