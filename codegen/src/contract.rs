@@ -175,15 +175,9 @@ pub const CONTRACTS: &[Contract] = &[
     ),
     row(
         "peeling",
-        "peeling_slots",
-        "() -> u32",
-        "returns into how many slots an iteration divides the fragments of a pixel",
-    ),
-    row(
-        "peeling",
         "peeling_slot",
         "(pixel: u32, entry: Packed) -> u32",
-        "returns the slot of a fragment that this iteration stores; the fragments of a slot have equal keys",
+        "returns the slot of a fragment that this iteration stores, below PEELING_SLOTS; the fragments of a slot have equal keys",
     ),
     row("peeling", "peeling_begin", "(slot: u32)", "begins to continue the effect with the fragments of a slot"),
     row("peeling", "peeling_resume", "(pixel: u32)", "begins to resolve the pixel"),

@@ -14,7 +14,7 @@ fn resolve(@builtin(position) position: vec4<f32>) {
     }
     resolved = pixel_index(position.xy);
     peeling_resume(resolved);
-    for (var slot = 0u; slot < peeling_slots(); slot++) {
+    for (var slot = 0u; slot < PEELING_SLOTS; slot++) {
         accumulate_slots_continue(slot);
     }
     peeling_advance();

@@ -8,13 +8,9 @@
 //
 // Memory: 12 words per pixel, and one word.
 
-/// The sides: slots of an iteration's fragments, and parts of what has been composited.
+/// The sides, which are the slots of an iteration's fragments.
 const PEELING_FRONT = 0u;
 const PEELING_BACK = 1u;
-
-/// The pixel that is resolved, and the side.
-var<private> peeling_pixel: u32;
-var<private> peeling_side: u32;
 
 fn peeling_find_first(pixel: u32, key: u32) {
     // Most fragments are between others: reading is cheaper than a minimum that changes nothing.
@@ -65,69 +61,10 @@ fn peeling_find_next(pixel: u32, key: u32) {
     }
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
-fn peeling_slots() -> u32 {
-    return PEELING_SLOTS;
-}
-
 fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
     return select(PEELING_BACK, PEELING_FRONT, entry.key == layer_keys_load(PEELING_FRONT, pixel));
 }
 
-fn peeling_begin(slot: u32) {
-    peeling_side = slot;
-}
-
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    if peeling_side == PEELING_FRONT {
-        return accumulated_color(peeling_pixel);
-    }
-    // The layer of the back is composited alone, and then over those behind it.
-    return transparent;
-}
-
-fn peeling_transmittance() -> f32 {
-    if peeling_side == PEELING_FRONT {
-        return accumulated_transmittance(peeling_pixel);
-    }
-    return 1.0;
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    var composited = vec4<f32>(color, transmittance);
-    if peeling_side == PEELING_BACK {
-        composited = accumulated_over(composited, accumulated_part(PEELING_BACK, peeling_pixel));
-    }
-    accumulated_save_part(peeling_side, peeling_pixel, composited);
-}
-
-/// The pass that stores layers finds the next ones.
-fn peeling_advance() {}
-
 fn peeling_reached(pixel: u32) -> u32 {
     return next_keys_load(PEELING_FRONT, pixel);
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    let all = accumulated_over(accumulated_part(PEELING_FRONT, pixel), accumulated_part(PEELING_BACK, pixel));
-    return vec4<f32>(all.rgb, 1.0 - all.a);
 }

@@ -16,10 +16,6 @@
 const PEELING_FRONT = 0u;
 const PEELING_BACK = 1u;
 
-/// The pixel that is resolved, and the slot: the bucket, then its side.
-var<private> peeling_pixel: u32;
-var<private> peeling_part: u32;
-
 fn peeling_find_first(pixel: u32, key: u32) {
     if key < range_load(PEELING_FRONT, pixel) {
         range_atomic_min(PEELING_FRONT, pixel, key);
@@ -78,70 +74,11 @@ fn peeling_find_next(pixel: u32, bucket: u32, key: u32) {
     }
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
-fn peeling_slots() -> u32 {
-    return PEELING_SLOTS;
-}
-
 fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
     let bucket = peeling_bucket(pixel, entry.key);
     let is_front = entry.key == layer_keys_load(PEELING_FRONT, bucket, pixel);
     return 2u * bucket + select(PEELING_BACK, PEELING_FRONT, is_front);
 }
-
-fn peeling_begin(slot: u32) {
-    peeling_part = slot;
-}
-
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-/// Layers of a front continue what is before them; a layer of a back is composited alone, and then over those behind
-/// it.
-fn peeling_continues() -> bool {
-    return peeling_part % 2u == PEELING_FRONT;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    if peeling_continues() {
-        return accumulated_part(peeling_part, peeling_pixel).rgb;
-    }
-    return transparent;
-}
-
-fn peeling_transmittance() -> f32 {
-    if peeling_continues() {
-        return accumulated_part(peeling_part, peeling_pixel).a;
-    }
-    return 1.0;
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    var composited = vec4<f32>(color, transmittance);
-    if !peeling_continues() {
-        composited = accumulated_over(composited, accumulated_part(peeling_part, peeling_pixel));
-    }
-    accumulated_save_part(peeling_part, peeling_pixel, composited);
-}
-
-/// The pass that stores layers finds the next ones.
-fn peeling_advance() {}
 
 fn peeling_reached(pixel: u32) -> u32 {
     for (var bucket = 0u; bucket < PEELING_BUCKETS; bucket++) {
@@ -151,12 +88,4 @@ fn peeling_reached(pixel: u32) -> u32 {
         }
     }
     return EMPTY;
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    var all = accumulated_part(0u, pixel);
-    for (var part = 1u; part < PEELING_SLOTS; part++) {
-        all = accumulated_over(all, accumulated_part(part, pixel));
-    }
-    return vec4<f32>(all.rgb, 1.0 - all.a);
 }

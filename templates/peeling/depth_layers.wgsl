@@ -12,9 +12,6 @@
 //
 // Memory: 6 words per pixel, and one word.
 
-/// The pixel that is resolved.
-var<private> peeling_pixel: u32;
-
 fn peeling_find_first(pixel: u32, key: u32) {
     // Most fragments are behind another one: reading is cheaper than a minimum that changes nothing.
     if key < layer_keys_load(pixel) {
@@ -52,49 +49,10 @@ fn peeling_find_next(pixel: u32, key: u32) {
     }
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
 fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
     return 0u;
 }
 
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    return accumulated_color(peeling_pixel);
-}
-
-fn peeling_transmittance() -> f32 {
-    return accumulated_transmittance(peeling_pixel);
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    accumulated_save(peeling_pixel, color, transmittance);
-}
-
-/// The pass that stores a layer finds the next one.
-fn peeling_advance() {}
-
 fn peeling_reached(pixel: u32) -> u32 {
     return next_keys_load(pixel);
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    return accumulated_result(pixel);
 }

@@ -8,9 +8,6 @@
 //
 // Memory: 5 words per pixel, and one word.
 
-/// The pixel that is resolved.
-var<private> peeling_pixel: u32;
-
 fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
     let last = last_keys_load(pixel_index(position));
     return last != EMPTY && fragment_pack(fragment).key <= last;
@@ -32,50 +29,14 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
     return true;
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    return accumulated_color(peeling_pixel);
-}
-
-fn peeling_transmittance() -> f32 {
-    return accumulated_transmittance(peeling_pixel);
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    accumulated_save(peeling_pixel, color, transmittance);
-}
-
 fn peeling_advance() {
     let cursor = resolve_first();
     if cursor != END {
-        last_keys_store(peeling_pixel, resolve_read(cursor).key);
+        last_keys_store(accumulated_pixel, resolve_read(cursor).key);
         remaining_store(1u);
     }
 }
 
 fn peeling_reached(pixel: u32) -> u32 {
     return last_keys_load(pixel);
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    return accumulated_result(pixel);
 }

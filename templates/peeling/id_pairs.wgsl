@@ -14,14 +14,10 @@
 //
 // Memory: 15 words per pixel, and one word.
 
-/// The only side, and the slots of an iteration's fragments, which are also parts of what has been composited.
+/// The only side, and the slots of an iteration's fragments.
 const PEELING_FRONT = 0u;
 const PEELING_LEAST = 0u;
 const PEELING_GREATEST = 1u;
-
-/// The pixel that is resolved, and the slot.
-var<private> peeling_pixel: u32;
-var<private> peeling_part: u32;
 
 fn peeling_find_first(pixel: u32, key: u32) {
     // Most fragments are behind another one: reading is cheaper than a minimum that changes nothing.
@@ -80,77 +76,21 @@ fn peeling_find_next(pixel: u32, key: u32) {
     id_pairs_find_next(PEELING_FRONT, pixel, key);
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
-fn peeling_slots() -> u32 {
-    return PEELING_SLOTS;
-}
-
 fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
     let is_least = id_pairs_id(entry) == found_load(ID_PAIRS_LEAST, PEELING_FRONT, pixel);
     return select(PEELING_GREATEST, PEELING_LEAST, is_least);
 }
 
-fn peeling_begin(slot: u32) {
-    peeling_part = slot;
-}
-
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    if peeling_part == PEELING_LEAST {
-        return accumulated_color(peeling_pixel);
-    }
-    // The fragments with the greatest id are composited alone, and then over those behind them.
-    return transparent;
-}
-
-fn peeling_transmittance() -> f32 {
-    if peeling_part == PEELING_LEAST {
-        return accumulated_transmittance(peeling_pixel);
-    }
-    return 1.0;
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    var composited = vec4<f32>(color, transmittance);
-    if peeling_part == PEELING_GREATEST {
-        composited = accumulated_over(composited, accumulated_part(PEELING_GREATEST, peeling_pixel));
-    }
-    accumulated_save_part(peeling_part, peeling_pixel, composited);
-}
-
 fn peeling_advance() {
-    if window_load(ID_PAIRS_KEY, PEELING_FRONT, peeling_pixel) == EMPTY {
+    if window_load(ID_PAIRS_KEY, PEELING_FRONT, accumulated_pixel) == EMPTY {
         // The pixel has no layer left.
         return;
     }
-    if id_pairs_advance(PEELING_FRONT, peeling_pixel) {
-        accumulated_join(PEELING_LEAST, PEELING_GREATEST, peeling_pixel);
+    if id_pairs_advance(PEELING_FRONT, accumulated_pixel) {
+        accumulated_join(PEELING_LEAST, PEELING_GREATEST, accumulated_pixel);
     }
 }
 
 fn peeling_reached(pixel: u32) -> u32 {
     return window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    let all = accumulated_over(accumulated_part(PEELING_LEAST, pixel), accumulated_part(PEELING_GREATEST, pixel));
-    return vec4<f32>(all.rgb, 1.0 - all.a);
 }

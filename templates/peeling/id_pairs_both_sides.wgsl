@@ -7,15 +7,9 @@
 //
 // Memory: 30 words per pixel, and one word.
 
-/// The sides. Keys of the back are inverted.
+/// The sides. Keys of the back are inverted. A side has two slots, for its lesser and its greater ids.
 const PEELING_FRONT = 0u;
 const PEELING_BACK = 1u;
-
-/// The pixel that is resolved, and the slot. Slots are parts of what has been composited, from the front to the back:
-/// all before the layer of the front with its lesser ids, then its greater ids; of the layer of the back the lesser
-/// ids, then its greater ids with all behind it.
-var<private> peeling_pixel: u32;
-var<private> peeling_part: u32;
 
 fn peeling_find_first(pixel: u32, key: u32) {
     // Most fragments are between others: reading is cheaper than a minimum that changes nothing.
@@ -94,77 +88,19 @@ fn peeling_find_next(pixel: u32, key: u32) {
     id_pairs_find_next(PEELING_BACK, pixel, ~key);
 }
 
-fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
-}
-
-fn peeling_slots() -> u32 {
-    return PEELING_SLOTS;
-}
-
 fn peeling_slot(pixel: u32, entry: Packed) -> u32 {
     let is_front = entry.key == window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);
     let side = select(PEELING_BACK, PEELING_FRONT, is_front);
     return 2u * side + select(1u, 0u, id_pairs_id(entry) == found_load(ID_PAIRS_LEAST, side, pixel));
 }
 
-fn peeling_begin(slot: u32) {
-    peeling_part = slot;
-}
-
-fn peeling_layer_count(sorted: u32) -> u32 {
-    return sorted;
-}
-
-fn peeling_is_copy(index: u32) -> bool {
-    return false;
-}
-
-fn peeling_copy() -> Packed {
-    return packed_of_key(EMPTY);
-}
-
-fn peeling_sorted_index(index: u32) -> u32 {
-    return index;
-}
-
-/// The fragments of a least id continue what is before them; those of a greatest id are composited alone, and then over
-/// those behind them.
-fn peeling_continues() -> bool {
-    return peeling_part % 2u == 0u;
-}
-
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    if peeling_continues() {
-        return accumulated_part(peeling_part, peeling_pixel).rgb;
-    }
-    return transparent;
-}
-
-fn peeling_transmittance() -> f32 {
-    if peeling_continues() {
-        return accumulated_part(peeling_part, peeling_pixel).a;
-    }
-    return 1.0;
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    var composited = vec4<f32>(color, transmittance);
-    if !peeling_continues() {
-        composited = accumulated_over(composited, accumulated_part(peeling_part, peeling_pixel));
-    }
-    accumulated_save_part(peeling_part, peeling_pixel, composited);
-}
-
 fn peeling_advance() {
-    let pixel = peeling_pixel;
+    let pixel = accumulated_pixel;
     if window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel) != EMPTY && id_pairs_advance(PEELING_FRONT, pixel) {
         accumulated_join(0u, 1u, pixel);
     }
     if window_load(ID_PAIRS_KEY, PEELING_BACK, pixel) != EMPTY && id_pairs_advance(PEELING_BACK, pixel) {
-        let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));
-        accumulated_save_part(3u, pixel, behind);
-        accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));
+        accumulated_join(3u, 2u, pixel);
     }
 }
 
@@ -173,11 +109,4 @@ fn peeling_reached(pixel: u32) -> u32 {
     let back = window_load(ID_PAIRS_KEY, PEELING_BACK, pixel);
     // The side without a layer is EMPTY.
     return min(front, select(~back, EMPTY, back == EMPTY));
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    let before = accumulated_over(accumulated_part(0u, pixel), accumulated_part(1u, pixel));
-    let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));
-    let all = accumulated_over(before, behind);
-    return vec4<f32>(all.rgb, 1.0 - all.a);
 }

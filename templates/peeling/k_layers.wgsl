@@ -19,8 +19,7 @@
 const PEELING_LEFT = 0u;
 const PEELING_COPIES = 1u;
 
-/// What the effect goes on with in this pixel.
-var<private> peeling_pixel: u32;
+/// How often the effect composites the boundary again.
 var<private> peeling_copies: u32;
 
 fn peeling_skips(position: vec2<f32>, fragment: Fragment) -> bool {
@@ -53,7 +52,7 @@ fn peeling_admits(position: vec2<f32>, fragment: Fragment) -> bool {
 }
 
 fn peeling_resume(pixel: u32) {
-    peeling_pixel = pixel;
+    accumulated_pixel = pixel;
     // As many as all iterations could keep: no loop relies on memory for its end.
     peeling_copies = min(peeling_copies_met(pixel), PEELING_ITERATIONS * frame.k);
 }
@@ -72,27 +71,15 @@ fn peeling_is_copy(index: u32) -> bool {
 }
 
 fn peeling_copy() -> Packed {
-    return boundary_load(peeling_pixel);
+    return boundary_load(accumulated_pixel);
 }
 
 fn peeling_sorted_index(index: u32) -> u32 {
     return index - peeling_copies;
 }
 
-fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
-    return accumulated_color(peeling_pixel);
-}
-
-fn peeling_transmittance() -> f32 {
-    return accumulated_transmittance(peeling_pixel);
-}
-
-fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
-    accumulated_save(peeling_pixel, color, transmittance);
-}
-
 fn peeling_advance() {
-    let pixel = peeling_pixel;
+    let pixel = accumulated_pixel;
     var last = boundary_load(pixel);
     if last.key == EMPTY {
         // From now on, no fragment of the pixel is in its first iteration.
@@ -133,8 +120,4 @@ fn peeling_reached(pixel: u32) -> u32 {
         return EMPTY;
     }
     return boundary_load(pixel).key;
-}
-
-fn peeling_result(pixel: u32) -> vec4<f32> {
-    return accumulated_result(pixel);
 }

@@ -1,34 +1,60 @@
-// The premultiplied colour of a pixel's fragments that iterations have composited so far, and the light that passes
-// them. Some rows composite several parts of a pixel apart, and join them later: `over` is associative.
+// What iterations of peeling have composited so far in a pixel: premultiplied colour, and the transmittance behind it,
+// in PEELING_SLOTS parts from the front to the back. `over` is associative, so parts are composited apart and joined
+// when nothing can come between them. The slots of an iteration continue the parts of the same number: those with an
+// even number add fragments behind what they have, those with an odd number in front of it.
 
 /// The bits of a transmittance of 1. Memory holds the difference, so cleared memory lets all light pass.
 const ACCUMULATED_TRANSPARENT = 0x3f800000u;
 
-fn accumulated_color(pixel: u32) -> vec3<f32> {
-    return bitcast<vec3<f32>>(vec3<u32>(
-        accumulated_load(0u, pixel),
-        accumulated_load(1u, pixel),
-        accumulated_load(2u, pixel),
-    ));
+/// The pixel that is resolved, and the part that is continued.
+var<private> accumulated_pixel: u32;
+var<private> accumulated_slot: u32;
+
+fn peeling_resume(pixel: u32) {
+    accumulated_pixel = pixel;
 }
 
-fn accumulated_transmittance(pixel: u32) -> f32 {
-    return bitcast<f32>(accumulated_load(3u, pixel) ^ ACCUMULATED_TRANSPARENT);
+fn peeling_begin(slot: u32) {
+    accumulated_slot = slot;
 }
 
-fn accumulated_save(pixel: u32, color: vec3<f32>, transmittance: f32) {
-    let words = bitcast<vec3<u32>>(color);
-    accumulated_store(0u, pixel, words.x);
-    accumulated_store(1u, pixel, words.y);
-    accumulated_store(2u, pixel, words.z);
-    accumulated_store(3u, pixel, bitcast<u32>(transmittance) ^ ACCUMULATED_TRANSPARENT);
+fn peeling_color(transparent: vec3<f32>) -> vec3<f32> {
+    if accumulated_is_behind() {
+        return accumulated_part(accumulated_slot, accumulated_pixel).rgb;
+    }
+    return transparent;
 }
 
-fn accumulated_result(pixel: u32) -> vec4<f32> {
-    return vec4<f32>(accumulated_color(pixel), 1.0 - accumulated_transmittance(pixel));
+fn peeling_transmittance() -> f32 {
+    if accumulated_is_behind() {
+        return accumulated_part(accumulated_slot, accumulated_pixel).a;
+    }
+    return 1.0;
 }
 
-/// Returns part `part` of what has been composited: premultiplied colour, and transmittance.
+fn peeling_suspend(color: vec3<f32>, transmittance: f32) {
+    var composited = vec4<f32>(color, transmittance);
+    if !accumulated_is_behind() {
+        composited = accumulated_over(composited, accumulated_part(accumulated_slot, accumulated_pixel));
+    }
+    accumulated_save(accumulated_slot, accumulated_pixel, composited);
+}
+
+fn peeling_advance() {}
+
+fn peeling_result(pixel: u32) -> vec4<f32> {
+    var all = accumulated_part(0u, pixel);
+    for (var part = 1u; part < PEELING_SLOTS; part++) {
+        all = accumulated_over(all, accumulated_part(part, pixel));
+    }
+    return vec4<f32>(all.rgb, 1.0 - all.a);
+}
+
+/// Returns whether fragments go behind those that the part has. Others are composited alone first.
+fn accumulated_is_behind() -> bool {
+    return accumulated_slot % 2u == 0u;
+}
+
 fn accumulated_part(part: u32, pixel: u32) -> vec4<f32> {
     return bitcast<vec4<f32>>(vec4<u32>(
         accumulated_load(4u * part, pixel),
@@ -38,7 +64,7 @@ fn accumulated_part(part: u32, pixel: u32) -> vec4<f32> {
     ));
 }
 
-fn accumulated_save_part(part: u32, pixel: u32, composited: vec4<f32>) {
+fn accumulated_save(part: u32, pixel: u32, composited: vec4<f32>) {
     let words = bitcast<vec4<u32>>(composited);
     accumulated_store(4u * part, pixel, words.x);
     accumulated_store(4u * part + 1u, pixel, words.y);
@@ -51,9 +77,9 @@ fn accumulated_over(front: vec4<f32>, behind: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(front.rgb + front.a * behind.rgb, front.a * behind.a);
 }
 
-/// Moves what part `behind` holds to the end of part `front`.
-fn accumulated_join(front: u32, behind: u32, pixel: u32) {
-    let joined = accumulated_over(accumulated_part(front, pixel), accumulated_part(behind, pixel));
-    accumulated_save_part(front, pixel, joined);
-    accumulated_save_part(behind, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));
+/// Joins two neighbouring parts: part `to` gets both, and `other` becomes empty.
+fn accumulated_join(to: u32, other: u32, pixel: u32) {
+    let joined = accumulated_over(accumulated_part(min(to, other), pixel), accumulated_part(max(to, other), pixel));
+    accumulated_save(to, pixel, joined);
+    accumulated_save(other, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));
 }

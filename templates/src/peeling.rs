@@ -35,6 +35,7 @@ fn k_layers() -> Row {
     Row {
         template: Some(template!("peeling/k_layers")),
         resources: resources(),
+        constants: layers::slots("1"),
         uses: vec![Use::new("boundary", Access::Read), Use::new("unpeeled", Access::Atomic)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
@@ -67,7 +68,8 @@ fn front_to_back() -> Row {
         .over_iterations();
     Row {
         template: Some(template!("peeling/front_to_back")),
-        resources: [vec![last], accumulated("4", FROM_THE_FRONT)].concat(),
+        resources: [vec![last], accumulated()].concat(),
+        constants: layers::slots("1"),
         uses: vec![Use::new("last_keys", Access::Read), Use::new("remaining", Access::Atomic)],
         calls: vec!["addressing", "counters"],
         provides: vec![Capability::KeepsLater],
@@ -106,15 +108,14 @@ fn resources() -> Vec<Resource> {
             .cleared(0)
             .over_iterations(),
     ];
-    [own, accumulated("4", FROM_THE_FRONT)].concat()
+    [own, accumulated()].concat()
 }
 
-const FROM_THE_FRONT: &str =
-    "the colour of the fragments kept so far, premultiplied, and the transmittance behind them";
-
 /// Returns what the effect continues with, and the word that ends the loop.
-fn accumulated(channels: &'static str, summary: &'static str) -> Vec<Resource> {
-    let colors = Resource::new("accumulated", Element::Word, summary).by("channel", channels).by("pixel", "pixels");
+fn accumulated() -> Vec<Resource> {
+    let summary = "for each slot: the colour composited so far, premultiplied, and the transmittance behind it";
+    let colors = Resource::new("accumulated", Element::Word, summary).by("channel", "4 * PEELING_SLOTS");
+    let colors = colors.by("pixel", "pixels");
     vec![
         colors.cleared(0).over_iterations(),
         Resource::new("remaining", Element::Word, "not 0: another iteration is needed").cleared(0),

@@ -2,7 +2,7 @@
 
 use crate::vocabulary::Template;
 
-pub(crate) const TEMPLATES: [Template; 16] = [
+pub(crate) const TEMPLATES: [Template; 17] = [
     template!("shared/markers"),
     template!("shared/prologue"),
     template!("shared/edges"),
@@ -13,6 +13,7 @@ pub(crate) const TEMPLATES: [Template; 16] = [
     template!("shared/halves"),
     template!("shared/layers"),
     template!("shared/accumulated"),
+    template!("shared/no_copies"),
     template!("shared/depth_buckets"),
     template!("shared/id_pairs"),
     template!("shared/gap_sort"),

@@ -22,7 +22,7 @@ const GOOD: &str = "// What it is.\n\
     //: implies sorted when depth_key\n\
     //: suits sync spin_lock, cull early\n\
     //: parameter limit LIMIT = 2 * capacity, from 1 to 99 -- tries\n\
-    //: keeps best 1 of each min(k - 1, key / LIMIT)\n\
+    //: keeps best 1 of each min(k - 1, key / LIMIT) at most k\n\
     //: hazard torn unless mutual-exclusion -- two in one\n\
     //: hazard mixed permits stale, lost-update -- more of it\n\
     //: hazard merged-farthest -- the last is a mixture\n\
@@ -63,7 +63,7 @@ fn a_row_has_the_values_of_its_lines() {
     let both = Permits::STALE.and(&Permits::LOST).expect("both take a race");
     let permits: Vec<_> = row.hazards.iter().map(|hazard| hazard.permits.clone()).collect();
     assert_eq!(permits, [Permits::TORN, both, Permits::NOTHING]);
-    assert_eq!(row.kept(), Some(KeptFragments::best_of_each("min(k - 1, key / LIMIT)")));
+    assert_eq!(row.kept(), Some(KeptFragments::best_of_each_of_k("min(k - 1, key / LIMIT)")));
     assert_eq!(row.merges.as_ref().map(|merges| merges.blended), Some(BlendedEntries::Worst));
     let template = row.template.expect("a template");
     assert_eq!((&*template.path, template.user_file.as_deref()), ("mine.wgsl", Some("there/mine.wgsl")));

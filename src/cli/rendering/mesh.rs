@@ -5,6 +5,7 @@
 use std::num::NonZeroU32;
 use std::ops::Range;
 
+use fragbuf_frame::box_around;
 use fragbuf_runtime::{ObjectBox, wgpu};
 
 use crate::cli::attributes::Geometry;
@@ -91,11 +92,6 @@ fn box_of(geometry: &Geometry, indices: &Range<u32>) -> ObjectBox {
         let words: &[u32; 3] = geometry.vertices.get(*index as usize * geometry.stride..)?.first_chunk()?;
         Some(words.map(f32::from_bits))
     });
-    let grown = |one: Option<ObjectBox>, at: [f32; 3]| {
-        let ObjectBox { least, greatest } = one.unwrap_or(ObjectBox { least: at, greatest: at });
-        let pick =
-            |choose: fn(f32, f32) -> f32, from: [f32; 3]| std::array::from_fn(|axis| choose(from[axis], at[axis]));
-        Some(ObjectBox { least: pick(f32::min, least), greatest: pick(f32::max, greatest) })
-    };
-    positions.fold(None, grown).unwrap_or(ObjectBox { least: [0.0; 3], greatest: [0.0; 3] })
+    let (least, greatest) = box_around(positions).unwrap_or_default();
+    ObjectBox { least, greatest }
 }

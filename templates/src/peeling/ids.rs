@@ -10,31 +10,22 @@ use crate::vocabulary::{
 /// Peels fragments of equal depth by their ids, two at a time.
 pub(super) fn id_pairs() -> Row {
     by_ids(
-        "1",
+        ONE_SIDE,
         template!("peeling/id_pairs"),
-        COLORS_OF_ONE_SIDE,
-        Row::new(
-            "peeling",
-            "id_pairs",
-            "yes, until none is left: each iteration stores the least and the greatest id left in the nearest depth",
-            "D13 §3.1.2, Alg. 1 (F2B-2P)",
-        ),
+        "id_pairs",
+        "yes, until none is left: each iteration stores the least and the greatest id left in the nearest depth",
+        "D13 §3.1.2, Alg. 1 (F2B-2P)",
     )
 }
 
 /// As [`id_pairs`], from the front and from the back.
 pub(super) fn id_pairs_both_sides() -> Row {
     by_ids(
-        "2",
+        BOTH_SIDES,
         template!("peeling/id_pairs_both_sides"),
-        "for the front and for the back: the colour up to the lesser ids of the layer, premultiplied, and the transmittance behind; \
-         then the same of its greater ids",
-        Row::new(
-            "peeling",
-            "id_pairs_both_sides",
-            "yes, until none is left: as `id_pairs`, for the nearest and for the farthest depth",
-            "D13 §3.1.2 (DUAL-2P)",
-        ),
+        "id_pairs_both_sides",
+        "yes, until none is left: as `id_pairs`, for the nearest and for the farthest depth",
+        "D13 §3.1.2 (DUAL-2P)",
     )
 }
 
@@ -63,15 +54,11 @@ pub(super) fn id_pairs_tested() -> Row {
         find(1, "find_ids", "find_in_layer", test(Compare::Equal, false)),
     ];
     let row = by_ids(
-        "1",
+        ONE_SIDE,
         template!("peeling/id_pairs_tested"),
-        COLORS_OF_ONE_SIDE,
-        Row::new(
-            "peeling",
-            "id_pairs_tested",
-            "yes, until none is left: as `id_pairs`, after a draw that writes the depth of the layer",
-            "D13 §3.1.2 (F2B-3P)",
-        ),
+        "id_pairs_tested",
+        "yes, until none is left: as `id_pairs`, after a draw that writes the depth of the layer",
+        "D13 §3.1.2 (F2B-3P)",
     );
     Row {
         resources: [row.resources, vec![depths.by("pixel", "pixels").cleared(1.0_f32.to_bits())]].concat(),
@@ -87,36 +74,37 @@ pub(super) fn id_pairs_tested() -> Row {
     }
 }
 
-const COLORS_OF_ONE_SIDE: &str = "the colour up to the lesser ids of the layer, premultiplied, and the transmittance \
-                                  behind; then the same of its greater ids";
+/// The sides, and the slots of an iteration: two ids of each side.
+const ONE_SIDE: [&str; 2] = ["1", "2"];
+const BOTH_SIDES: [&str; 2] = ["2", "4"];
 
-/// Returns a row that peels by ids from this number of sides.
-fn by_ids(sides: &'static str, template: Template, colors: &'static str, row: Row) -> Row {
+/// Returns a row that peels by ids from this number of sides, with this number of slots.
+fn by_ids(
+    [sides, number_of_slots]: [&'static str; 2],
+    template: Template,
+    key: &str,
+    summary: &'static str,
+    paper: &'static str,
+) -> Row {
     let words = |name: &str, words: &'static str, summary: &'static str| {
         let words = Resource::new(name, Element::Word, summary).by("word", words).by("side", sides);
         words.by("pixel", "pixels").cleared(u32::MAX)
     };
     let window =
         "the key of the layer; the ids between which its fragments are left, the greater inverted; EMPTY: all are";
-    let found =
-        "the key of the next layer; the least id, and the greatest inverted; 0 if others are between, or else EMPTY";
-    let first = Pass::geometry("nearest_layer", "nearest_layer").uses("window", Access::Atomic);
-    let accumulated = accumulated(if sides == "1" { "8" } else { "16" }, colors);
+    let found = "the key of the next layer; the least and the greatest id of this one, the latter inverted; 0: other ids are between";
+    let first = Pass::geometry("nearest_layer", "nearest_layer").uses_rechecked("window");
     let find = Pass::geometry("find_ids", "find_in_layer");
-    let common = layers("", "", "");
+    let row = layers(key, summary, paper);
     Row {
         template: Some(template),
-        resources: [vec![words("window", "3", window).over_iterations(), words("found", "4", found)], accumulated]
+        resources: [vec![words("window", "3", window).over_iterations(), words("found", "4", found)], accumulated()]
             .concat(),
-        uses: vec![
-            Use::new("window", Access::Read),
-            Use::new("found", Access::Atomic),
-            Use::new("remaining", Access::Atomic),
-        ],
-        provides: [common.provides.as_slice(), &[Capability::TellsIdsApart]].concat(),
-        requires: [common.requires.as_slice(), &[Capability::TotalOrder]].concat(),
-        conditions: [common.conditions.as_slice(), &[has_values()]].concat(),
-        constants: slots(if sides == "1" { "2" } else { "4" }),
+        uses: vec![Use::new("window", Access::Read), Use::rechecked("found"), Use::new("remaining", Access::Atomic)],
+        provides: [row.provides.as_slice(), &[Capability::TellsIdsApart]].concat(),
+        requires: [row.requires.as_slice(), &[Capability::TotalOrder]].concat(),
+        conditions: [row.conditions.as_slice(), &[has_values()]].concat(),
+        constants: slots(number_of_slots),
         edits: [
             // Before a pass that counts what the storage needs.
             vec![Edit::First(vec![Step::Pass(find)])],
@@ -124,7 +112,7 @@ fn by_ids(sides: &'static str, template: Template, colors: &'static str, row: Ro
             vec![Edit::First(vec![Step::Pass(first)]), by_slot()],
         ]
         .concat(),
-        ..Row { key: row.key, axis: row.axis, summary: row.summary, paper: row.paper, ..common }
+        ..row
     }
 }
 

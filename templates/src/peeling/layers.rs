@@ -1,6 +1,6 @@
 //! Peeling by layers of equal depth: the store pass of an iteration finds the layers of the next.
 
-use super::{CONTINUES, FROM_THE_FRONT, accumulated, edits, iterations, not_peeled};
+use super::{CONTINUES, accumulated, edits, iterations, not_peeled};
 use crate::conditions::{depth_key, keeps_all};
 use crate::vocabulary::{
     Access, Capability, Definition, Edit, Element, Feature, Parameter, Pass, Resource, Row, Step, Use,
@@ -18,7 +18,7 @@ pub(super) fn depth_layers() -> Row {
                 keys("layer_keys", "the key of the layer that this iteration stores; EMPTY: none"),
                 keys("next_keys", "the least key behind it; EMPTY: none"),
             ],
-            accumulated("4", FROM_THE_FRONT),
+            accumulated(),
         ]
         .concat(),
         constants: slots("1"),
@@ -37,8 +37,6 @@ pub(super) fn both_sides() -> Row {
         let keys = Resource::new(name, Element::Word, summary).by("side", "2").by("pixel", "pixels");
         keys.cleared(u32::MAX).over_iterations()
     };
-    let colors = "the colour of the layers composited from the front, premultiplied, and the transmittance behind them; then the \
-                  same of the layers from the back";
     Row {
         template: Some(template!("peeling/both_sides")),
         resources: [
@@ -49,7 +47,7 @@ pub(super) fn both_sides() -> Row {
                 ),
                 keys("next_keys", "the least and the greatest between them, alike"),
             ],
-            accumulated("8", colors),
+            accumulated(),
         ]
         .concat(),
         constants: slots("2"),
@@ -69,9 +67,7 @@ pub(super) fn bucket_layers() -> Row {
         let keys = Resource::new(name, Element::Word, summary).by("side", "2").by("bucket", "PEELING_BUCKETS");
         keys.by("pixel", "pixels").cleared(u32::MAX).over_iterations()
     };
-    let colors = "for each bucket, from the nearest: the colour composited from its front, premultiplied, and the transmittance \
-                  behind; then the same from its back";
-    let first = Pass::geometry("find_range", "nearest_layer").uses("range", Access::Atomic);
+    let first = Pass::geometry("find_range", "nearest_layer").uses_rechecked("range");
     let row = layers(
         "bucket_layers",
         "yes, until none is left: each iteration stores the nearest and the farthest depth that are left in each bucket",
@@ -85,7 +81,7 @@ pub(super) fn bucket_layers() -> Row {
                 keys("layer_keys", "the keys of each bucket's two layers, the farther inverted; EMPTY: none"),
                 keys("next_keys", "the least and the greatest between them, alike"),
             ],
-            accumulated("8 * PEELING_BUCKETS", colors),
+            accumulated(),
         ]
         .concat(),
         uses: [vec![Use::new("range", Access::Read)], row.uses].concat(),
@@ -111,7 +107,7 @@ pub(super) fn layers(key: &str, summary: &'static str, paper: &'static str) -> R
     Row {
         uses: vec![
             Use::new("layer_keys", Access::Read),
-            Use::new("next_keys", Access::Atomic),
+            Use::rechecked("next_keys"),
             Use::new("remaining", Access::Atomic),
         ],
         calls: vec!["addressing", "counters"],
@@ -127,7 +123,7 @@ pub(super) fn layers(key: &str, summary: &'static str, paper: &'static str) -> R
 
 /// Returns the edits that find the first layers before the loop, and exchange the keys at the end of each iteration.
 fn layer_edits() -> Vec<Edit> {
-    let first = Pass::geometry("nearest_layer", "nearest_layer").uses("layer_keys", Access::Atomic);
+    let first = Pass::geometry("nearest_layer", "nearest_layer").uses_rechecked("layer_keys");
     [edits(&[], next_layers()), vec![Edit::First(vec![Step::Pass(first)])]].concat()
 }
 

@@ -62,16 +62,15 @@ pub(super) fn adaptive_ranges() -> Row {
         Resource::new(name, Element::Word, summary).by(extent.0, extent.1).by("pixel", "pixels").cleared(0)
     };
     let ends = "the pixel's range of keys: the nearest with its bits inverted, the farthest; 0: none";
-    let least = "the least key in this part of the range; EMPTY: none";
-    let slots = array_resources(least).into_iter();
-    let slots = slots.map(|slots| if slots.element == Element::Word { slots.cleared(u32::MAX) } else { slots });
+    let mut slots = array_resources("the least key in this part of the range; EMPTY: none");
+    slots[0] = slots[0].clone().cleared(u32::MAX);
     // The passes that find the range, mark its buckets and find the least key of each part.
     let find = |number: u32, name: &str| {
         let mut pass = Pass::geometry(name, "prepass");
         pass.constants.push(("PREPASS".to_owned(), number));
         pass
     };
-    let mark = find(1, "mark_buckets").uses("ranges", Access::Read).uses("occupancy", Access::Atomic);
+    let mark = find(1, "mark_buckets").uses("ranges", Access::Read).uses_rechecked("occupancy");
     let least = find(2, "find_least").uses("ranges", Access::Read).uses("occupancy", Access::Read);
     let store = Pass::geometry("store", "store").uses("ranges", Access::Read).uses("occupancy", Access::Read);
     let store = store.uses("keys", Access::Read).uses("claims", Access::Atomic).uses("entries", Access::Plain);
@@ -88,7 +87,7 @@ pub(super) fn adaptive_ranges() -> Row {
         steps: vec![
             Step::Pass(find(0, "find_range").uses("ranges", Access::Atomic)),
             Step::Pass(mark),
-            Step::Pass(least.uses("keys", Access::Atomic)),
+            Step::Pass(least.uses_rechecked("keys")),
             Step::Pass(store),
             resolve(&["keys", "entries"]),
         ],

@@ -225,7 +225,7 @@ impl Pass {
 
     /// Adds an atomic use of `resource` whose loads are hints, or are repeated inside the critical section.
     pub fn uses_rechecked(mut self, resource: &str) -> Self {
-        self.uses.push(Use { loads: Loads::Rechecked, ..Use::new(resource, Access::Atomic) });
+        self.uses.push(Use::rechecked(resource));
         self
     }
 
@@ -271,5 +271,10 @@ impl Use {
     /// Makes a use of `resource` by `access` with exact loads.
     pub fn new(resource: &str, access: Access) -> Self {
         Use { resource: resource.to_owned(), access, loads: Loads::Exact, exclusive: None }
+    }
+
+    /// Makes an atomic use of `resource` whose loads are hints, or of words that no invocation of the pass changes.
+    pub fn rechecked(resource: &str) -> Self {
+        Use { loads: Loads::Rechecked, ..Use::new(resource, Access::Atomic) }
     }
 }

@@ -282,4 +282,14 @@ mod tests {
         assert!(all.stale && all.lost && all.one_of == Equivalence::Keys);
         assert_eq!((all.needs_race, all.where_counted), (false, None));
     }
+
+    #[test]
+    fn one_of_equal_fragments_does_not_depend_on_arrival() {
+        let at = |permits: Permits| [0, 1, 2].map(|value_words| permits.depends_on_arrival(value_words));
+        assert_eq!(at(Permits::NOTHING), [false; 3]);
+        assert_eq!(at(Permits::ONE_OF_EQUAL_FRAGMENTS), [false; 3]);
+        assert_eq!(at(Permits::ONE_OF_EQUAL_IDS), [false, false, true]);
+        assert_eq!(at(Permits::ONE_OF_EQUAL_KEYS), [false, true, true]);
+        assert_eq!(at(Permits { lost: true, ..Permits::ONE_OF_EQUAL_FRAGMENTS }), [true; 3]);
+    }
 }

@@ -17,6 +17,18 @@ pub fn box_corners(least: [f32; 3], greatest: [f32; 3]) -> [[f32; 3]; BOX_CORNER
     })
 }
 
+/// Returns the least and the greatest corner of the box around positions; `None`: there are none.
+pub fn box_around(mut positions: impl Iterator<Item = [f32; 3]>) -> Option<([f32; 3], [f32; 3])> {
+    let first = positions.next()?;
+    let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3], at: [f32; 3]| -> [f32; 3] {
+        std::array::from_fn(|axis| choose(from[axis], at[axis]))
+    };
+    Some(
+        positions
+            .fold((first, first), |(least, greatest), at| (pick(f32::min, least, at), pick(f32::max, greatest, at))),
+    )
+}
+
 /// Returns a box that is larger by 1/64 of its greatest extent at each side: rasterisers round positions, and an object must not be
 /// dropped for it.
 pub fn grown_box(least: [f32; 3], greatest: [f32; 3]) -> ([f32; 3], [f32; 3]) {

@@ -21,7 +21,8 @@ mod uniforms;
 mod values;
 
 pub use boxes::{
-    BOX_CORNERS, BOX_TRIANGLES, box_corners, box_vertices, grown_box, is_below_a_pixel, is_cut_by_near_plane,
+    BOX_CORNERS, BOX_TRIANGLES, box_around, box_corners, box_vertices, grown_box, is_below_a_pixel,
+    is_cut_by_near_plane,
 };
 pub use counters::{COUNTERS_RESOURCE, Counter, Counters, OUT_OF_ORDER, PARTIAL_COVERAGE, POOL_EXHAUSTED};
 pub use cursor::Cursor;

@@ -346,8 +346,12 @@ impl Host<'_> {
     }
 }
 
+/// Returns a corner of an object's box. The box is larger by 1/64 of its greatest extent at each side, so that no object is
+/// dropped because a rasteriser rounds positions.
 fn box_corner(object: &Object, corner: usize) -> [f32; 3] {
-    std::array::from_fn(|axis| object.bounds[corner >> axis & 1][axis])
+    let [least, greatest] = object.bounds;
+    let margin = (0..3).map(|axis| greatest[axis] - least[axis]).fold(0.0, f32::max) / 64.0;
+    std::array::from_fn(|axis| if corner >> axis & 1 == 1 { greatest[axis] + margin } else { least[axis] - margin })
 }
 
 /// Tests whether a corner of an object's box lies before the near plane, z = 0 in clip space.

@@ -82,6 +82,22 @@ fn a_hazard_without_permits_permits_nothing() {
     assert!(fails(&RACY[0], &named));
 }
 
+/// Groups can follow the fragments of a pixel: those that hold fragments are numbered in order, and the last of k has the rest.
+#[test]
+fn groups_follow_the_fragments_where_a_row_says_so() {
+    let holds = |kept: KeptFragments| {
+        let registry = with("adaptive_ranges", |row| row.keeps = Some(kept));
+        let report = report("bad", &[("k", "2")], "wgsl", &limits(3, Model::Sequential), &registry).unwrap();
+        assert!(report.is_kept_set_checked);
+        report.failure.is_none()
+    };
+    const BUCKET: &str = "(depth_steps - nearest_steps) * 32 * OCCUPANCY_WORDS / (farthest_steps - nearest_steps + 1)";
+    assert!(holds(KeptFragments::best_of_each_of_k(BUCKET)));
+    // Every bucket would be a group, or the whole range one.
+    assert!(!holds(KeptFragments::best_of_each(BUCKET)));
+    assert!(!holds(KeptFragments::best_of_each_of_k("0 * depth_steps")));
+}
+
 /// The row's own formula decides which fragments are kept: the checker has no list of rules.
 #[test]
 fn the_kept_set_is_what_the_row_declares() {

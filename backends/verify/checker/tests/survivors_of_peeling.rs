@@ -3,16 +3,9 @@
 /// The reason of mutants that change only colours.
 const COLORS: &str = "colours are none of the checker's: test `peeling` of the runtime";
 
-/// Functions of peeling that are none of the checker's, so their mutants are not judged here: colours, which tests `peeling` and
-/// `peeling_slots` of the runtime compare, and the depth that objects are culled by, which `culled_objects` tests there.
-pub(crate) const JUDGED_ELSEWHERE: [&str; 6] = [
-    "peeling_color",
-    "peeling_transmittance",
-    "peeling_suspend",
-    "peeling_result",
-    "peeling_continues",
-    "peeling_reached",
-];
+/// Functions of peeling that are none of the checker's, so their mutants are not judged here: the depth that objects are culled
+/// by, which `culled_objects` of the runtime tests.
+pub(crate) const JUDGED_ELSEWHERE: [&str; 1] = ["peeling_reached"];
 
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
@@ -136,12 +129,6 @@ pub(crate) const OF_PEELING: &[(&str, &str, &str, &str)] = &[
         "return;",
         "",
         "what a helper invocation writes has no effect: it would use all attempts",
-    ),
-    (
-        "peeling/front_to_back",
-        "last_keys_store(peeling_pixel, resolve_read(cursor).key); remaining_store(1u);",
-        "remaining_store(1u); last_keys_store(peeling_pixel, resolve_read(cursor).key);",
-        "one invocation per pixel, and no other reads them",
     ),
     ("peeling/front_to_back", "remaining_store(1u);", "remaining_store(2u);", "any number but zero"),
     (

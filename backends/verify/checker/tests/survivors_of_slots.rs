@@ -8,7 +8,6 @@ const LIMIT: &str = "only the report of the loop's end: tests `peeling` and `pee
 
 /// Row, line, mutated line, and the reason why the checker cannot kill the mutant.
 pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
-    ("peeling/both_sides", "peeling_side = slot;", "", COLORS),
     (
         "peeling/bucket_layers",
         "const PEELING_BACK = 1u;",
@@ -45,7 +44,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "if ~key <= range_load(PEELING_BACK, pixel) {",
         "a minimum that changes nothing",
     ),
-    ("peeling/bucket_layers", "peeling_part = slot;", "", COLORS),
     (
         "peeling/bucket_layers",
         "range_atomic_min(PEELING_BACK, pixel, ~key);",
@@ -84,14 +82,12 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "an equal key has been compared before",
     ),
     ("peeling/bucket_layers", "return;", "", "no iteration follows that reads what is found"),
-    ("peeling/id_pairs", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, peeling_pixel);", "", COLORS),
     (
         "peeling/id_pairs",
         "if key < window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel) {",
         "if key <= window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel) {",
         "a minimum that changes nothing",
     ),
-    ("peeling/id_pairs", "peeling_part = slot;", "", COLORS),
     ("peeling/id_pairs", "return false;", "", "what follows returns the same: the key is not the layer's"),
     (
         "peeling/id_pairs",
@@ -109,32 +105,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ("peeling/id_pairs_both_sides", "accumulated_join(0u, 1u, pixel);", "accumulated_join(0u, 0u, pixel);", COLORS),
     ("peeling/id_pairs_both_sides", "accumulated_join(0u, 1u, pixel);", "accumulated_join(0u, 2u, pixel);", COLORS),
     ("peeling/id_pairs_both_sides", "accumulated_join(0u, 1u, pixel);", "accumulated_join(1u, 1u, pixel);", COLORS),
-    ("peeling/id_pairs_both_sides", "accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));", "", COLORS),
-    (
-        "peeling/id_pairs_both_sides",
-        "accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));",
-        "accumulated_save_part(1u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));",
-        COLORS,
-    ),
-    (
-        "peeling/id_pairs_both_sides",
-        "accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));",
-        "accumulated_save_part(3u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));",
-        COLORS,
-    ),
-    (
-        "peeling/id_pairs_both_sides",
-        "accumulated_save_part(3u, pixel, behind); accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0));",
-        "accumulated_save_part(2u, pixel, vec4<f32>(0.0, 0.0, 0.0, 1.0)); accumulated_save_part(3u, pixel, behind);",
-        COLORS,
-    ),
-    ("peeling/id_pairs_both_sides", "accumulated_save_part(3u, pixel, behind);", "", COLORS),
-    (
-        "peeling/id_pairs_both_sides",
-        "accumulated_save_part(3u, pixel, behind);",
-        "accumulated_save_part(2u, pixel, behind);",
-        COLORS,
-    ),
     (
         "peeling/id_pairs_both_sides",
         "const PEELING_BACK = 1u;",
@@ -173,29 +143,10 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "peeling/id_pairs_both_sides",
-        "let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));",
-        "let behind = accumulated_over(accumulated_part(1u, pixel), accumulated_part(3u, pixel));",
-        COLORS,
-    ),
-    (
-        "peeling/id_pairs_both_sides",
-        "let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));",
-        "let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(2u, pixel));",
-        COLORS,
-    ),
-    (
-        "peeling/id_pairs_both_sides",
-        "let behind = accumulated_over(accumulated_part(2u, pixel), accumulated_part(3u, pixel));",
-        "let behind = accumulated_over(accumulated_part(3u, pixel), accumulated_part(3u, pixel));",
-        COLORS,
-    ),
-    (
-        "peeling/id_pairs_both_sides",
         "let is_behind_front = key > window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);",
         "let is_behind_front = key >= window_load(ID_PAIRS_KEY, PEELING_FRONT, pixel);",
         "an equal key is that of a side, and does not come here",
     ),
-    ("peeling/id_pairs_both_sides", "peeling_part = slot;", "", COLORS),
     (
         "peeling/id_pairs_both_sides",
         "return 2u * side + select(1u, 0u, id_pairs_id(entry) == found_load(ID_PAIRS_LEAST, side, pixel));",
@@ -215,8 +166,6 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "only keys of 0 and of 1 differ: test `peeling_slots` of the runtime draws at depth 0",
     ),
     ("peeling/id_pairs_both_sides", "return;", "", "no iteration follows that reads what is found"),
-    ("peeling/id_pairs_tested", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, peeling_pixel);", "", COLORS),
-    ("peeling/id_pairs_tested", "peeling_part = slot;", "", COLORS),
     (
         "peeling/id_pairs_tested",
         "return;",
@@ -376,4 +325,17 @@ pub(crate) const OF_SLOTS: &[(&str, &str, &str, &str)] = &[
         "remaining_store(1u); count_loss(NOT_CONVERGED);",
         LIMIT,
     ),
+    (
+        "peeling/front_to_back",
+        "last_keys_store(accumulated_pixel, resolve_read(cursor).key); remaining_store(1u);",
+        "remaining_store(1u); last_keys_store(accumulated_pixel, resolve_read(cursor).key);",
+        "one invocation per pixel, and no other reads them",
+    ),
+    ("peeling/id_pairs", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, accumulated_pixel);", "", COLORS),
+    ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "", COLORS),
+    ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "accumulated_join(2u, 2u, pixel);", COLORS),
+    ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "accumulated_join(3u, 1u, pixel);", COLORS),
+    ("peeling/id_pairs_both_sides", "accumulated_join(3u, 2u, pixel);", "accumulated_join(3u, 3u, pixel);", COLORS),
+    ("peeling/id_pairs_tested", "accumulated_join(PEELING_LEAST, PEELING_GREATEST, accumulated_pixel);", "", COLORS),
+    ("peeling/id_pairs_tested", "accumulated_slot = slot;", "", COLORS),
 ];

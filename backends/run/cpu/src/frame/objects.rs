@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use fragbuf_frame::{box_vertices, grown_box};
+use fragbuf_frame::{box_around, box_vertices, grown_box};
 
 use super::Frame;
 
@@ -32,14 +32,7 @@ impl Frame<'_> {
         let indices = self.mesh.indices.get(object.start as usize..object.end as usize)?;
         let positions =
             indices.iter().filter_map(|index| self.mesh.vertices.get(*index as usize * stride..)?.first_chunk());
-        let mut positions = positions.map(|words: &[u32; 3]| words.map(f32::from_bits));
-        let first = positions.next()?;
-        let (least, greatest) = positions.fold((first, first), |(least, greatest), position| {
-            let pick = |choose: fn(f32, f32) -> f32, from: [f32; 3]| -> [f32; 3] {
-                std::array::from_fn(|axis| choose(from[axis], position[axis]))
-            };
-            (pick(f32::min, least), pick(f32::max, greatest))
-        });
+        let (least, greatest) = box_around(positions.map(|words: &[u32; 3]| words.map(f32::from_bits)))?;
         let (least, greatest) = grown_box(least, greatest);
         Some(box_vertices(least, greatest, stride))
     }
